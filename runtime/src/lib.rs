@@ -1,0 +1,6 @@
+//! All of dynid that runs on recordings; knows no robot by name.
+#![deny(missing_docs)]
+
+pub mod model;
+pub mod recording;
+pub mod signal;

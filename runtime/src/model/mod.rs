@@ -1,0 +1,65 @@
+//! A robot's dynamics as linear forms in its parameters: the trait that generated and recursive models share.
+
+mod number;
+mod robot;
+
+pub use number::Number;
+pub use robot::{
+    BaseParameter, Drive, Frame, JointKind, Limits, Nominal, ParameterKind, Robot, StandardParameter,
+};
+
+/// Where the inverse dynamic regressor can be non-zero: the block-triangular form (5), entry by entry.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pattern {
+    /// `rows[i]..rows[i + 1]` are the entries of joint i; length n + 1.
+    pub rows: std::borrow::Cow<'static, [usize]>,
+    /// Base parameter (column) of each entry, ascending within a row.
+    pub columns: std::borrow::Cow<'static, [usize]>,
+}
+
+/// Signals of many samples, joint by joint: `q[j][t]`. All slices have the same length.
+#[derive(Debug, Clone, Copy)]
+pub struct States<'a> {
+    /// Positions, rad or m.
+    pub q: &'a [&'a [f64]],
+    /// Velocities.
+    pub dq: &'a [&'a [f64]],
+    /// Accelerations.
+    pub ddq: &'a [&'a [f64]],
+}
+
+/// The dynamics of one robot in its base parameters chi (n joints, nb parameters).
+///
+/// Slices have exactly the lengths named; the methods allocate nothing and never fail on finite input.
+/// Shapes that do not fit are a bug of the caller and panic.
+pub trait Model: Send + Sync {
+    /// The robot this is a model of.
+    fn robot(&self) -> &Robot;
+
+    /// Which entries of IDM are computed; the others are zero for every state.
+    fn pattern(&self) -> &Pattern;
+
+    /// Energy row h(q, dq) of (10): nb values, J per unit parameter. Friction columns are zero.
+    fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]);
+
+    /// Power row dh(q, dq, ddq) of (10), friction included: nb values, W per unit parameter.
+    fn power(&self, q: &[f64], dq: &[f64], ddq: &[f64], dh: &mut [f64]);
+
+    /// Inverse dynamic regressor of (4): the entries of `pattern`, in its order.
+    fn idm(&self, q: &[f64], dq: &[f64], ddq: &[f64], entries: &mut [f64]);
+
+    /// [`Model::idm`] for many samples: entry e of sample t is written to `out[e * stride + t]`.
+    ///
+    /// Allocation-free; `stride` is at least the number of samples.
+    fn idm_block(&self, states: States<'_>, stride: usize, out: &mut [f64]);
+
+    /// [`Model::power`] for many samples: column k of sample t is written to `out[k * stride + t]`.
+    fn power_block(&self, states: States<'_>, stride: usize, out: &mut [f64]);
+
+    /// [`Model::energy`] for many samples (`states.ddq` is not read).
+    fn energy_block(&self, states: States<'_>, stride: usize, out: &mut [f64]);
+
+    /// Mass matrix M(q) (n x n, row-major, both triangles) and bias N(q, dq) of (1) for given base parameters:
+    /// centrifugal, Coriolis and gravity torques with the rotor inertias; friction and offsets are not included.
+    fn mass_and_bias(&self, chi: &[f64], q: &[f64], dq: &[f64], mass: &mut [f64], bias: &mut [f64]);
+}

@@ -1,0 +1,5 @@
+//! Recordings: manifests, files, units, trajectories.
+
+mod trajectory;
+
+pub use trajectory::Trajectory;

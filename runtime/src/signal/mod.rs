@@ -1,0 +1,5 @@
+//! Filters, differentiation, decimation, spectra.
+
+mod motion;
+
+pub use motion::Motion;

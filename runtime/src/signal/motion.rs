@@ -1,0 +1,24 @@
+//! One motion ready for a model: filtered and differentiated on a uniform grid.
+
+/// Filtered positions, their derivatives and the torques of one motion at the full rate. `q[j][t]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Name of the trajectory it was made from.
+    pub name: String,
+    /// Samples a second, Hz.
+    pub rate: f64,
+    /// Time of the first sample, s, in the recording's time.
+    pub start: f64,
+    /// Zero-phase low-pass filtered positions, rad or m.
+    pub q: Vec<Vec<f64>>,
+    /// Central differences of `q`.
+    pub dq: Vec<Vec<f64>>,
+    /// Central differences of `dq`.
+    pub ddq: Vec<Vec<f64>>,
+    /// Torques as measured, on the same grid; the parallel decimation filters them with the columns of W.
+    pub torque: Vec<Vec<f64>>,
+    /// Joints (0-based) that stand still in this motion.
+    pub fixed: Vec<usize>,
+    /// Samples at each end that the position filter has spoiled and that no row may use.
+    pub spoiled: usize,
+}
