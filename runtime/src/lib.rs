@@ -3,4 +3,5 @@
 
 pub mod model;
 pub mod recording;
+pub mod report;
 pub mod signal;

@@ -1,0 +1,135 @@
+//! One self-contained HTML page: opens from disk, reads on a phone, prints.
+
+use std::fmt::Write as _;
+
+use super::Plot;
+
+const STYLE: &str = include_str!("page.css");
+
+/// Text made safe inside HTML elements and quoted attributes.
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            _ => out.push(c),
+        }
+    }
+    out
+}
+
+/// A page that grows from top to bottom. Every text given to it is escaped.
+#[derive(Debug, Clone)]
+pub struct Page {
+    title: String,
+    body: String,
+}
+
+impl Page {
+    /// An empty page.
+    pub fn new(title: &str) -> Self {
+        Self { title: escape(title), body: format!("<h1>{}</h1>", escape(title)) }
+    }
+
+    /// The sentence that a reader in a hurry must see.
+    pub fn verdict(&mut self, text: &str) -> &mut Self {
+        self.element("p class=\"verdict\"", "p", text)
+    }
+
+    /// A section heading.
+    pub fn heading(&mut self, text: &str) -> &mut Self {
+        self.element("h2", "h2", text)
+    }
+
+    /// A heading inside a section.
+    pub fn subheading(&mut self, text: &str) -> &mut Self {
+        self.element("h3", "h3", text)
+    }
+
+    /// A paragraph.
+    pub fn paragraph(&mut self, text: &str) -> &mut Self {
+        self.element("p", "p", text)
+    }
+
+    /// A paragraph of small print.
+    pub fn note(&mut self, text: &str) -> &mut Self {
+        self.element("p class=\"note\"", "p", text)
+    }
+
+    /// A plot.
+    pub fn plot(&mut self, plot: &Plot) -> &mut Self {
+        self.body.push_str(&plot.to_html());
+        self
+    }
+
+    /// A list of sentences.
+    pub fn list<S: AsRef<str>>(&mut self, items: impl IntoIterator<Item = S>) -> &mut Self {
+        self.body.push_str("<ul>");
+        for item in items {
+            self.element("li", "li", item.as_ref());
+        }
+        self.body.push_str("</ul>");
+        self
+    }
+
+    /// A table; the first column holds names and is set to the left, the others hold numbers.
+    pub fn table<S: AsRef<str>>(&mut self, header: &[S], rows: &[Vec<String>]) -> &mut Self {
+        self.body.push_str("<div class=\"wide\"><table><thead><tr>");
+        for cell in header {
+            self.element("th", "th", cell.as_ref());
+        }
+        self.body.push_str("</tr></thead><tbody>");
+        for row in rows {
+            self.body.push_str("<tr>");
+            for cell in row {
+                self.element("td", "td", cell);
+            }
+            self.body.push_str("</tr>");
+        }
+        self.body.push_str("</tbody></table></div>");
+        self
+    }
+
+    /// A part that is closed until the reader opens it (and open in print).
+    pub fn details(&mut self, summary: &str, fill: impl FnOnce(&mut Self)) -> &mut Self {
+        let _ = write!(self.body, "<details><summary>{}</summary>", escape(summary));
+        fill(self);
+        self.body.push_str("</details>");
+        self
+    }
+
+    /// The whole document.
+    pub fn to_html(&self) -> String {
+        format!(
+            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>{}</main>\n</body>\n</html>\n",
+            self.title, self.body
+        )
+    }
+
+    fn element(&mut self, open: &str, close: &str, text: &str) -> &mut Self {
+        let _ = write!(self.body, "<{open}>{}</{close}>", escape(text));
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_needs_nothing_from_elsewhere() {
+        let mut page = Page::new("tx40 <b>");
+        page.verdict("done").table(&["joint", "error"], &[vec!["1".into(), "2 %".into()]]);
+        let html = page.to_html();
+        assert!(html.contains("tx40 &lt;b&gt;"));
+        for outside in ["http:", "https:", "src=", "@import", "<script"] {
+            assert!(!html.contains(outside), "{outside}");
+        }
+    }
+}

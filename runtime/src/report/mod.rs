@@ -1,0 +1,10 @@
+//! What a person reads: numbers in words, plots, pages. Text in, text out; no file is written here.
+
+mod axis;
+mod html;
+mod numbers;
+mod plot;
+
+pub use html::{Page, escape};
+pub use numbers::{percent, significant};
+pub use plot::{Band, Plot, Role, Series, SeriesKind};

@@ -1,0 +1,55 @@
+//! Numbers as a person reads them.
+
+/// A number with `digits` significant digits, in scientific notation only where plain digits would be long.
+///
+/// ```
+/// use dynid_runtime::report::significant;
+/// assert_eq!(significant(0.0123456, 3), "0.0123");
+/// assert_eq!(significant(1234.5, 3), "1234");
+/// assert_eq!(significant(1.5e-7, 2), "1.5e-7");
+/// ```
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = digits.max(1);
+    let scientific = format!("{:.*e}", digits - 1, value);
+    // The exponent after rounding: 9.99 with two digits is 1.0e1.
+    let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    if (-4..6).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        scientific
+    }
+}
+
+/// A ratio as a percentage with three significant digits: 0.0678 is `6.78 %`.
+pub fn percent(ratio: f64) -> String {
+    format!("{} %", significant(100.0 * ratio, 3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_the_digits_asked_for_after_rounding_up() {
+        assert_eq!(significant(9.996, 3), "10.0");
+        assert_eq!(significant(-0.000_099_96, 3), "-0.000100");
+    }
+
+    #[test]
+    fn says_what_is_not_a_number() {
+        assert_eq!(significant(f64::NAN, 3), "NaN");
+        assert_eq!(significant(f64::INFINITY, 3), "inf");
+    }
+
+    #[test]
+    fn writes_a_percentage() {
+        assert_eq!(percent(0.067_83), "6.78 %");
+    }
+}
