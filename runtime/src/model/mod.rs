@@ -1,12 +1,18 @@
 //! A robot's dynamics as linear forms in its parameters: the trait that generated and recursive models share.
 
 mod number;
+mod recursive;
 mod robot;
+mod standard;
 
 pub use number::Number;
+pub use recursive::{
+    Link, MAX_FRAMES, RecursiveModel, RecursiveModelError, Row, standard_energy, standard_idm, standard_power,
+};
 pub use robot::{
     BaseParameter, Drive, Frame, JointKind, Limits, Nominal, ParameterKind, Robot, StandardParameter,
 };
+pub use standard::{standard_parameters, unit};
 
 /// Where the inverse dynamic regressor can be non-zero: the block-triangular form (5), entry by entry.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -34,3 +34,26 @@ pub trait Number:
     /// -1, 0 or 1 with the sign of the number; 0 for 0. Its derivative is 0.
     fn sign(self) -> Self;
 }
+
+impl Number for f64 {
+    #[inline(always)]
+    fn constant(value: f64) -> f64 {
+        value
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (f64, f64) {
+        f64::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sign(self) -> f64 {
+        if self > 0.0 {
+            1.0
+        } else if self < 0.0 {
+            -1.0
+        } else {
+            0.0
+        }
+    }
+}
