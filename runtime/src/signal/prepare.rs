@@ -1,0 +1,126 @@
+//! From a trajectory as measured to a motion that a model can be evaluated on.
+
+use super::{Butterworth, Motion, SignalError, Stencil, UniformGrid, central_difference};
+use crate::recording::Trajectory;
+
+/// How positions are filtered and differentiated.
+///
+/// The paper's band-pass filter is a zero-phase Butterworth low-pass followed by central differences. The cut-off
+/// must lie well above the motion's band, or it distorts accelerations that the torques are not distorted by,
+/// and no higher than needed, because differentiating twice multiplies noise by the square of the frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preparation {
+    /// Cut-off of the position filter, Hz; `None`: `Preparation::default_cutoff`.
+    pub cutoff: Option<f64>,
+    /// Order of one pass of the Butterworth filter.
+    pub order: usize,
+    /// Rate of the uniform grid, Hz; `None`: the recording's own.
+    pub rate: Option<f64>,
+    /// Where dq comes from.
+    pub velocity: VelocitySource,
+    /// Stencil of the differences; `None`: the narrowest that is exact to 0.5 % at a quarter of the cut-off.
+    pub stencil: Option<Stencil>,
+}
+
+/// Where dq comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum VelocitySource {
+    /// Central differences of the filtered positions, as in the paper.
+    #[default]
+    Positions,
+    /// The recorded velocity, filtered with the same filter, where there is one; else the positions.
+    Recorded,
+}
+
+impl Default for Preparation {
+    fn default() -> Self {
+        Self { cutoff: None, order: 4, rate: None, velocity: VelocitySource::Positions, stencil: None }
+    }
+}
+
+impl Preparation {
+    /// 100 Hz, or a fifth of the rate where that is less: twice the widest band (50 Hz) that an observation is
+    /// usually decimated to, and for slow recordings as high as double differences of them still make sense.
+    pub fn default_cutoff(rate: f64) -> f64 {
+        (rate / 5.0).min(100.0)
+    }
+}
+
+/// A mode of the filter counts as died out when it is down to this.
+const SETTLED: f64 = 1e-4;
+
+/// Lays a trajectory on a uniform grid, filters its positions without phase shift, and differentiates them twice.
+///
+/// Torques are put on the same grid and not filtered: the parallel decimation filters them together with the
+/// columns of W. The samples at each end that the filter and the differences have spoiled are counted in
+/// `Motion::spoiled`.
+///
+/// Errors: channels of unequal length, stamps that do not increase, values that are not finite, a motion too
+/// short for the filter, a cut-off outside of (0, rate / 2).
+pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion, SignalError> {
+    let name = &trajectory.name;
+    check(trajectory)?;
+    let grid = UniformGrid::of(name, &trajectory.time, settings.rate)?;
+    let rate = grid.rate;
+    let cutoff = settings.cutoff.unwrap_or_else(|| Preparation::default_cutoff(rate));
+    let filter = Butterworth::low_pass(settings.order, cutoff, rate)?;
+    let stencil = settings.stencil.unwrap_or_else(|| Stencil::accurate_to(0.25 * cutoff / rate, 0.005));
+    // A pass starts at rest; padding until that start has died out leaves only the kink of the reflected end.
+    let padding = filter.padding().max(filter.settling(SETTLED));
+    let spoiled = padding + 2 * stencil.half_width();
+    let needed = 2 * spoiled + 1;
+    if grid.len < needed {
+        return Err(SignalError::TooShort {
+            name: name.clone(),
+            samples: grid.len,
+            needed,
+            purpose: "filter and differentiate the positions",
+        });
+    }
+    let filtered = |values: &Vec<f64>| {
+        let mut out = Vec::new();
+        filter.zero_phase_into(&grid.resample(values), padding, &mut out).map(|()| out)
+    };
+    let derivative = |values: &Vec<f64>| {
+        let mut out = vec![0.0; values.len()];
+        central_difference(values, rate, stencil, &mut out);
+        out
+    };
+    let q = trajectory.position.iter().map(filtered).collect::<Result<Vec<_>, _>>()?;
+    let dq = match (&trajectory.velocity, settings.velocity) {
+        (Some(velocity), VelocitySource::Recorded) => {
+            velocity.iter().map(filtered).collect::<Result<Vec<_>, _>>()?
+        }
+        _ => q.iter().map(derivative).collect(),
+    };
+    let ddq = dq.iter().map(derivative).collect();
+    Ok(Motion {
+        name: name.clone(),
+        rate,
+        start: grid.start,
+        q,
+        dq,
+        ddq,
+        torque: trajectory.torque.iter().map(|t| grid.resample(t)).collect(),
+        fixed: trajectory.fixed.clone(),
+        spoiled,
+    })
+}
+
+fn check(trajectory: &Trajectory) -> Result<(), SignalError> {
+    let expected = trajectory.time.len();
+    let velocity = trajectory.velocity.iter().flatten();
+    for channel in trajectory.position.iter().chain(&trajectory.torque).chain(velocity) {
+        if channel.len() != expected {
+            return Err(SignalError::Shape { name: trajectory.name.clone(), found: channel.len(), expected });
+        }
+        if !channel.iter().all(|x| x.is_finite()) {
+            return Err(SignalError::NotFinite { name: trajectory.name.clone() });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+#[path = "prepare_tests.rs"]
+mod tests;

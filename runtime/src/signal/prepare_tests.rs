@@ -1,0 +1,87 @@
+use super::{Preparation, VelocitySource, prepare};
+use crate::recording::Trajectory;
+use crate::signal::oracle::{oracle, worst};
+use crate::signal::{Stencil, central_difference};
+
+fn sine(rate: f64, n: usize, jitter: f64) -> Trajectory {
+    let time: Vec<f64> = (0..n).map(|k| 5.0 + (k as f64 + jitter * (k as f64 * 2.3).sin()) / rate).collect();
+    let of = |f: &dyn Fn(f64) -> f64| vec![time.iter().map(|&t| f(t)).collect::<Vec<_>>()];
+    Trajectory {
+        name: "sine".into(),
+        position: of(&|t| (6.0 * t).sin()),
+        velocity: Some(of(&|t| 6.0 * (6.0 * t).cos())),
+        torque: of(&|t| t),
+        fixed: vec![],
+        time,
+    }
+}
+
+#[test]
+fn positions_and_derivatives_of_a_slow_sine_are_exact_between_the_spoiled_ends() {
+    for (rate, n, jitter) in
+        [(5000.0, 20000, 0.0), (500.0, 2000, 0.0), (100.0, 1000, 0.0), (100.0, 1000, 0.1)]
+    {
+        for velocity in [VelocitySource::Positions, VelocitySource::Recorded] {
+            let settings = Preparation { velocity, ..Preparation::default() };
+            let motion = prepare(&sine(rate, n, jitter), &settings).expect("a valid motion");
+            assert!(motion.spoiled > 2 && motion.spoiled < n / 10);
+            for k in motion.spoiled..motion.q[0].len() - motion.spoiled {
+                let t = motion.start + k as f64 / motion.rate;
+                assert!((motion.q[0][k] - (6.0 * t).sin()).abs() < 2e-4);
+                assert!((motion.dq[0][k] - 6.0 * (6.0 * t).cos()).abs() < 3e-3);
+                assert!((motion.ddq[0][k] + 36.0 * (6.0 * t).sin()).abs() < 5e-2, "{rate} {jitter} {k}");
+                assert!((motion.torque[0][k] - t).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn two_point_difference_agrees_with_numpy() {
+    for case in oracle().gradient {
+        let mut out = vec![0.0; case.input.len()];
+        central_difference(&case.input, case.rate, Stencil::Three, &mut out);
+        assert!(worst(&out, &case.output) < 1e-12);
+    }
+}
+
+#[test]
+fn wider_stencils_are_exact_for_polynomials_of_their_order() {
+    for (stencil, order) in [(Stencil::Three, 2), (Stencil::Five, 4), (Stencil::Seven, 6), (Stencil::Nine, 8)]
+    {
+        let x: Vec<f64> = (0..40).map(|k| (k as f64 / 20.0 - 1.0).powi(order)).collect();
+        let mut out = vec![0.0; 40];
+        central_difference(&x, 20.0, stencil, &mut out);
+        let inner = stencil.half_width()..40 - stencil.half_width();
+        for (k, y) in out.iter().enumerate().filter(|(k, _)| inner.contains(k)) {
+            let exact = order as f64 * (k as f64 / 20.0 - 1.0).powi(order - 1);
+            assert!((y - exact).abs() < 1e-9, "{stencil:?} at {k}: {y} {exact}");
+        }
+    }
+}
+
+#[test]
+fn a_constant_has_no_derivative_whatever_its_length() {
+    for n in 0..12 {
+        for stencil in [Stencil::Three, Stencil::Five, Stencil::Seven, Stencil::Nine] {
+            let mut out = vec![1.0; n];
+            central_difference(&vec![4.0; n], 10.0, stencil, &mut out);
+            assert!(out.iter().all(|x| x.abs() < 1e-12), "{n} {stencil:?} {out:?}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_prepared_is_told() {
+    let settings = Preparation::default();
+    let short = sine(500.0, 20, 0.0);
+    assert!(prepare(&short, &settings).expect_err("too short").to_string().contains("20 samples"));
+    let mut nan = sine(500.0, 2000, 0.0);
+    nan.torque[0][7] = f64::NAN;
+    assert!(prepare(&nan, &settings).is_err());
+    let mut uneven = sine(500.0, 2000, 0.0);
+    uneven.position[0].pop();
+    assert!(prepare(&uneven, &settings).is_err());
+    let cutoff = Preparation { cutoff: Some(400.0), ..settings };
+    assert!(prepare(&sine(500.0, 2000, 0.0), &cutoff).is_err());
+}
