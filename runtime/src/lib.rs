@@ -1,6 +1,7 @@
 //! All of dynid that runs on recordings; knows no robot by name.
 #![deny(missing_docs)]
 
+pub mod estimation;
 pub mod model;
 pub mod recording;
 pub mod report;

@@ -1,0 +1,117 @@
+//! Least squares from a factor: rank, condition, solution, covariance.
+
+use super::Factor;
+use nalgebra::{DMatrix, DVector};
+
+/// Directions whose singular value of the scaled W is below this share of the largest are not determined.
+pub const RANK_TOLERANCE: f64 = 1e-9;
+
+/// Least-squares solution of a factor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// Unknowns that were solved for, ascending. The others cannot be told from these: their value is zero.
+    pub kept: Vec<usize>,
+    /// Parameters, one per unknown; zero where not kept.
+    pub chi: Vec<f64>,
+    /// Diagonal of (WT W)^-1 over the kept columns; infinite where not kept.
+    pub variance: Vec<f64>,
+    /// ||Y - W chi||
+    pub residual_norm: f64,
+    /// Rows minus kept unknowns.
+    pub degrees_of_freedom: usize,
+    /// Condition number of the kept columns of W, each scaled to unit length.
+    pub condition: f64,
+    /// Unit direction among the scaled unknowns that the data determine least, among the kept ones.
+    pub weakest: Vec<f64>,
+    /// For each unknown that is not kept: the unknowns it cannot be told from (itself among them), the strongest
+    /// first. A column of zeros stands alone.
+    pub dependent: Vec<Vec<usize>>,
+}
+
+/// Rank by a pivoted QR of the scaled triangle, then back substitution on what is independent.
+pub(super) fn solve(factor: &Factor) -> Solution {
+    let k = factor.unknowns();
+    let norms = factor.column_norms();
+    let scale: Vec<f64> = norms.iter().map(|&n| if n > 0.0 { 1.0 / n } else { 0.0 }).collect();
+    let scaled = DMatrix::from_fn(k + 1, k, |i, l| if i <= l { factor.r(i, l) * scale[l] } else { 0.0 });
+    let y = DVector::from_fn(k + 1, |i, _| factor.r(i, k));
+
+    let (order, rank) = independent(&scaled);
+    let mut kept = order[..rank].to_vec();
+    kept.sort_unstable();
+    let dependent = order[rank..].iter().map(|&l| partners(&scaled, &kept, l)).collect();
+
+    let basis = DMatrix::from_fn(k + 1, rank, |i, c| scaled[(i, kept[c])]);
+    let qr = basis.clone().qr();
+    let r = qr.r();
+    let mut qty = y.clone();
+    qr.q_tr_mul(&mut qty);
+    let x = r.solve_upper_triangular(&qty.rows(0, rank)).unwrap_or_else(|| DVector::zeros(rank));
+    let inverse = r
+        .solve_upper_triangular(&DMatrix::identity(rank, rank))
+        .unwrap_or_else(|| DMatrix::zeros(rank, rank));
+
+    let mut chi = vec![0.0; k];
+    let mut variance = vec![f64::INFINITY; k];
+    for (c, &l) in kept.iter().enumerate() {
+        chi[l] = x[c] * scale[l];
+        variance[l] = inverse.row(c).norm_squared() * scale[l] * scale[l];
+    }
+    let (condition, weakest) = conditioning(&r, &kept, k);
+    let residual_norm = factor.residual_norm(&chi);
+    let degrees_of_freedom = factor.rows().saturating_sub(rank);
+    Solution { kept, chi, variance, residual_norm, degrees_of_freedom, condition, weakest, dependent }
+}
+
+/// Column order of the pivoted QR and the number of columns that are independent.
+fn independent(scaled: &DMatrix<f64>) -> (Vec<usize>, usize) {
+    let k = scaled.ncols();
+    let mut order: Vec<usize> = (0..k).collect();
+    if k == 0 {
+        return (order, 0);
+    }
+    let qr = scaled.clone().col_piv_qr();
+    let mut places = nalgebra::RowDVector::from_iterator(k, order.iter().map(|&l| l as f64));
+    qr.p().permute_columns(&mut places);
+    for (to, from) in order.iter_mut().zip(places.iter()) {
+        *to = *from as usize;
+    }
+    let r = qr.r();
+    let rank = (0..k).take_while(|&i| r[(i, i)].abs() > RANK_TOLERANCE).count();
+    (order, rank)
+}
+
+/// The unknowns whose columns make up the column of a dependent one.
+fn partners(scaled: &DMatrix<f64>, kept: &[usize], dependent: usize) -> Vec<usize> {
+    let column = scaled.column(dependent).into_owned();
+    if column.norm() == 0.0 || kept.is_empty() {
+        return vec![dependent];
+    }
+    let basis = DMatrix::from_fn(scaled.nrows(), kept.len(), |i, c| scaled[(i, kept[c])]);
+    let qr = basis.qr();
+    let mut projected = column;
+    qr.q_tr_mul(&mut projected);
+    let Some(shares) = qr.r().solve_upper_triangular(&projected.rows(0, kept.len())) else {
+        return vec![dependent];
+    };
+    let mut named: Vec<(f64, usize)> = shares.iter().zip(kept).map(|(x, &l)| (x.abs(), l)).collect();
+    named.retain(|&(share, _)| share > 1e-3);
+    named.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    std::iter::once(dependent).chain(named.into_iter().map(|(_, l)| l)).collect()
+}
+
+fn conditioning(r: &DMatrix<f64>, kept: &[usize], unknowns: usize) -> (f64, Vec<f64>) {
+    let mut weakest = vec![0.0; unknowns];
+    if kept.is_empty() {
+        return (1.0, weakest);
+    }
+    let svd = r.clone().svd(false, true);
+    let values = &svd.singular_values;
+    let at = values.imin();
+    if let Some(v) = &svd.v_t {
+        for (c, &l) in kept.iter().enumerate() {
+            weakest[l] = v[(at, c)];
+        }
+    }
+    (values.max() / values[at], weakest)
+}
