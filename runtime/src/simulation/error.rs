@@ -1,0 +1,86 @@
+//! Misuse of the simulation, and plants that cannot exist.
+
+use thiserror::Error;
+
+/// Why something cannot be simulated.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SimulationError {
+    /// A slice of the wrong length.
+    #[error("{expected} {what} expected, {found} given")]
+    Length {
+        /// What was counted.
+        what: &'static str,
+        /// How many there must be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A number that is NaN or infinite.
+    #[error("{name} is not a finite number")]
+    NotFinite {
+        /// The parameter or setting.
+        name: String,
+    },
+    /// A parameter that cannot be negative.
+    #[error("{name} = {value} is negative: no real {name} is")]
+    NegativeParameter {
+        /// The parameter.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A link whose mass distribution no body can have.
+    #[error(
+        "link {link} cannot exist: its pseudo-inertia has the eigenvalue {smallest:.3e}, all must be positive; \
+         check its mass, first moments and inertia (the triangle inequality about the centre of mass)"
+    )]
+    InconsistentLink {
+        /// Number j of the frame.
+        link: usize,
+        /// Smallest eigenvalue of the pseudo-inertia.
+        smallest: f64,
+    },
+    /// Rotor inertias Ia that leave a motor with a negative one (26).
+    #[error(
+        "the Ia of the joints give motor {motor} the rotor inertia {inertia:.3e}: a motor that several joints turn \
+         is part of the Ia of each of them"
+    )]
+    NegativeRotor {
+        /// Motor, from 1.
+        motor: usize,
+        /// Its inertia, kg.m2 at the motor.
+        inertia: f64,
+    },
+    /// The mass matrix has lost its positive definiteness.
+    #[error(
+        "the mass matrix is not positive definite at t = {time:.4} s: the parameters do not belong to a real robot"
+    )]
+    MassMatrix {
+        /// Simulated time, s.
+        time: f64,
+    },
+    /// The state has left all bounds.
+    #[error("the simulation diverged at t = {time:.4} s: lower the controller gains or the step")]
+    Diverged {
+        /// Simulated time, s.
+        time: f64,
+    },
+    /// A setting out of its range.
+    #[error("{what} must be {expected}, not {found}")]
+    Setting {
+        /// The setting.
+        what: &'static str,
+        /// What it may be.
+        expected: &'static str,
+        /// What it is.
+        found: f64,
+    },
+    /// A robot without the parameters that simulation needs.
+    #[error(
+        "{robot} has no nominal parameters: give them under `nominal:` in its YAML, or simulate a saved model"
+    )]
+    NoNominal {
+        /// The robot.
+        robot: String,
+    },
+}

@@ -1,0 +1,32 @@
+//! A robot that exists only as numbers: plant, controller, sensors, and motions that excite it.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "joints, coordinates and matrix entries are numbered as in the equations"
+)]
+
+mod cholesky;
+mod closed_loop;
+mod consistency;
+mod controller;
+mod drive;
+mod error;
+mod extra;
+mod integrator;
+mod plant;
+mod reference;
+mod rest;
+mod sensors;
+
+pub use closed_loop::{LoopSettings, Simulation, simulate};
+pub use consistency::check_standard;
+pub use controller::ControllerSettings;
+pub use error::SimulationError;
+pub use extra::{ExtraTorque, Instant};
+pub use plant::{ElasticJoint, Hold, Plant, State};
+pub use reference::{Reference, SampledReference};
+pub use sensors::SensorSettings;
+
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,233 @@
+#![allow(clippy::unwrap_used)]
+//! The plant against energy, against the inverse dynamics, and against friction worked out by hand.
+
+use super::testing::{arm, pendulum, random_state, wrist};
+use super::*;
+use crate::model::{Model, ParameterKind, RecursiveModel};
+use rand::{RngExt, SeedableRng};
+
+fn without_friction(model: &RecursiveModel, chi: &[f64]) -> Vec<f64> {
+    let kinds = model.robot().standard.iter().map(|p| p.kind);
+    chi.iter().zip(kinds).map(|(&x, kind)| if kind > ParameterKind::Ia { 0.0 } else { x }).collect()
+}
+
+fn energy(model: &RecursiveModel, chi: &[f64], state: &State) -> f64 {
+    let mut h = vec![0.0; chi.len()];
+    let n = model.robot().joints();
+    model.energy(&state.q[..n], &state.dq[..n], &mut h);
+    h.iter().zip(chi).map(|(a, b)| a * b).sum()
+}
+
+#[test]
+fn energy_is_kept_over_ten_seconds_without_friction() {
+    let (model, chi) = arm();
+    let chi = without_friction(&model, &chi);
+    let n = model.robot().joints();
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let mut state = plant.state(&vec![0.3; n], &vec![0.8; n]);
+    let before = energy(&model, &chi, &state);
+    // Energy has no absolute zero: the drift is measured against what is exchanged between its two forms.
+    let rest = plant.state(&state.q[..n], &vec![0.0; n]);
+    let mut kinetic = before - energy(&model, &chi, &rest);
+    for _ in 0..50_000 {
+        plant.advance(&mut state, &vec![0.0; n], 2e-4).unwrap();
+        let still = State { dq: vec![0.0; n], ..state.clone() };
+        kinetic = kinetic.max(energy(&model, &chi, &state) - energy(&model, &chi, &still));
+    }
+    let drift = (energy(&model, &chi, &state) - before).abs() / kinetic;
+    assert!(drift < 1e-8, "relative drift {drift:.2e}");
+}
+
+#[test]
+fn forward_dynamics_undo_inverse_dynamics() {
+    let (model, chi) = arm();
+    let n = model.robot().joints();
+    let pattern = model.pattern();
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let mut random = rand_pcg::Pcg64::seed_from_u64(3);
+    for _ in 0..200 {
+        let [q, dq, ddq] = random_state(n, &mut random);
+        let mut entries = vec![0.0; pattern.columns.len()];
+        model.idm(&q, &dq, &ddq, &mut entries);
+        let torque: Vec<f64> = (0..n)
+            .map(|i| {
+                let row = pattern.rows[i]..pattern.rows[i + 1];
+                row.map(|e| entries[e] * chi[pattern.columns[e]]).sum()
+            })
+            .collect();
+        let mut state = plant.state(&q, &dq);
+        let mut back = vec![0.0; n];
+        plant.acceleration(&mut state, &torque, &mut back).unwrap();
+        for (a, b) in back.iter().zip(&ddq) {
+            assert!((a - b).abs() < 1e-10 * (1.0 + b.abs()), "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn coulomb_friction_holds_a_pendulum_below_its_limit_and_lets_it_slip_above() {
+    // Gravity torque m·g·l·sin(q) with m·l = 0.5 kg.m; Fc = 3 N.m.
+    let (model, chi) = pendulum(0.5, 2.0, 3.0, 0.0);
+    let limit = (3.0_f64 / (0.5 * 9.81)).asin();
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let mut below = plant.state(&[limit - 1e-6], &[0.0]);
+    for _ in 0..5000 {
+        plant.advance(&mut below, &[0.0], 1e-3).unwrap();
+    }
+    assert_eq!((below.q[0], below.dq[0]), (limit - 1e-6, 0.0), "it must not creep");
+    let mut above = plant.state(&[limit + 1e-3], &[0.0]);
+    for _ in 0..3000 {
+        plant.advance(&mut above, &[0.0], 1e-3).unwrap();
+    }
+    // Near the limit the excess of gravity is linear, so it comes to rest as far on the other side.
+    let rests = above.q[0] - limit;
+    assert!((rests + 1e-3).abs() < 1e-6 && above.dq[0] == 0.0, "it must slip and stop: {rests}");
+}
+
+#[test]
+fn a_sliding_mass_stops_where_friction_says_and_stays() {
+    // No gravity torque at all: ZZ·ddq = -Fc, so the way to rest is ZZ·v0² / (2·Fc).
+    let (model, chi) = pendulum(0.0, 2.0, 3.0, 0.0);
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    for step in [1e-3, 2e-4, 0.05] {
+        let mut state = plant.state(&[0.1], &[1.7]);
+        for _ in 0..(3.0 / step) as usize {
+            plant.advance(&mut state, &[0.0], step).unwrap();
+        }
+        let expected = 0.1 + 2.0 * 1.7 * 1.7 / (2.0 * 3.0);
+        assert!((state.q[0] - expected).abs() < 1e-9, "step {step}: {}", state.q[0] - expected);
+        assert_eq!(state.dq[0], 0.0);
+    }
+}
+
+#[test]
+fn friction_takes_from_the_energy_exactly_what_it_does_as_work() {
+    // Swinging down with Coulomb friction: energy lost = Fc times the way, through every reversal.
+    let (model, chi) = pendulum(0.5, 0.4, 0.3, 0.0);
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let mut state = plant.state(&[2.0], &[0.0]);
+    let rigid = without_friction(&model, &chi);
+    let (start, mut way, mut reversals) = (energy(&model, &rigid, &state), 0.0, 0);
+    for _ in 0..40_000 {
+        let (q, hold) = (state.q[0], state.hold[0]);
+        plant.advance(&mut state, &[0.0], 1e-4).unwrap();
+        way += (state.q[0] - q).abs();
+        reversals += usize::from(hold != state.hold[0]);
+    }
+    let lost = start - energy(&model, &rigid, &state);
+    assert!(reversals >= 4, "{reversals}");
+    assert!((lost - 0.3 * way).abs() < 1e-5 * lost, "{lost} {}", 0.3 * way);
+}
+
+#[test]
+fn two_joints_and_their_shared_motor_hold_together() {
+    // Fc1 = 1, Fc2 = 1 and 2 at the motor that turns with dq1 + dq2: (2.9, 2.9) can be held, (2.9, 0) cannot.
+    let (model, chi) = wrist(1.0, 1.0, 2.0);
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let mut held = plant.state(&[0.2, 0.4], &[0.0; 2]);
+    for _ in 0..100 {
+        plant.advance(&mut held, &[2.9, 2.9], 1e-3).unwrap();
+    }
+    assert_eq!((held.q.as_slice(), held.dq.as_slice()), (&[0.2, 0.4][..], &[0.0, 0.0][..]));
+    let mut moves = plant.state(&[0.2, 0.4], &[0.0; 2]);
+    for _ in 0..100 {
+        plant.advance(&mut moves, &[2.9, 0.0], 1e-3).unwrap();
+    }
+    assert!(moves.dq[0] > 0.1);
+}
+
+#[test]
+fn a_motor_can_hold_the_sum_of_two_joints_while_each_moves() {
+    // Only the motor has friction: with opposite torques both joints move and their sum stays exactly.
+    let (model, chi) = wrist(0.0, 0.0, 5.0);
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let mut state = plant.state(&[0.2, 0.4], &[0.0; 2]);
+    for _ in 0..2000 {
+        plant.advance(&mut state, &[1.0, -1.0], 1e-3).unwrap();
+    }
+    assert!(state.dq[0].abs() > 0.1);
+    assert!((state.q[0] + state.q[1] - 0.6).abs() < 1e-12);
+}
+
+#[test]
+fn an_elastic_joint_rings_at_its_own_frequency() {
+    // Rotor Ia on a spring k to a link ZZ, no gravity: w² = k (1/Ia + 1/ZZ).
+    let (model, mut chi) = pendulum(0.0, 2.0, 0.0, 0.0);
+    let ia = model.robot().standard.iter().position(|p| p.kind == ParameterKind::Ia).unwrap();
+    chi[ia] = 0.5;
+    let elastic = ElasticJoint { joint: 0, stiffness: 400.0, damping: 0.0, play: 0.0 };
+    let mut plant = Plant::with_effects(&model, &chi, &[elastic], Vec::new()).unwrap();
+    let mut state = plant.state(&[0.0], &[0.0]);
+    state.q[1] = 0.01;
+    let period = std::f64::consts::TAU / (400.0_f64 * (1.0 / 0.5 + 1.0 / 2.0)).sqrt();
+    for _ in 0..1000 {
+        plant.advance(&mut state, &[0.0], period / 100.0).unwrap();
+    }
+    let twist = state.q[1] - state.q[0];
+    assert!((twist - 0.01).abs() < 1e-6, "after ten periods: {twist}");
+}
+
+#[test]
+fn play_lets_the_motor_move_before_the_link_does() {
+    let (model, mut chi) = pendulum(0.0, 2.0, 0.0, 0.0);
+    let ia = model.robot().standard.iter().position(|p| p.kind == ParameterKind::Ia).unwrap();
+    chi[ia] = 0.5;
+    let elastic = ElasticJoint { joint: 0, stiffness: 4000.0, damping: 1.0, play: 0.02 };
+    let mut plant = Plant::with_effects(&model, &chi, &[elastic], Vec::new()).unwrap();
+    let mut state = plant.state(&[0.0], &[0.0]);
+    while state.q[1] < 0.0099 {
+        plant.advance(&mut state, &[1.0], 1e-4).unwrap();
+        assert_eq!(state.q[0], 0.0);
+    }
+    for _ in 0..2000 {
+        plant.advance(&mut state, &[1.0], 1e-4).unwrap();
+    }
+    assert!(state.q[0] > 1e-3);
+}
+
+#[test]
+fn every_joint_of_a_random_arm_comes_to_rest_under_friction() {
+    let (model, mut chi) = arm();
+    for (x, p) in chi.iter_mut().zip(model.robot().standard.iter()) {
+        if p.kind == ParameterKind::Fc {
+            *x += 60.0;
+        }
+    }
+    let n = model.robot().joints();
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let mut random = rand_pcg::Pcg64::seed_from_u64(5);
+    for _ in 0..5 {
+        let q: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
+        let dq: Vec<f64> = (0..n).map(|_| random.random_range(-3.0..3.0)).collect();
+        let mut state = plant.state(&q, &dq);
+        for _ in 0..20_000 {
+            plant.advance(&mut state, &vec![0.0; n], 5e-4).unwrap();
+        }
+        assert!(state.dq.iter().all(|&v| v == 0.0), "{:?}", state.dq);
+        let stands = state.q.clone();
+        for _ in 0..2000 {
+            plant.advance(&mut state, &vec![0.0; n], 5e-4).unwrap();
+        }
+        assert_eq!(state.q, stands);
+    }
+}
+
+#[test]
+fn parameters_that_no_robot_has_are_refused_by_name() {
+    let (model, mut chi) = pendulum(0.5, 2.0, 3.0, 0.1);
+    let fc = model.robot().standard.iter().position(|p| p.kind == ParameterKind::Fc).unwrap();
+    chi[fc] = -1.0;
+    let refused = Plant::new(&model, &chi).err().unwrap();
+    assert_eq!(refused, SimulationError::NegativeParameter { name: "Fc1".into(), value: -1.0 });
+    let (model, mut standard) = arm();
+    check_standard(model.robot(), &standard).unwrap();
+    let zz3 = model.robot().standard.iter().position(|p| p.name == "ZZ3").unwrap();
+    standard[zz3] = 5.0;
+    let refused = check_standard(model.robot(), &standard).unwrap_err();
+    assert!(matches!(refused, SimulationError::InconsistentLink { link: 3, .. }), "{refused}");
+    let (model, mut standard) = arm();
+    let ia5 = model.robot().standard.iter().position(|p| p.name == "Ia5").unwrap();
+    standard[ia5] = 0.0;
+    let refused = check_standard(model.robot(), &standard).unwrap_err();
+    assert!(matches!(refused, SimulationError::NegativeRotor { motor: 4, .. }), "{refused}");
+}
