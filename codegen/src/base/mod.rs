@@ -1,5 +1,9 @@
 //! Base parameters: the closed-form regrouping rules, and what they do not reach.
 
+mod standard;
+
+pub use standard::standard_parameters;
+
 /// What a standard parameter is, in the order of (3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)]

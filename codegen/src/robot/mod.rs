@@ -1,8 +1,18 @@
 //! A robot as its YAML says: the modified-DH table in symbols.
 
+mod diagnostic;
+mod document;
+mod drive;
 mod expression;
+mod formula;
+mod parse;
+mod reader;
+mod simulation_values;
+mod table;
 
+pub use diagnostic::Diagnostic;
 pub use expression::Expression;
+pub use parse::parse;
 
 /// A robot read from its YAML, checked.
 #[derive(Debug, Clone, PartialEq)]

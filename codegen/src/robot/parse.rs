@@ -1,0 +1,118 @@
+//! A robot from its YAML.
+
+use super::document::{Node, Value, read_document};
+use super::drive::read_drive;
+use super::formula::joint_variable;
+use super::reader::Reader;
+use super::simulation_values::{read_limits, read_nominal};
+use super::table::read_frames;
+use super::{Diagnostic, Drive, JointKind, Limits, Robot};
+use std::collections::HashSet;
+
+const KEYS: [&str; 8] =
+    ["name", "description", "gravity", "constants", "frames", "drive", "limits", "nominal"];
+
+/// Reads a robot from the bytes of its YAML and checks it.
+///
+/// `path` is how the messages name the file. All mistakes are reported at once, in the order of the file; a file
+/// that is not UTF-8, not YAML, or empty gives just one.
+pub fn parse(path: &str, bytes: &[u8]) -> Result<Robot, Vec<Diagnostic>> {
+    let root = read_document(path, bytes).map_err(|diagnostic| vec![diagnostic])?;
+    let mut reader = Reader::new(path);
+    let robot = read_robot(&mut reader, &root);
+    let mut diagnostics = reader.diagnostics;
+    diagnostics.sort_by_key(|d| (d.line, d.column));
+    match robot {
+        Some(robot) if diagnostics.is_empty() => Ok(robot),
+        _ => Err(diagnostics),
+    }
+}
+
+fn read_robot(reader: &mut Reader, root: &Node) -> Option<Robot> {
+    let fields = reader.fields(root, "a robot", &KEYS)?;
+    let name = reader.required(&fields, "name").and_then(|node| {
+        let name = reader.text(node, "the robot's name")?;
+        if let Err(why) = check_identifier(name) {
+            reader.report(node.place, format!("name {} {why}", node.describe()));
+        }
+        Some(name.to_owned())
+    });
+    let description = match fields.get("description") {
+        Some(node) => reader.text(node, "description as a line of text").unwrap_or_default().to_owned(),
+        None => String::new(),
+    };
+    let constants = fields.get("constants").map(|node| read_constants(reader, node)).unwrap_or_default();
+    let gravity = match fields.get("gravity") {
+        Some(node) => reader.numbers(node, "gravity", 3, &constants).map(|g| [g[0], g[1], g[2]]),
+        None => Some([0.0, 0.0, -9.81]),
+    };
+    let frames = reader.required(&fields, "frames").and_then(|node| read_frames(reader, node, &constants))?;
+    let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
+    let drive = match fields.get("drive") {
+        Some(node) => read_drive(reader, node, &frames, &constants),
+        None => Some(Drive::direct(joints)),
+    };
+    let limits = match fields.get("limits") {
+        Some(node) => read_limits(reader, node, joints, &constants),
+        None => Limits::default(),
+    };
+    let nominal = match (fields.get("nominal"), &drive) {
+        (Some(node), Some(drive)) => read_nominal(reader, node, &frames, drive, &constants),
+        _ => None,
+    };
+    Some(Robot {
+        name: name?,
+        description,
+        gravity: gravity?,
+        constants,
+        frames,
+        drive: drive?,
+        limits,
+        nominal,
+    })
+}
+
+fn read_constants(reader: &mut Reader, node: &Node) -> Vec<(String, f64)> {
+    let mut constants: Vec<(String, f64)> = Vec::new();
+    let Value::Mapping(pairs) = &node.value else {
+        let found = node.describe();
+        reader.report(node.place, format!("expected constants by name ({{d3: 0.225}}), found {found}"));
+        return constants;
+    };
+    let mut seen = HashSet::new();
+    for (key, value) in pairs {
+        let Some(name) = reader.text(key, "the name of a constant") else { continue };
+        let shown = key.describe();
+        if !seen.insert(name) {
+            let first = reader.first_of(pairs, name, key.place).map_or(0, |place| place.line);
+            reader.report(key.place, format!("constant {shown} is there twice; first at line {first}"));
+            continue;
+        }
+        if name == "pi" || joint_variable(name).is_some() {
+            reader.report(
+                key.place,
+                format!("constant {shown} would hide pi or a joint variable: choose another name"),
+            );
+        } else if let Err(why) = check_identifier(name) {
+            reader.report(key.place, format!("constant {shown} {why}"));
+        }
+        // A constant whose value is wrong still counts as known, so that its uses are not reported too.
+        let number = reader.number(value, &format!("constant {shown}"), &constants).unwrap_or(1.0);
+        constants.push((name.to_owned(), number));
+    }
+    constants
+}
+
+/// Whether a name can be a Rust identifier; if not, why and what was expected.
+fn check_identifier(name: &str) -> Result<(), String> {
+    let expected = "expected a letter, then letters, digits and _";
+    let mut chars = name.chars();
+    let starts = chars.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+    if !starts || !chars.all(|c| c.is_ascii_alphanumeric() || c == '_') || name.bytes().all(|b| b == b'_') {
+        return Err(format!("is not a Rust identifier: {expected}"));
+    }
+    match syn::parse_str::<syn::Ident>(name) {
+        Ok(_) if name != "gen" => Ok(()),
+        _ => Err("is a keyword of Rust: choose another name".to_owned()),
+    }
+}
