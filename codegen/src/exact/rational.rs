@@ -94,11 +94,10 @@ mod tests {
             .map(|row| row.map(decimal).to_vec())
             .to_vec();
         let inverse = inverse(&matrix).expect("it is regular");
-        for (i, row) in inverse.iter().enumerate() {
-            for j in 0..3 {
-                let sum: BigRational = (0..3).map(|k| &row[k] * &matrix[k][j]).sum();
-                assert_eq!(sum, BigRational::from_integer(i32::from(i == j).into()));
-            }
+        let product =
+            |i: usize, j: usize| (0..3).map(|k| &inverse[i][k] * &matrix[k][j]).sum::<BigRational>();
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            assert_eq!(product(i, j), BigRational::from_integer(i32::from(i == j).into()));
         }
         assert_eq!(determinant(&matrix), decimal(-32.0 * (0.5 * 45.0 + 2.0 * 3.0)));
     }
