@@ -2,6 +2,7 @@
 
 mod factor;
 mod householder;
+pub mod observe;
 mod solve;
 
 pub use factor::{BLOCK_ROWS, Factor};

@@ -1,0 +1,145 @@
+//! Which rows are used: standstill, joints that are fixed, windows of time.
+
+use super::{Equations, ObserveError, ObserveSettings, Prepared};
+use crate::model::Model;
+use crate::signal::{Decimator, KeptRows, Motion};
+
+/// What is done with rows where the joint of the equation hardly moves.
+///
+/// At rest the sign of the speed is noise and friction takes any value below its break-away level, so that such
+/// rows pull Coulomb friction towards zero. The power model keeps all rows: what rests has no power.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Standstill {
+    /// Every row is used.
+    Keep,
+    /// Rows where the joint is slower than this share of its fastest speed in the motion are left out.
+    BelowShare(f64),
+    /// Rows where joint j is slower than the j-th value, rad/s or m/s, are left out.
+    Below(Vec<f64>),
+}
+
+impl Default for Standstill {
+    fn default() -> Self {
+        Standstill::BelowShare(0.02)
+    }
+}
+
+/// How many rows of one equation of one motion were used.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// Index of the motion.
+    pub trajectory: usize,
+    /// Joint, or 0 for the power model.
+    pub equation: usize,
+    /// Rows used.
+    pub used: usize,
+    /// Left out because the joint hardly moves.
+    pub standstill: usize,
+    /// Left out because the joint is fixed in this motion.
+    pub fixed: usize,
+    /// Left out because they reach outside of the windows.
+    pub windows: usize,
+    /// Rows that would lie within the reach of the filters from an end of the motion.
+    pub edges: usize,
+}
+
+/// The rows of one equation that are used.
+pub(super) struct Selection {
+    pub used: Vec<bool>,
+    pub left_out: LeftOut,
+}
+
+pub(super) fn select(
+    model: &dyn Model,
+    trajectory: usize,
+    motion: &Motion,
+    equations: Equations,
+    decimator: &Decimator,
+    grid: KeptRows,
+    settings: &ObserveSettings,
+) -> Result<Vec<Selection>, ObserveError> {
+    let n = model.robot().joints();
+    let samples = motion.q.first().map_or(0, Vec::len);
+    let possible = samples.div_ceil(grid.step);
+    let support = decimator.support() as f64 / motion.rate;
+    let time = |sample: usize| motion.start + sample as f64 / motion.rate;
+    let in_window: Vec<bool> = grid
+        .centres()
+        .map(|c| {
+            let t = time(c);
+            settings.windows.is_empty()
+                || settings.windows.iter().any(|w| t - support >= w[0] - 1e-9 && t + support <= w[1] + 1e-9)
+        })
+        .collect();
+    let speeds = slow_speeds(motion, n, &settings.standstill)?;
+    let count = if equations == Equations::Torque { n } else { 1 };
+    Ok((0..count)
+        .map(|equation| {
+            let mut left_out = LeftOut {
+                trajectory,
+                equation,
+                edges: possible.saturating_sub(grid.count),
+                ..LeftOut::default()
+            };
+            let torque = equations == Equations::Torque;
+            let fixed = torque && motion.fixed.contains(&equation);
+            let used = grid
+                .centres()
+                .zip(&in_window)
+                .map(|(centre, &in_window)| {
+                    let slow = torque && motion.dq[equation][centre].abs() < speeds[equation];
+                    let counter = match (in_window, fixed, slow) {
+                        (false, _, _) => &mut left_out.windows,
+                        (_, true, _) => &mut left_out.fixed,
+                        (_, _, true) => &mut left_out.standstill,
+                        _ => &mut left_out.used,
+                    };
+                    *counter += 1;
+                    in_window && !fixed && !slow
+                })
+                .collect();
+            Selection { used, left_out }
+        })
+        .collect())
+}
+
+fn slow_speeds(motion: &Motion, n: usize, policy: &Standstill) -> Result<Vec<f64>, ObserveError> {
+    match policy {
+        Standstill::Keep => Ok(vec![0.0; n]),
+        Standstill::Below(speeds) if speeds.len() == n => Ok(speeds.clone()),
+        Standstill::Below(speeds) => Err(ObserveError::StandstillSpeeds { found: speeds.len(), expected: n }),
+        Standstill::BelowShare(share) => Ok(motion
+            .dq
+            .iter()
+            .map(|dq| share * dq.iter().fold(0.0_f64, |fastest, v| fastest.max(v.abs())))
+            .collect()),
+    }
+}
+
+/// What is to blame when no row is left.
+pub(super) fn why_nothing(prepared: &[Prepared<'_>], settings: &ObserveSettings) -> String {
+    let mut total = LeftOut::default();
+    for selection in prepared.iter().flat_map(|p| &p.selection) {
+        total.standstill += selection.left_out.standstill;
+        total.fixed += selection.left_out.fixed;
+        total.windows += selection.left_out.windows;
+        total.edges += selection.left_out.edges;
+    }
+    if prepared.is_empty() {
+        return "there is no motion".to_owned();
+    }
+    if total.windows > 0 {
+        return "no row has its filter support within the time windows".to_owned();
+    }
+    if total.standstill + total.fixed > 0 {
+        return "no joint moves".to_owned();
+    }
+    let longest = prepared
+        .iter()
+        .map(|p| p.motion.q.first().map_or(0, Vec::len) as f64 / p.motion.rate)
+        .fold(0.0, f64::max);
+    format!(
+        "the longest motion lasts {longest:.3} s, which is less than the filters need for rows of {} Hz",
+        settings.band
+    )
+}

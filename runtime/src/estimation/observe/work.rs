@@ -1,0 +1,228 @@
+//! Blocks of time over threads: the same digits for every number of threads, because what is one piece of work and
+//! in what order factors are merged depends on the motions alone.
+
+use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::rows::Rows;
+use super::stream::decimate;
+use super::{EquationFactor, ObserveSettings, Prepared, Progress, TimeBlock};
+use crate::estimation::{BLOCK_ROWS, Factor};
+
+/// Shortest block of time, s: longer than the residuals of a robot remember.
+const BLOCK_SECONDS: f64 = 0.5;
+/// Most blocks of one trajectory.
+const MAX_BLOCKS: usize = 64;
+/// A piece of work is at least this many filter lengths long: its first filter length is evaluated twice.
+const CHUNK_WINDOWS: usize = 16;
+
+/// Rows of one trajectory that one thread runs through, block after block.
+struct Chunk {
+    trajectory: usize,
+    blocks: Vec<Range<usize>>,
+}
+
+/// Values of kept rows: (row, values) of one chunk, one after the other.
+type Kept = (Range<usize>, Vec<f64>);
+
+pub(super) fn run(
+    prepared: &[Prepared<'_>],
+    settings: &ObserveSettings,
+    progress: Option<Progress<'_>>,
+) -> (Vec<TimeBlock>, Option<Vec<Rows>>) {
+    let chunks: Vec<Chunk> = prepared.iter().enumerate().flat_map(|(k, p)| chunks_of(k, p)).collect();
+    let total: usize = chunks.iter().map(|c| rows_of(c).len() * prepared[c.trajectory].grid.step).sum();
+    let done = AtomicUsize::new(0);
+    let results = in_parallel(chunks.len(), settings.threads, |c| {
+        let p = &prepared[chunks[c].trajectory];
+        let result = run_chunk(p, &chunks[c], settings.keep_rows);
+        let samples = rows_of(&chunks[c]).len() * p.grid.step;
+        let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
+        if let Some(progress) = progress {
+            progress(done, total);
+        }
+        result
+    });
+    let mut blocks = Vec::new();
+    let mut kept: Vec<Vec<Kept>> = prepared.iter().map(|_| Vec::new()).collect();
+    for (chunk, (factors, values)) in chunks.iter().zip(results) {
+        blocks.extend(factors);
+        kept[chunk.trajectory].push((rows_of(chunk), values));
+    }
+    let rows = settings.keep_rows.then(|| {
+        prepared.iter().zip(&kept).enumerate().flat_map(|(k, (p, kept))| gather(k, p, kept)).collect()
+    });
+    (blocks, rows)
+}
+
+/// The factors of each trajectory and equation, merged over its blocks in their order.
+pub(super) fn merge(prepared: &[Prepared<'_>], blocks: &[TimeBlock], threads: usize) -> Vec<EquationFactor> {
+    let groups: Vec<(usize, usize)> = prepared
+        .iter()
+        .enumerate()
+        .flat_map(|(k, p)| (0..p.equations.len()).map(move |equation| (k, equation)))
+        .collect();
+    in_parallel(groups.len(), threads, |g| {
+        let (trajectory, equation) = groups[g];
+        let mut merged = empty(trajectory, equation, &prepared[trajectory]);
+        for block in blocks.iter().filter(|b| b.trajectory == trajectory) {
+            let factor = &block.equations[equation].factor;
+            if factor.rows() > 0 {
+                merged.factor.merge(factor);
+            }
+        }
+        merged
+    })
+}
+
+fn empty(trajectory: usize, equation: usize, p: &Prepared<'_>) -> EquationFactor {
+    let columns: Vec<usize> = p.equations[equation].unknowns.iter().map(|&(_, u)| u).collect();
+    let factor = Factor::new(columns.len());
+    EquationFactor { trajectory, equation, columns, factor }
+}
+
+fn rows_of(chunk: &Chunk) -> Range<usize> {
+    let start = chunk.blocks.first().map_or(0, |b| b.start);
+    let end = chunk.blocks.last().map_or(start, |b| b.end);
+    start..end
+}
+
+fn chunks_of(trajectory: usize, p: &Prepared<'_>) -> Vec<Chunk> {
+    let count = p.grid.count;
+    let row_rate = p.motion.rate / p.grid.step as f64;
+    let shortest = (BLOCK_SECONDS * row_rate).ceil() as usize;
+    let block = shortest.max(count.div_ceil(MAX_BLOCKS)).max(1);
+    let window_rows = p.decimator.taps().len().div_ceil(p.grid.step);
+    let chunk = (CHUNK_WINDOWS * window_rows).div_ceil(block).max(1);
+    let blocks: Vec<Range<usize>> =
+        (0..count).step_by(block).map(|from| from..(from + block).min(count)).collect();
+    blocks.chunks(chunk).map(|blocks| Chunk { trajectory, blocks: blocks.to_vec() }).collect()
+}
+
+/// Rows of one equation on their way into a factor.
+struct Pending {
+    columns: Vec<usize>,
+    rows: usize,
+    /// Column by column, BLOCK_ROWS each.
+    block: Vec<f64>,
+    factor: Factor,
+}
+
+impl Pending {
+    fn push(&mut self, values: &[f64]) {
+        for (block, &column) in self.block.chunks_exact_mut(BLOCK_ROWS).zip(&self.columns) {
+            block[self.rows] = values[column];
+        }
+        self.rows += 1;
+        if self.rows == BLOCK_ROWS {
+            self.flush();
+        }
+    }
+
+    fn flush(&mut self) {
+        self.factor.push(self.rows, BLOCK_ROWS, &mut self.block);
+        self.rows = 0;
+    }
+}
+
+fn run_chunk(p: &Prepared<'_>, chunk: &Chunk, keep_rows: bool) -> (Vec<TimeBlock>, Vec<f64>) {
+    let mut pending: Vec<Pending> = p
+        .equations
+        .iter()
+        .map(|e| Pending {
+            columns: e.unknowns.iter().map(|&(column, _)| column).chain([e.y]).collect(),
+            rows: 0,
+            block: vec![0.0; (e.unknowns.len() + 1) * BLOCK_ROWS],
+            factor: Factor::new(e.unknowns.len()),
+        })
+        .collect();
+    let time = |row: usize| p.motion.start + (p.grid.first + row * p.grid.step) as f64 / p.motion.rate;
+    let mut finished = Vec::with_capacity(chunk.blocks.len());
+    let mut kept = Vec::new();
+    let mut blocks = chunk.blocks.iter();
+    let mut current = blocks.next();
+    decimate(&*p.source, &p.decimator, p.grid, rows_of(chunk), |row, values| {
+        for (pending, selection) in pending.iter_mut().zip(&p.selection) {
+            if selection.used[row] {
+                pending.push(values);
+            }
+        }
+        if keep_rows {
+            kept.extend_from_slice(values);
+        }
+        if let Some(block) = current.filter(|b| row + 1 == b.end) {
+            let equations = pending
+                .iter_mut()
+                .enumerate()
+                .map(|(equation, pending)| {
+                    pending.flush();
+                    let mut done = empty(chunk.trajectory, equation, p);
+                    std::mem::swap(&mut done.factor, &mut pending.factor);
+                    done
+                })
+                .collect();
+            let time = [time(block.start), time(row)];
+            finished.push(TimeBlock { trajectory: chunk.trajectory, time, equations });
+            current = blocks.next();
+        }
+    });
+    (finished, kept)
+}
+
+fn gather(trajectory: usize, p: &Prepared<'_>, kept: &[Kept]) -> Vec<Rows> {
+    let count = p.grid.count;
+    let width = p.source.columns();
+    let sample: Vec<usize> = p.grid.centres().collect();
+    let time: Vec<f64> = sample.iter().map(|&s| p.motion.start + s as f64 / p.motion.rate).collect();
+    p.equations
+        .iter()
+        .enumerate()
+        .map(|(equation, columns)| {
+            let column = |c: usize| -> Vec<f64> {
+                kept.iter().flat_map(|(_, values)| values.iter().skip(c).step_by(width).copied()).collect()
+            };
+            let mut w = Vec::with_capacity(count * columns.unknowns.len());
+            for &(c, _) in &columns.unknowns {
+                w.extend(column(c));
+            }
+            Rows {
+                trajectory,
+                equation,
+                sample: sample.clone(),
+                time: time.clone(),
+                y: column(columns.y),
+                columns: columns.unknowns.iter().map(|&(_, u)| u).collect(),
+                w,
+                used: p.selection[equation].used.clone(),
+            }
+        })
+        .collect()
+}
+
+/// Results of `count` pieces of work in their order, whatever thread did them.
+fn in_parallel<T: Send>(count: usize, threads: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let available = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let threads = if threads == 0 { available } else { threads }.min(count);
+    if threads <= 1 {
+        return (0..count).map(work).collect();
+    }
+    let next = AtomicUsize::new(0);
+    let slots: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(slot) = slots.get(k) else { break };
+                    let result = work(k);
+                    if let Ok(mut slot) = slot.lock() {
+                        *slot = Some(result);
+                    }
+                }
+            });
+        }
+    });
+    // Every slot was filled above: a panic in a thread is passed on by the scope.
+    slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
+}
