@@ -1,5 +1,25 @@
 //! Recordings: manifests, files, units, trajectories.
 
+mod channel;
+mod error;
+mod load;
+mod manifest;
+mod number;
+mod report;
+mod rows;
+mod screen;
+mod source;
+mod table;
 mod trajectory;
+mod unit;
+mod window;
 
+pub use error::RecordingError;
+pub use load::{Loader, MOST_LEFT_OUT, Recording, load};
+pub use manifest::{Channel, Column, Layout, Manifest, Side, Time, Window};
+pub use report::{Cut, LeftOutRow, Reason, RowReport};
+pub use rows::Rows;
+pub use screen::Reach;
+pub use table::TableReader;
 pub use trajectory::Trajectory;
+pub use unit::{Quantity, Unit};

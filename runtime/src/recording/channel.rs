@@ -1,0 +1,157 @@
+//! From recorded columns to joint-side SI.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+use super::manifest::{Channel, Manifest, Side};
+use super::source::Source;
+use super::unit::{Quantity, Unit};
+use super::{RecordingError, Rows};
+use crate::model::{JointKind, Robot};
+
+/// What is the same for all windows.
+pub(super) struct Plan {
+    pub position: Conversion,
+    pub velocity: Option<Conversion>,
+    pub torque: Conversion,
+    /// gear^-1 and gearT; `None` on the joint side.
+    pub motor: Option<(DMatrix<f64>, DMatrix<f64>)>,
+}
+
+/// (x + offset) * gain per joint.
+pub(super) struct Conversion {
+    offset: Vec<f64>,
+    gain: Vec<f64>,
+}
+
+impl Plan {
+    /// Checks the channels of a manifest against the robot.
+    pub(super) fn new(manifest: &Manifest, robot: &Robot) -> Result<Self, RecordingError> {
+        let joints = robot.joints();
+        let motor = match manifest.side {
+            Side::Joint => None,
+            Side::Motor => {
+                let gear = DMatrix::from_row_slice(joints, joints, &robot.drive.gear);
+                let Some(inverse) = gear.clone().try_inverse() else {
+                    let message =
+                        format!("the gear matrix of {} is singular: motor angles say nothing", robot.name);
+                    return Err(manifest.error(&["side"], &message));
+                };
+                Some((inverse, gear.transpose()))
+            }
+        };
+        Ok(Self {
+            position: conversion(manifest, robot, "position", &manifest.position)?,
+            velocity: manifest
+                .velocity
+                .as_ref()
+                .map(|v| conversion(manifest, robot, "velocity", v))
+                .transpose()?,
+            torque: conversion(manifest, robot, "torque", &manifest.torque)?,
+            motor,
+        })
+    }
+}
+
+fn conversion(
+    manifest: &Manifest,
+    robot: &Robot,
+    quantity: &str,
+    channel: &Channel,
+) -> Result<Conversion, RecordingError> {
+    let kinds: Vec<JointKind> =
+        robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect();
+    let joints = kinds.len();
+    let per_joint = |key: &str, found: usize, one_for_all: bool| {
+        if found == joints || found == 0 || (one_for_all && found == 1) {
+            return Ok(());
+        }
+        let message = format!("{found} given, but {} has {joints} joints", robot.name);
+        Err(manifest.error(&[quantity, key], &message))
+    };
+    if channel.columns.is_empty() {
+        return Err(manifest.error(&[quantity, "columns"], "no column is named"));
+    }
+    per_joint("columns", channel.columns.len(), false)?;
+    per_joint("unit", channel.unit.len(), true)?;
+    per_joint("offset", channel.offset.len(), false)?;
+    per_joint("gain", channel.gain.len(), false)?;
+    let mut gain = channel.gain.clone();
+    let motor = manifest.side == Side::Motor;
+    for (j, kind) in kinds.iter().enumerate() {
+        let linear = *kind == JointKind::Prismatic;
+        let [angular_unit, linear_unit] = match quantity {
+            "position" => [Quantity::Angle, Quantity::Length],
+            "velocity" => [Quantity::AngularVelocity, Quantity::LinearVelocity],
+            _ => [Quantity::Torque, Quantity::Force],
+        };
+        let Some(unit) = channel.unit.get(j).or(channel.unit.first()) else { continue };
+        // A motor may drive a prismatic joint by an angle; on the joint side the unit must be the joint's.
+        let fits = match unit.quantity {
+            Quantity::Raw => true,
+            q if motor => q == angular_unit || q == linear_unit,
+            q => q == if linear { linear_unit } else { angular_unit },
+        };
+        let number = joint_number(robot, j);
+        if !fits {
+            let kind = if linear { "prismatic" } else { "revolute" };
+            let wanted = Unit::names_of(&[if linear { linear_unit } else { angular_unit }]);
+            let message = format!(
+                "`{}` does not fit joint {number}, which is {kind}: expected one of {wanted} \
+                 (a list gives every joint its own)",
+                unit.name
+            );
+            return Err(manifest.error(&[quantity, "unit"], &message));
+        }
+        if unit.quantity == Quantity::Raw && channel.gain.is_empty() {
+            let message =
+                format!("`{}` needs a `gain`, the SI value of one {} for each joint", unit.name, unit.name);
+            return Err(manifest.error(&[quantity, "unit"], &message));
+        }
+        gain.resize(joints, 1.0);
+        gain[j] *= unit.factor;
+    }
+    gain.resize(joints, 1.0);
+    if let Some(j) = gain.iter().position(|g| *g == 0.0) {
+        let message = format!("0 for joint {}: nothing would be left of the signal", joint_number(robot, j));
+        return Err(manifest.error(&[quantity, "gain"], &message));
+    }
+    let mut offset = channel.offset.clone();
+    offset.resize(joints, 0.0);
+    Ok(Conversion { offset, gain })
+}
+
+/// The number of joint `joint` (0-based) in the table: j of its frame.
+pub(super) fn joint_number(robot: &Robot, joint: usize) -> usize {
+    let mut frames = robot.frames.iter().enumerate().filter(|(_, f)| f.kind != JointKind::Fixed);
+    frames.nth(joint).map_or(joint + 1, |(frame, _)| frame + 1)
+}
+
+/// Appends rows `run` of a channel, in SI and on the joint side.
+pub(super) fn convert(
+    sources: &[(Source, Rows)],
+    places: &[(usize, usize)],
+    conversion: &Conversion,
+    matrix: Option<&DMatrix<f64>>,
+    run: Range<usize>,
+    out: &mut [Vec<f64>],
+) {
+    let column = |k: usize| {
+        let (source, slot) = places[k];
+        let (offset, gain) = (conversion.offset[k], conversion.gain[k]);
+        sources[source].1.columns[slot][run.clone()].iter().map(move |x| (x + offset) * gain)
+    };
+    for (j, out) in out.iter_mut().enumerate() {
+        let Some(matrix) = matrix else {
+            out.extend(column(j));
+            continue;
+        };
+        let start = out.len();
+        out.resize(start + run.len(), 0.0);
+        for k in (0..places.len()).filter(|&k| matrix[(j, k)] != 0.0) {
+            let factor = matrix[(j, k)];
+            out[start..].iter_mut().zip(column(k)).for_each(|(o, x)| *o += factor * x);
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What can be wrong with a recording.
+
+use thiserror::Error;
+
+/// A recording that cannot be read, with the place and what to do.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum RecordingError {
+    /// A file that cannot be opened or read.
+    #[error("{file}: {message}")]
+    File {
+        /// The file.
+        file: String,
+        /// What the system said.
+        message: String,
+    },
+    /// A manifest that does not keep to the contract.
+    #[error("{file}:{line}:{column}: {message}")]
+    Manifest {
+        /// The manifest.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What was found and what was expected.
+        message: String,
+    },
+    /// A data file that does not have what the manifest says.
+    #[error("{file}:{line}: {message}")]
+    Table {
+        /// The data file.
+        file: String,
+        /// Line, from 1.
+        line: u64,
+        /// What was found and what was expected.
+        message: String,
+    },
+    /// Position and torque files, or time and position, that do not have the same number of rows.
+    #[error(
+        "{first} has {first_rows} rows and {second} has {second_rows}: row k of both must be the same instant; \
+         record them together, or name the file that belongs to it"
+    )]
+    UnequalRows {
+        /// A file of the trajectory.
+        first: String,
+        /// Its rows.
+        first_rows: u64,
+        /// Another file of the trajectory.
+        second: String,
+        /// Its rows.
+        second_rows: u64,
+    },
+    /// A window or a file in which no row is left.
+    #[error("{name}: no rows {why}")]
+    Empty {
+        /// The trajectory.
+        name: String,
+        /// Why.
+        why: String,
+    },
+    /// More rows that cannot be right than a recording may have.
+    #[error(
+        "{name}: {left_out} of {rows} rows cannot be right, more than {limit} %; most of them: {reason}, as in \
+         {example}. {advice}"
+    )]
+    TooManyLeftOut {
+        /// The trajectory.
+        name: String,
+        /// Rows left out.
+        left_out: u64,
+        /// Rows in its window.
+        rows: u64,
+        /// The share allowed, %.
+        limit: f64,
+        /// The most frequent reason.
+        reason: String,
+        /// `file:line: what`.
+        example: String,
+        /// What to look at.
+        advice: String,
+    },
+}
+
+impl RecordingError {
+    /// Whether the data are at fault rather than what was asked for (exit status 1 rather than 2).
+    pub fn is_about_data(&self) -> bool {
+        matches!(self, Self::TooManyLeftOut { .. } | Self::Empty { .. })
+    }
+
+    pub(super) fn io(file: &std::path::Path, error: &std::io::Error) -> Self {
+        let message = match error.kind() {
+            std::io::ErrorKind::NotFound => "there is no such file".into(),
+            std::io::ErrorKind::PermissionDenied => "it may not be read".into(),
+            std::io::ErrorKind::IsADirectory => "it is a folder, a file was expected".into(),
+            _ => error.to_string(),
+        };
+        Self::File { file: file.display().to_string(), message }
+    }
+}

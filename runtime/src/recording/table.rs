@@ -1,0 +1,357 @@
+//! Text tables, read in blocks.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::number::{Field, parse_field, plain_decimal};
+use super::{Column, Layout, Reason, RecordingError, Rows};
+
+/// Reads the wanted columns of a delimited text file block by block, so that text and numbers are never in memory
+/// together.
+///
+/// Blank lines and lines that begin with `#` or `%` are passed over, as are a byte-order mark, carriage returns,
+/// quotes and one delimiter at the end of a line. A row with a field that is no number, that is not finite, or
+/// with another number of fields than the header (or the first row) is reported as a fault, not as an error.
+pub struct TableReader<R = File> {
+    file: String,
+    layout: Layout,
+    source: R,
+    buffer: Vec<u8>,
+    /// Unread text in `buffer`; it holds whole lines up to `whole`.
+    start: usize,
+    whole: usize,
+    end: usize,
+    at_end: bool,
+    /// The file did not end with a line end.
+    unterminated: bool,
+    /// Lines passed so far.
+    line: u64,
+    /// For each column of the file up to the last wanted one: which wanted column it is.
+    plan: Vec<Option<usize>>,
+    /// Fields of a right row.
+    fields: usize,
+}
+
+/// Bytes read at a time.
+const BLOCK: usize = 1 << 18;
+/// A line longer than this is cut; what is cut off counts as a row at fault.
+const LONGEST_LINE: usize = 1 << 20;
+
+impl TableReader<File> {
+    /// Opens a file and finds the wanted columns. `file` is what messages call it.
+    ///
+    /// Errors: a file that cannot be read, an empty one, a column that is not there (the message names those
+    /// that are), a name where there is no header.
+    pub fn open(path: &Path, file: &str, layout: &Layout, wanted: &[Column]) -> Result<Self, RecordingError> {
+        let source = File::open(path).map_err(|e| RecordingError::io(path, &e))?;
+        if source.metadata().is_ok_and(|m| m.is_dir()) {
+            return Err(RecordingError::io(path, &std::io::ErrorKind::IsADirectory.into()));
+        }
+        Self::new(source, file, layout, wanted)
+    }
+}
+
+impl<R: Read> TableReader<R> {
+    /// Reads from anything; see `open`.
+    pub fn new(source: R, file: &str, layout: &Layout, wanted: &[Column]) -> Result<Self, RecordingError> {
+        let mut reader = Self {
+            file: file.into(),
+            layout: layout.clone(),
+            source,
+            buffer: Vec::new(),
+            start: 0,
+            whole: 0,
+            end: 0,
+            at_end: false,
+            unterminated: false,
+            line: 0,
+            plan: Vec::new(),
+            fields: 0,
+        };
+        reader.fill()?;
+        if reader.buffer[..reader.end].starts_with(&[0xef, 0xbb, 0xbf]) {
+            reader.start = 3;
+        }
+        for _ in 0..layout.skip {
+            if reader.next_line()?.is_none() {
+                break;
+            }
+        }
+        let first = loop {
+            match reader.next_line()? {
+                None => {
+                    let message = "the file holds no rows".into();
+                    return Err(RecordingError::Table { file: file.into(), line: 1, message });
+                }
+                Some((from, to)) if !is_passed_over(&reader.buffer[from..to]) => break (from, to),
+                Some(_) => {}
+            }
+        };
+        let names = split(&reader.buffer[first.0..first.1], layout.delimiter);
+        reader.fields = names.len();
+        let mut indices = Vec::with_capacity(wanted.len());
+        for column in wanted {
+            indices.push(find(column, &names, layout.header).map_err(|message| RecordingError::Table {
+                file: file.into(),
+                line: reader.line,
+                message,
+            })?);
+        }
+        reader.plan = vec![None; indices.iter().max().map_or(0, |m| m + 1)];
+        for (slot, &index) in indices.iter().enumerate() {
+            if reader.plan[index].replace(slot).is_some() {
+                let message = format!("column {index} is asked for twice");
+                return Err(RecordingError::Table { file: file.into(), line: reader.line, message });
+            }
+        }
+        if !layout.header {
+            // The first line is a row.
+            reader.start = first.0;
+            reader.line -= 1;
+        }
+        Ok(reader)
+    }
+
+    /// What messages call the file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Appends up to `most` rows to `rows`, which has one column per wanted column. Returns how many; 0 at the end.
+    pub fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
+        let mut count = 0;
+        while count < most {
+            if self.start == self.whole && !self.fill()? {
+                break;
+            }
+            while count < most && self.start < self.whole {
+                self.line += 1;
+                if self.take_row(rows) {
+                    count += 1;
+                }
+            }
+        }
+        Ok(count)
+    }
+
+    /// Parses the line at `start` and moves behind it. False if it was no row.
+    fn take_row(&mut self, rows: &mut Rows) -> bool {
+        let text = &self.buffer[self.start..self.whole];
+        let row = rows.len();
+        if let Some(taken) = self.take_plain(text, rows) {
+            rows.lines.push(self.line);
+            self.start += taken;
+            return true;
+        }
+        // Something unusual: undo, and take the line field by field.
+        rows.columns.iter_mut().for_each(|c| c.truncate(row));
+        let length = text.iter().position(|b| *b == b'\n').unwrap_or(text.len());
+        let line = &text[..length];
+        self.start += (length + 1).min(text.len());
+        if is_passed_over(line) {
+            return false;
+        }
+        let mut fault = None;
+        let mut fields = 0;
+        rows.columns.iter_mut().for_each(|c| c.push(f64::NAN));
+        for (index, field) in split(line, self.layout.delimiter).into_iter().enumerate() {
+            fields += 1;
+            let Some(&Some(slot)) = self.plan.get(index) else { continue };
+            match parse_field(field, self.layout.decimal) {
+                Field::Number(value) => rows.columns[slot][row] = value,
+                Field::NotFinite => fault = fault.or(Some((Reason::NotFinite, Some(index)))),
+                Field::NotANumber => fault = fault.or(Some((Reason::NotANumber, Some(index)))),
+            }
+        }
+        if fields != self.fields {
+            let last = self.at_end && self.unterminated && self.start == self.whole;
+            let reason = match (fields < self.fields, last) {
+                (true, true) => Reason::CutOff,
+                (true, false) => Reason::TooFewFields,
+                (false, _) => Reason::WrongFieldCount,
+            };
+            fault = Some((reason, None));
+        }
+        if let Some((reason, index)) = fault {
+            rows.faults.push((row, reason, index));
+        }
+        rows.lines.push(self.line);
+        true
+    }
+
+    /// The common case in one pass: plain decimals, the right number of fields. Returns the bytes taken, with the
+    /// line end; `None` if the line is anything else.
+    #[inline]
+    fn take_plain(&self, text: &[u8], rows: &mut Rows) -> Option<usize> {
+        let (delimiter, point) = (self.layout.delimiter, self.layout.decimal);
+        let blanks = delimiter == b' ';
+        let mut at = if blanks { blanks_at(text) } else { 0 };
+        if matches!(text.get(at), Some(b'#' | b'%')) {
+            return None;
+        }
+        let mut field = 0;
+        loop {
+            match self.plan.get(field) {
+                Some(Some(slot)) => {
+                    let (value, taken) = plain_decimal(&text[at..], point)?;
+                    rows.columns[*slot].push(value);
+                    at += taken;
+                }
+                _ => {
+                    let rest = &text[at..];
+                    let stop = |b: &u8| *b == delimiter || *b == b'\n' || *b == b'\r' || *b == b'"';
+                    at += rest.iter().position(stop)?;
+                }
+            }
+            field += 1;
+            match *text.get(at)? {
+                b if b == delimiter => {
+                    at += 1;
+                    if blanks {
+                        at += blanks_at(&text[at..]);
+                    }
+                    // One delimiter at the end of the line closes the last field.
+                    if field == self.fields && matches!(text.get(at), Some(b'\n' | b'\r')) {
+                        at += usize::from(text[at] == b'\r');
+                        return (text.get(at) == Some(&b'\n')).then_some(at + 1);
+                    }
+                }
+                b'\r' if text.get(at + 1) == Some(&b'\n') && field == self.fields => return Some(at + 2),
+                b'\n' if field == self.fields => return Some(at + 1),
+                _ => return None,
+            }
+        }
+    }
+
+    /// The next line as a range of the buffer, without its end.
+    fn next_line(&mut self) -> Result<Option<(usize, usize)>, RecordingError> {
+        if self.start == self.whole && !self.fill()? {
+            return Ok(None);
+        }
+        let text = &self.buffer[self.start..self.whole];
+        let length = text.iter().position(|b| *b == b'\n').unwrap_or(text.len());
+        let range = (self.start, self.start + length);
+        self.start += (length + 1).min(text.len());
+        self.line += 1;
+        Ok(Some(range))
+    }
+
+    /// Reads until the buffer holds at least one whole unread line; false at the end of the file.
+    fn fill(&mut self) -> Result<bool, RecordingError> {
+        self.buffer.copy_within(self.start..self.end, 0);
+        self.end -= self.start;
+        self.start = 0;
+        self.whole = 0;
+        let mut seen = 0;
+        while !self.at_end {
+            if self.buffer.len() < self.end + BLOCK {
+                self.buffer.resize(self.end + BLOCK, 0);
+            }
+            let room = self.buffer.len() - 1;
+            let got = match self.source.read(&mut self.buffer[self.end..room]) {
+                Ok(got) => got,
+                Err(e) if e.kind() == std::io::ErrorKind::Interrupted => continue,
+                Err(e) => {
+                    return Err(RecordingError::File { file: self.file.clone(), message: e.to_string() });
+                }
+            };
+            self.end += got;
+            if got == 0 {
+                self.at_end = true;
+                if self.end > 0 && self.buffer[self.end - 1] != b'\n' {
+                    self.unterminated = true;
+                    self.buffer[self.end] = b'\n';
+                    self.end += 1;
+                }
+                self.whole = self.end;
+            } else if let Some(last) = self.buffer[seen..self.end].iter().rposition(|b| *b == b'\n') {
+                self.whole = seen + last + 1;
+            } else if self.end >= LONGEST_LINE {
+                self.buffer[self.end] = b'\n';
+                self.end += 1;
+                self.whole = self.end;
+            }
+            if self.whole > 0 {
+                break;
+            }
+            seen = self.end;
+        }
+        Ok(self.whole > 0)
+    }
+}
+
+fn blanks_at(text: &[u8]) -> usize {
+    text.iter().take_while(|b| matches!(b, b' ' | b'\t')).count()
+}
+
+fn is_passed_over(line: &[u8]) -> bool {
+    matches!(line.trim_ascii_start().first(), None | Some(b'#' | b'%'))
+}
+
+/// Fields of a line, quotes respected; a delimiter at the very end closes the last field.
+fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
+    let line = line.trim_ascii_end();
+    let line = if delimiter == b' ' { line.trim_ascii_start() } else { line };
+    let mut fields = Vec::new();
+    let (mut from, mut quoted) = (0, false);
+    for (at, &b) in line.iter().enumerate() {
+        match b {
+            b'"' => quoted = !quoted,
+            _ if quoted => {}
+            b' ' | b'\t' if delimiter == b' ' => {
+                if at > from {
+                    fields.push(&line[from..at]);
+                }
+                from = at + 1;
+            }
+            b if b == delimiter => {
+                fields.push(&line[from..at]);
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
+    if from < line.len() || fields.is_empty() {
+        fields.push(&line[from..]);
+    }
+    fields
+}
+
+fn find(column: &Column, names: &[&[u8]], header: bool) -> Result<usize, String> {
+    let shown = |n: &&[u8]| String::from_utf8_lossy(trim_quotes(n)).chars().take(40).collect::<String>();
+    let listed = || {
+        let mut all = names.iter().take(40).map(shown).collect::<Vec<_>>().join(", ");
+        if names.len() > 40 {
+            all.push_str(", ...");
+        }
+        all
+    };
+    match column {
+        Column::Index(index) if *index < names.len() => Ok(*index),
+        Column::Index(index) => {
+            let last = names.len() - 1;
+            Err(format!(
+                "there is no column {index}: the columns go from 0 to {last}; is the delimiter right?"
+            ))
+        }
+        Column::Name(name) if !header => {
+            Err(format!("column `{name}` is asked for by name, but `layout` says that there is no header"))
+        }
+        Column::Name(name) => {
+            let mut found = names.iter().enumerate().filter(|(_, n)| trim_quotes(n) == name.as_bytes());
+            match (found.next(), found.next()) {
+                (Some((index, _)), None) => Ok(index),
+                (Some(_), Some(_)) => Err(format!("two columns are called `{name}`; name them by index")),
+                (None, _) => Err(format!("there is no column `{name}`; there are: {}", listed())),
+            }
+        }
+    }
+}
+
+fn trim_quotes(name: &[u8]) -> &[u8] {
+    match name.trim_ascii() {
+        [b'"', inner @ .., b'"'] => inner.trim_ascii(),
+        other => other,
+    }
+}
