@@ -75,6 +75,22 @@ pub enum SimulationError {
         /// What it is.
         found: f64,
     },
+    /// A robot without limits.
+    #[error("{robot} has no {what} limits: give them under `limits:` in its YAML")]
+    NoLimits {
+        /// The robot.
+        robot: String,
+        /// Which limits.
+        what: &'static str,
+    },
+    /// A motion whose torque stays above the limits however slow it is.
+    #[error(
+        "the motion takes {share:.2} of a torque limit even when it is slow: gravity or friction alone needs too much"
+    )]
+    TorqueLimit {
+        /// Largest share of a limit.
+        share: f64,
+    },
     /// A robot without the parameters that simulation needs.
     #[error(
         "{robot} has no nominal parameters: give them under `nominal:` in its YAML, or simulate a saved model"

@@ -10,6 +10,7 @@ mod consistency;
 mod controller;
 mod drive;
 mod error;
+pub mod excitation;
 mod extra;
 mod integrator;
 mod plant;
