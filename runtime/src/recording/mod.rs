@@ -13,6 +13,7 @@ mod table;
 mod trajectory;
 mod unit;
 mod window;
+mod write;
 
 pub use error::RecordingError;
 pub use load::{Loader, MOST_LEFT_OUT, Recording, load};
@@ -23,3 +24,4 @@ pub use screen::Reach;
 pub use table::TableReader;
 pub use trajectory::Trajectory;
 pub use unit::{Quantity, Unit};
+pub use write::write;

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 //! The plant against energy, against the inverse dynamics, and against friction worked out by hand.
 
+use super::excitation::{FourierJoint, FourierMotion};
 use super::testing::{arm, pendulum, random_state, wrist};
 use super::*;
 use crate::model::{Model, ParameterKind, RecursiveModel};
@@ -230,4 +231,118 @@ fn parameters_that_no_robot_has_are_refused_by_name() {
     standard[ia5] = 0.0;
     let refused = check_standard(model.robot(), &standard).unwrap_err();
     assert!(matches!(refused, SimulationError::NegativeRotor { motor: 4, .. }), "{refused}");
+}
+
+/// A slow wave of every joint about `middle`, as Fourier series that start at rest.
+fn wave(middle: &[f64], size: f64) -> FourierMotion {
+    let joint = |(j, &center): (usize, &f64)| {
+        FourierJoint::at_rest_at_start(center, &[size, 0.2 * j as f64 * size], &[0.3 * size, -0.5 * size])
+    };
+    FourierMotion { period: 2.0, periods: 1, joints: middle.iter().enumerate().map(joint).collect() }
+}
+
+fn loop_settings(model: &RecursiveModel, chi: &[f64], q: &[f64]) -> LoopSettings {
+    let n = model.robot().joints();
+    let mut mass = vec![0.0; n * n];
+    model.mass_and_bias(chi, q, &vec![0.0; n], &mut mass, &mut vec![0.0; n]);
+    LoopSettings {
+        controller: ControllerSettings::nominal(model.robot(), chi, &mass, 2000.0),
+        sensors: SensorSettings::default(),
+        record_every: 1,
+        longest_step: 5e-4,
+        name: "test".to_string(),
+    }
+}
+
+fn residual(model: &RecursiveModel, chi: &[f64], run: &Simulation, t: usize) -> Vec<f64> {
+    let n = model.robot().joints();
+    let at = |signal: &[Vec<f64>]| signal.iter().map(|x| x[t]).collect::<Vec<f64>>();
+    let (q, dq, ddq) = (at(&run.truth.q), at(&run.truth.dq), at(&run.truth.ddq));
+    let pattern = model.pattern();
+    let mut entries = vec![0.0; pattern.columns.len()];
+    model.idm(&q, &dq, &ddq, &mut entries);
+    (0..n)
+        .map(|i| {
+            let row = pattern.rows[i]..pattern.rows[i + 1];
+            run.truth.torque[i][t] - row.map(|e| entries[e] * chi[pattern.columns[e]]).sum::<f64>()
+        })
+        .collect()
+}
+
+#[test]
+fn what_the_loop_records_obeys_the_inverse_dynamics_while_it_moves() {
+    let (model, chi) = arm();
+    let n = model.robot().joints();
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let settings = loop_settings(&model, &chi, &[0.2; 5]);
+    let run = simulate(&mut plant, &wave(&[0.2; 5], 0.8), &settings, &mut |_| {}).unwrap();
+    assert_eq!(run.recorded.time.len(), 4001);
+    let mut moving = 0;
+    for t in 0..4001 {
+        if (0..n).all(|j| run.truth.dq[j][t].abs() > 1e-3) && run.truth.dq[3][t] + run.truth.dq[4][t] != 0.0 {
+            moving += 1;
+            for r in residual(&model, &chi, &run, t) {
+                assert!(r.abs() < 1e-9, "row {t}: {r}");
+            }
+        }
+    }
+    assert!(moving > 2000);
+    assert!(run.tracking_error.iter().all(|&e| e < 0.02), "{:?}", run.tracking_error);
+}
+
+#[test]
+fn noise_and_quantisation_have_their_size_and_the_seed_repeats_them() {
+    let (model, chi) = pendulum(0.5, 2.0, 3.0, 1.0);
+    let mut settings = loop_settings(&model, &chi, &[0.0]);
+    settings.sensors.position_noise = vec![1e-4];
+    settings.sensors.torque_noise = vec![0.3];
+    settings.sensors.seed = 9;
+    let motion = wave(&[0.2], 1.0);
+    let run = |settings: &LoopSettings| {
+        let mut plant = Plant::new(&model, &chi).unwrap();
+        simulate(&mut plant, &motion, settings, &mut |_| {}).unwrap()
+    };
+    let noisy = run(&settings);
+    let spread = |a: &[f64], b: &[f64]| {
+        (a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>() / a.len() as f64).sqrt()
+    };
+    let position = spread(&noisy.recorded.position[0], &noisy.truth.q[0]);
+    let torque = spread(&noisy.recorded.torque[0], &noisy.truth.torque[0]);
+    assert!((position / 1e-4 - 1.0).abs() < 0.05 && (torque / 0.3 - 1.0).abs() < 0.05, "{position} {torque}");
+    assert_eq!(noisy, run(&settings));
+    settings.sensors.seed = 10;
+    assert_ne!(noisy.recorded, run(&settings).recorded);
+    settings.sensors = SensorSettings { position_quantum: vec![1e-3], ..SensorSettings::default() };
+    for q in &run(&settings).recorded.position[0] {
+        assert!(((q / 1e-3).round() * 1e-3 - q).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn torque_limits_hold_and_are_counted() {
+    let (model, chi) = pendulum(0.5, 2.0, 3.0, 1.0);
+    let mut settings = loop_settings(&model, &chi, &[0.0]);
+    settings.controller.torque_limits = vec![[-4.0, 5.0]];
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    let run = simulate(&mut plant, &wave(&[0.0], 2.0), &settings, &mut |_| {}).unwrap();
+    assert!(run.limited[0] > 100);
+    assert!(run.recorded.torque[0].iter().all(|&x| (-4.0..=5.0).contains(&x)));
+}
+
+#[test]
+fn settings_that_do_not_fit_are_refused() {
+    let (model, chi) = pendulum(0.5, 2.0, 3.0, 1.0);
+    let good = loop_settings(&model, &chi, &[0.0]);
+    let mut bad = vec![good.clone(); 5];
+    bad[0].record_every = 0;
+    bad[1].longest_step = f64::NAN;
+    bad[2].controller.kp.push(1.0);
+    bad[3].controller.rate = -1.0;
+    bad[4].sensors.torque_noise = vec![-1.0];
+    for settings in bad {
+        let mut plant = Plant::new(&model, &chi).unwrap();
+        assert!(simulate(&mut plant, &wave(&[0.0], 1.0), &settings, &mut |_| {}).is_err());
+    }
+    let mut plant = Plant::new(&model, &chi).unwrap();
+    assert!(simulate(&mut plant, &wave(&[0.0, 0.0], 1.0), &good, &mut |_| {}).is_err());
 }

@@ -1,0 +1,142 @@
+//! Writing a recording: CSV files and the manifest that reads them back.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::{RecordingError, Trajectory};
+use crate::model::{JointKind, Robot};
+
+/// Writes trajectories of a robot to `folder` (made where it does not exist) as `traj1.csv`, `traj2.csv`, ... and
+/// `recording.yaml`; returns the path of the manifest. Files of those names are replaced.
+///
+/// `robot_reference` is how the manifest names the robot: a name from `robots/` or a path. Numbers are written so
+/// that they are read back exactly.
+///
+/// # Errors
+/// [`RecordingError::File`] for a folder or file that cannot be written.
+pub fn write(
+    folder: &Path,
+    robot: &Robot,
+    robot_reference: &str,
+    title: &str,
+    trajectories: &[Trajectory],
+) -> Result<PathBuf, RecordingError> {
+    fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
+    for (k, trajectory) in trajectories.iter().enumerate() {
+        let path = folder.join(format!("traj{}.csv", k + 1));
+        write_rows(&path, trajectory).map_err(|e| failed(&path, &e))?;
+    }
+    let path = folder.join("recording.yaml");
+    fs::write(&path, manifest(robot, robot_reference, title, trajectories)).map_err(|e| failed(&path, &e))?;
+    Ok(path)
+}
+
+fn failed(path: &Path, error: &std::io::Error) -> RecordingError {
+    RecordingError::File { file: path.display().to_string(), message: format!("cannot be written: {error}") }
+}
+
+fn write_rows(path: &Path, trajectory: &Trajectory) -> std::io::Result<()> {
+    let n = trajectory.position.len();
+    let mut file = std::io::BufWriter::with_capacity(1 << 16, fs::File::create(path)?);
+    let names = |letter: &str| (1..=n).map(|j| format!(",{letter}{j}")).collect::<String>();
+    let velocity = trajectory.velocity.as_ref();
+    let velocity_names = velocity.map_or(String::new(), |_| names("dq"));
+    writeln!(file, "t{}{velocity_names}{}", names("q"), names("tau"))?;
+    let mut line = String::new();
+    for (k, t) in trajectory.time.iter().enumerate() {
+        line.clear();
+        let channels =
+            trajectory.position.iter().chain(velocity.into_iter().flatten()).chain(&trajectory.torque);
+        // Writing to a String cannot fail.
+        let _ = write!(line, "{t}");
+        for channel in channels {
+            let _ = write!(line, ",{}", channel[k]);
+        }
+        writeln!(file, "{line}")?;
+    }
+    file.flush()
+}
+
+fn manifest(robot: &Robot, robot_reference: &str, title: &str, trajectories: &[Trajectory]) -> String {
+    let joints: Vec<(usize, JointKind)> = (robot.frames.iter().enumerate())
+        .filter(|(_, frame)| frame.kind != JointKind::Fixed)
+        .map(|(k, frame)| (k + 1, frame.kind))
+        .collect();
+    let n = joints.len();
+    let columns = |letter: &str| (1..=n).map(|j| format!("{letter}{j}")).collect::<Vec<_>>().join(", ");
+    let units = |revolute: &str, prismatic: &str| {
+        let unit =
+            |&(_, kind): &(usize, JointKind)| if kind == JointKind::Prismatic { prismatic } else { revolute };
+        format!("[{}]", joints.iter().map(unit).collect::<Vec<_>>().join(", "))
+    };
+    // A JSON string is a YAML string.
+    let quoted = |text: &str| serde_json::Value::from(text).to_string();
+    let mut text = String::new();
+    let _ = writeln!(text, "robot: {}", quoted(robot_reference));
+    let _ = writeln!(text, "title: {}", quoted(title));
+    let _ = writeln!(text, "side: joint");
+    let _ = writeln!(text, "layout: {{header: true, delimiter: \",\"}}");
+    let _ = writeln!(text, "time: {{column: t, unit: s}}");
+    let _ = writeln!(text, "position: {{columns: [{}], unit: {}}}", columns("q"), units("rad", "m"));
+    if trajectories.iter().any(|t| t.velocity.is_some()) {
+        let _ = writeln!(text, "velocity: {{columns: [{}], unit: {}}}", columns("dq"), units("rad/s", "m/s"));
+    }
+    let _ = writeln!(text, "torque: {{columns: [{}], unit: {}}}", columns("tau"), units("N.m", "N"));
+    let _ = writeln!(text, "trajectories:");
+    for (k, trajectory) in trajectories.iter().enumerate() {
+        let fixed: Vec<String> = trajectory
+            .fixed
+            .iter()
+            .filter_map(|&j| joints.get(j))
+            .map(|(number, _)| number.to_string())
+            .collect();
+        let fixed = if fixed.is_empty() { String::new() } else { format!(", fixed: [{}]", fixed.join(", ")) };
+        let _ = writeln!(text, "  - {{file: traj{}.csv{fixed}}}", k + 1);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Drive, Frame, Limits};
+    use crate::recording::{Manifest, load};
+
+    #[test]
+    fn what_is_written_is_read_back_exactly() {
+        let frame =
+            |kind| Frame { parent: None, kind, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 };
+        let frames = vec![frame(JointKind::Fixed), frame(JointKind::Revolute), frame(JointKind::Prismatic)];
+        let drive = Drive { gear: vec![50.0, 0.0, 0.0, 400.0].into(), coupled_friction: vec![].into() };
+        let robot = Robot::with_standard_as_base("test_arm", [0.0; 3], frames, drive, Limits::default());
+        let trajectory = |seed: f64, fixed: Vec<usize>| {
+            let signal =
+                |a: f64| (0..400).map(|k| (a * seed * k as f64 * 1e-3).sin() / 3.0).collect::<Vec<f64>>();
+            Trajectory {
+                name: String::new(),
+                time: (0..400).map(|k| k as f64 * 2e-4).collect(),
+                position: vec![signal(1.0), signal(2.0)],
+                velocity: None,
+                torque: vec![signal(3.0), signal(5.0)],
+                fixed,
+            }
+        };
+        let written = [trajectory(1.0, vec![]), trajectory(0.7, vec![1])];
+        let folder = std::env::temp_dir().join(format!("dynid-write-{}", std::process::id()));
+        let path =
+            write(&folder, &robot, "test_arm", "colons: and \"quotes\"", &written).expect("it is written");
+        let manifest = Manifest::read(&path).expect("the manifest keeps to the contract");
+        let read = load(&manifest, &robot).expect("it loads");
+        let _ = fs::remove_dir_all(&folder);
+        assert_eq!(manifest.title, "colons: and \"quotes\"");
+        assert_eq!(read.rows.left_out, 0);
+        for (read, written) in read.trajectories.iter().zip(&written) {
+            assert_eq!(
+                (&read.time, &read.position, &read.torque, &read.fixed),
+                (&written.time, &written.position, &written.torque, &written.fixed)
+            );
+        }
+    }
+}
