@@ -1,8 +1,23 @@
 //! Base parameters: the closed-form regrouping rules, and what they do not reach.
 
+//!
+//! A base parameter is a combination of standard parameters that the dynamics can show; a column of the standard
+//! regressor that depends on others is left out and its parameter regrouped into those (Gautier and Khalil 1990,
+//! Khalil and Dombre 2002, for trees Khalil and Bennis 1995). The closed-form rules are what moving a body from a link
+//! to its parent gives, so they come out in symbols of the table; where gravity, parallel axes, prismatic joints or a
+//! special geometry leave more unseen, the spaces of attainable velocities and energies tell, in exact arithmetic.
+
+mod attainable;
+mod friction;
+mod placement;
+mod regroup;
 mod standard;
 
 pub use standard::standard_parameters;
+
+use crate::exact::Form;
+use crate::robot::Robot;
+use regroup::Regrouping;
 
 /// What a standard parameter is, in the order of (3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -62,4 +77,52 @@ pub struct BaseSet {
     pub standard: Vec<StandardParameter>,
     /// Every base parameter.
     pub base: Vec<BaseParameter>,
+}
+
+/// The base parameters of a robot.
+pub fn base_set(robot: &Robot) -> BaseSet {
+    let standard = standard_parameters(&robot.frames, &robot.drive);
+    let mut regrouping = regroup::regroup(robot, &standard);
+    friction::regroup_friction(robot, &standard, &mut regrouping);
+    let kept = (0..standard.len()).filter(|column| !regrouping.contains_key(column));
+    let base = kept.map(|column| base_parameter(robot, &standard, &regrouping, column)).collect();
+    BaseSet { standard, base }
+}
+
+fn base_parameter(
+    robot: &Robot,
+    standard: &[StandardParameter],
+    regrouping: &Regrouping,
+    kept: usize,
+) -> BaseParameter {
+    let regrouped: Vec<(usize, &Form)> = regrouping
+        .iter()
+        .filter_map(|(&column, taken)| {
+            taken.iter().find(|(k, _)| *k == kept).map(|(_, factor)| (column, factor))
+        })
+        .collect();
+    let parameter = &standard[kept];
+    let mut relation = parameter.name.clone();
+    let mut combination = vec![(kept, 1.0)];
+    for &(column, factor) in &regrouped {
+        let (sign, product) = factor.signed_product(&standard[column].name);
+        relation.push_str(&format!(" {sign} {product}"));
+        combination.push((column, factor.value().to_f64()));
+    }
+    combination.sort_by_key(|&(column, _)| column);
+    BaseParameter {
+        name: format!("{}{}", parameter.name, if regrouped.is_empty() { "" } else { "R" }),
+        standard: kept,
+        combination,
+        relation,
+        unit: parameter.kind.unit(robot.frames[parameter.frame].kind).to_owned(),
+    }
+}
+
+impl BaseSet {
+    /// Standard parameters, by index, that have no effect on any torque.
+    pub fn without_effect(&self) -> Vec<usize> {
+        let used = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
+        (0..self.standard.len()).filter(|&k| !used(k)).collect()
+    }
 }
