@@ -1,9 +1,16 @@
 //! From motions to parameters: observation rows, orthogonal factors, estimators, statistics.
 
+mod blocks;
+mod essential;
+mod estimate;
 mod factor;
 mod householder;
 pub mod observe;
+mod outcome;
 mod solve;
+mod weights;
 
+pub use estimate::{EstimateSettings, estimate, per_equation, relative_error};
 pub use factor::{BLOCK_ROWS, Factor};
+pub use outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Warning};
 pub use solve::{RANK_TOLERANCE, Solution};

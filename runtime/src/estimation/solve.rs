@@ -63,6 +63,29 @@ pub(super) fn solve(factor: &Factor) -> Solution {
     Solution { kept, chi, variance, residual_norm, degrees_of_freedom, condition, weakest, dependent }
 }
 
+/// Parameters and the diagonal of (WT W)^-1 of a factor whose columns are known to be independent.
+pub(super) fn back_substitute(factor: &Factor) -> (Vec<f64>, Vec<f64>) {
+    let k = factor.unknowns();
+    let mut chi = vec![0.0; k];
+    for i in (0..k).rev() {
+        let known: f64 = (i + 1..k).map(|l| factor.r(i, l) * chi[l]).sum();
+        chi[i] = (factor.r(i, k) - known) / factor.r(i, i);
+    }
+    // Column m of R^-1 by back substitution; its entries count in the variances of the rows.
+    let mut variance = vec![0.0; k];
+    let mut column = vec![0.0; k];
+    for m in 0..k {
+        column[m] = 1.0 / factor.r(m, m);
+        variance[m] += column[m] * column[m];
+        for i in (0..m).rev() {
+            let known: f64 = (i + 1..=m).map(|l| factor.r(i, l) * column[l]).sum();
+            column[i] = -known / factor.r(i, i);
+            variance[i] += column[i] * column[i];
+        }
+    }
+    (chi, variance)
+}
+
 /// Column order of the pivoted QR and the number of columns that are independent.
 fn independent(scaled: &DMatrix<f64>) -> (Vec<usize>, usize) {
     let k = scaled.ncols();

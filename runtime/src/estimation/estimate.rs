@@ -1,0 +1,246 @@
+//! The estimators: IDIM and PIM, ordinary and weighted least squares.
+
+use super::blocks::block_sigmas;
+use super::essential::eliminate;
+use super::observe::{Equations, Observation};
+use super::outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Warning};
+use super::solve::{Solution, back_substitute};
+use super::weights::{Weights, equal, from_own_fits, iterate, residual_norm, solve_active, stack};
+
+/// How parameters are estimated from an observation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EstimateSettings {
+    /// Whether equations are weighted by their errors, per joint and trajectory.
+    pub weighted: bool,
+    /// The paper's r_sigma for the essential parameters (10 to 30); `None`: they are not looked for.
+    pub r_sigma: Option<f64>,
+    /// Condition number of the scaled W above which a warning names the parameters concerned.
+    pub worst_condition: f64,
+    /// Whether standard deviations by blocks of time are worked out.
+    pub block_sigmas: bool,
+}
+
+impl Default for EstimateSettings {
+    fn default() -> Self {
+        EstimateSettings { weighted: true, r_sigma: Some(20.0), worst_condition: 1000.0, block_sigmas: true }
+    }
+}
+
+/// Least squares on an observation (15), weighted or not, with standard deviations (16) to (19).
+///
+/// What the data do not determine is named in the warnings and set to zero, never inverted.
+pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estimate {
+    let mut warnings = Vec::new();
+    // Which columns are independent does not depend on the weights.
+    let first = if settings.weighted { from_own_fits(observation) } else { equal(observation) };
+    let active = stack(observation, &first.sigma).solve().kept;
+    let weights = if settings.weighted { settle(observation, &active, first, &mut warnings) } else { first };
+    let stacked = stack(observation, &weights.sigma);
+    let solution = stacked.select(&active).solve();
+    let everything = stacked.solve();
+
+    let chi = spread(&solution.chi, &active, observation.unknowns.len());
+    let noise = solution.residual_norm.powi(2) / (solution.degrees_of_freedom.max(1)) as f64;
+    let by_blocks =
+        if settings.block_sigmas { block_sigmas(observation, &active, &weights.sigma, &chi) } else { None };
+    let parameters =
+        described(observation, &active, &solution.chi, &solution.variance, noise, by_blocks.as_deref());
+    describe_dependence(observation, &everything, &active, &mut warnings);
+    if solution.condition > settings.worst_condition {
+        warnings.push(Warning::BadlyConditioned {
+            condition: solution.condition,
+            parameters: strongest(observation, &solution.weakest, &active),
+        });
+    }
+    let errors = errors_of(observation, &chi, &weights.sigma, settings.weighted);
+    let per_equation = per_equation(observation, &chi);
+    for (equation, &relative_error) in per_equation.iter().enumerate() {
+        if relative_error > 1.0 {
+            warnings.push(Warning::NotExplained { equation, relative_error });
+        }
+    }
+    let essential = settings
+        .r_sigma
+        .map(|r_sigma| simplified(observation, &active, &weights, r_sigma, settings.weighted));
+    Estimate {
+        method: method_of(observation, settings.weighted),
+        parameters,
+        errors,
+        relative_error: relative_error(observation, &chi),
+        per_equation,
+        rows: stacked.rows(),
+        degrees_of_freedom: solution.degrees_of_freedom,
+        condition: solution.condition,
+        iterations: weights.iterations,
+        warnings,
+        essential,
+    }
+}
+
+fn method_of(observation: &Observation, weighted: bool) -> Method {
+    match (observation.equations, weighted) {
+        (Equations::Torque, false) => Method::IdimOls,
+        (Equations::Torque, true) => Method::IdimWls,
+        (Equations::Power { .. }, false) => Method::PimOls,
+        (Equations::Power { .. }, true) => Method::PimWls,
+    }
+}
+
+/// Iterated weights, or those of the equations' own fits where the iteration gives up on an equation.
+fn settle(observation: &Observation, active: &[usize], own: Weights, warnings: &mut Vec<Warning>) -> Weights {
+    let iterated = iterate(observation, active, &own);
+    let before = per_equation(observation, &solve_active(observation, active, &own.sigma));
+    let after = per_equation(observation, &solve_active(observation, active, &iterated.sigma));
+    let mut collapsed = false;
+    for (equation, (&before, &after)) in before.iter().zip(&after).enumerate() {
+        if after > 1.0 && before < after {
+            collapsed = true;
+            warnings.push(Warning::WeightCollapsed { equation, relative_error: after });
+        }
+    }
+    if collapsed {
+        return own;
+    }
+    if !iterated.converged {
+        warnings.push(Warning::NotConverged { iterations: iterated.iterations });
+    }
+    iterated
+}
+
+fn spread(values: &[f64], active: &[usize], unknowns: usize) -> Vec<f64> {
+    let mut chi = vec![0.0; unknowns];
+    for (&l, &x) in active.iter().zip(values) {
+        chi[l] = x;
+    }
+    chi
+}
+
+fn described(
+    observation: &Observation,
+    active: &[usize],
+    chi: &[f64],
+    variance: &[f64],
+    noise: f64,
+    by_blocks: Option<&[f64]>,
+) -> Vec<ParameterEstimate> {
+    let mut parameters: Vec<ParameterEstimate> = observation
+        .unknowns
+        .iter()
+        .map(|name| ParameterEstimate {
+            name: name.clone(),
+            value: 0.0,
+            sigma: None,
+            sigma_blocks: None,
+            relative_sigma_percent: None,
+        })
+        .collect();
+    for (place, &l) in active.iter().enumerate() {
+        let sigma = (noise * variance[place]).sqrt();
+        let parameter = &mut parameters[l];
+        parameter.value = chi[place];
+        parameter.sigma = Some(sigma);
+        parameter.sigma_blocks = by_blocks.map(|s| s[place]);
+        parameter.relative_sigma_percent = Some(100.0 * sigma / chi[place].abs()).filter(|r| r.is_finite());
+    }
+    parameters
+}
+
+fn describe_dependence(
+    observation: &Observation,
+    everything: &Solution,
+    active: &[usize],
+    warnings: &mut Vec<Warning>,
+) {
+    for group in &everything.dependent {
+        let Some((&parameter, others)) = group.split_first() else { continue };
+        if !active.contains(&parameter) {
+            warnings.push(Warning::NotDetermined {
+                parameter: observation.unknowns[parameter].clone(),
+                from: others.iter().map(|&l| observation.unknowns[l].clone()).collect(),
+            });
+        }
+    }
+}
+
+/// Names of the parameters with the largest shares of a direction, the strongest first.
+fn strongest(observation: &Observation, direction: &[f64], active: &[usize]) -> Vec<String> {
+    let largest = direction.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let mut shares: Vec<(f64, usize)> = direction.iter().zip(active).map(|(x, &l)| (x.abs(), l)).collect();
+    shares.retain(|&(share, _)| share > 0.3 * largest);
+    shares.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    shares.into_iter().map(|(_, l)| observation.unknowns[l].clone()).collect()
+}
+
+fn errors_of(observation: &Observation, chi: &[f64], sigma: &[f64], weighted: bool) -> Vec<EquationError> {
+    observation
+        .groups
+        .iter()
+        .zip(sigma)
+        .filter(|(g, _)| g.factor.rows() > 0)
+        .map(|(g, &sigma)| {
+            let residual = residual_norm(g, chi);
+            let rows = g.factor.rows();
+            EquationError {
+                trajectory: g.trajectory,
+                equation: g.equation,
+                sigma: if weighted { sigma } else { residual / (rows as f64).sqrt() },
+                relative_error: ratio(residual, g.factor.norm_y()),
+                rows,
+            }
+        })
+        .collect()
+}
+
+/// ||Y - W chi|| / ||Y|| of each equation over all trajectories, for any parameters.
+pub fn per_equation(observation: &Observation, chi: &[f64]) -> Vec<f64> {
+    let equations = observation.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
+    (0..equations)
+        .map(|equation| {
+            let own = observation.groups.iter().filter(|g| g.equation == equation);
+            let (e, y) = own.fold((0.0, 0.0), |(e, y), g| {
+                (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2))
+            });
+            ratio(e.sqrt(), y.sqrt())
+        })
+        .collect()
+}
+
+/// ||Y - W chi|| / ||Y|| over all equations and trajectories, for any parameters.
+pub fn relative_error(observation: &Observation, chi: &[f64]) -> f64 {
+    let (e, y) = observation
+        .groups
+        .iter()
+        .fold((0.0, 0.0), |(e, y), g| (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2)));
+    ratio(e.sqrt(), y.sqrt())
+}
+
+fn ratio(e: f64, y: f64) -> f64 {
+    if y > 0.0 { e / y } else { 0.0 }
+}
+
+fn simplified(
+    observation: &Observation,
+    active: &[usize],
+    weights: &Weights,
+    r_sigma: f64,
+    weighted: bool,
+) -> Essential {
+    let stacked = stack(observation, &weights.sigma).select(active);
+    let elimination = eliminate(&stacked, active, r_sigma);
+    let weights = if weighted { iterate(observation, &elimination.kept, weights) } else { weights.clone() };
+    let reduced = stack(observation, &weights.sigma).select(&elimination.kept);
+    let (values, variance) = back_substitute(&reduced);
+    let freedom = reduced.rows().saturating_sub(values.len()).max(1) as f64;
+    let noise = reduced.residual_norm(&values).powi(2) / freedom;
+    let chi = spread(&values, &elimination.kept, observation.unknowns.len());
+    let all = described(observation, &elimination.kept, &values, &variance, noise, None);
+    Essential {
+        parameters: elimination.kept.iter().map(|&l| all[l].clone()).collect(),
+        cancelled: elimination.cancelled.iter().map(|&l| observation.unknowns[l].clone()).collect(),
+        relative_error: relative_error(observation, &chi),
+    }
+}
+
+#[cfg(test)]
+#[path = "estimate_tests.rs"]
+mod tests;

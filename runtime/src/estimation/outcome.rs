@@ -1,0 +1,206 @@
+//! What an estimation says.
+
+use serde::{Deserialize, Serialize};
+
+/// Which model is identified, and how its equations are weighted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Inverse dynamic model, ordinary least squares (15).
+    IdimOls,
+    /// Inverse dynamic model, one weight per joint and trajectory (20).
+    IdimWls,
+    /// Power model, ordinary least squares.
+    PimOls,
+    /// Power model, one weight per trajectory (21).
+    PimWls,
+}
+
+impl Method {
+    /// Every method, in the order in which they are listed to a person.
+    pub const ALL: [Method; 4] = [Method::IdimOls, Method::IdimWls, Method::PimOls, Method::PimWls];
+
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::IdimOls => "idim-ols",
+            Method::IdimWls => "idim-wls",
+            Method::PimOls => "pim-ols",
+            Method::PimWls => "pim-wls",
+        }
+    }
+
+    /// Whether the power model is identified.
+    pub fn is_power(self) -> bool {
+        matches!(self, Method::PimOls | Method::PimWls)
+    }
+
+    /// Whether equations are weighted.
+    pub fn is_weighted(self) -> bool {
+        matches!(self, Method::IdimWls | Method::PimWls)
+    }
+}
+
+impl std::str::FromStr for Method {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Method, String> {
+        let names: Vec<&str> = Method::ALL.iter().map(|m| m.name()).collect();
+        Method::ALL
+            .into_iter()
+            .find(|m| m.name() == text)
+            .ok_or_else(|| format!("no method is called {text:?}: one of {}", names.join(", ")))
+    }
+}
+
+/// One identified unknown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParameterEstimate {
+    /// Base parameter or extra unknown.
+    pub name: String,
+    /// SI; zero where the data do not determine it.
+    pub value: f64,
+    /// Standard deviation (18), for errors that are independent from row to row, as the paper assumes. `None`
+    /// where the parameter is not determined.
+    pub sigma: Option<f64>,
+    /// Standard deviation by leaving out one block of time after the other: right for errors that last up to half a
+    /// second, as those of robots do. `None` where not determined or with fewer than five blocks.
+    pub sigma_blocks: Option<f64>,
+    /// 100 sigma / |value| (19).
+    pub relative_sigma_percent: Option<f64>,
+}
+
+/// The standard deviation of the errors of one equation in one trajectory, whose inverse is its weight.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EquationError {
+    /// Index of the motion.
+    pub trajectory: usize,
+    /// Joint (0-based), or 0 for the power model.
+    pub equation: usize,
+    /// N.m, N or W.
+    pub sigma: f64,
+    /// ||Y - W chi|| / ||Y|| over the rows that were used.
+    pub relative_error: f64,
+    /// Rows that were used.
+    pub rows: usize,
+}
+
+/// What a person should know about an estimate before believing it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Warning {
+    /// The data do not determine a parameter; its value was set to zero.
+    NotDetermined {
+        /// Its name.
+        parameter: String,
+        /// The parameters that it cannot be told from; empty: it never acted.
+        from: Vec<String>,
+    },
+    /// The scaled observation matrix is nearly singular.
+    BadlyConditioned {
+        /// Condition number.
+        condition: f64,
+        /// The parameters that make up the weakest direction, the strongest first.
+        parameters: Vec<String>,
+    },
+    /// Iterated weights gave up on an equation; the weights of (20) from its own fit were used instead.
+    WeightCollapsed {
+        /// Joint (0-based), or 0 for the power model.
+        equation: usize,
+        /// Its relative error with iterated weights.
+        relative_error: f64,
+    },
+    /// The model explains less of an equation than no model at all.
+    NotExplained {
+        /// Joint (0-based), or 0 for the power model.
+        equation: usize,
+        /// Its relative error.
+        relative_error: f64,
+    },
+    /// The weights had not settled.
+    NotConverged {
+        /// Iterations made.
+        iterations: usize,
+    },
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Warning::NotDetermined { parameter, from } if from.is_empty() => {
+                write!(
+                    f,
+                    "{parameter} is not determined: nothing in the recording depends on it; set to zero"
+                )
+            }
+            Warning::NotDetermined { parameter, from } => {
+                write!(f, "{parameter} cannot be told from {} in this motion; set to zero", from.join(", "))
+            }
+            Warning::BadlyConditioned { condition, parameters } => write!(
+                f,
+                "badly conditioned ({condition:.0}): this motion hardly tells {} apart",
+                parameters.join(", ")
+            ),
+            Warning::WeightCollapsed { equation, relative_error } => write!(
+                f,
+                "joint {}: iterated weights gave up on it (error {:.0} %); the weights of its own fit were used",
+                equation + 1,
+                100.0 * relative_error
+            ),
+            Warning::NotExplained { equation, relative_error } => write!(
+                f,
+                "joint {}: the model does not explain its torque (error {:.0} %)",
+                equation + 1,
+                100.0 * relative_error
+            ),
+            Warning::NotConverged { iterations } => {
+                write!(f, "the weights had not settled after {iterations} iterations")
+            }
+        }
+    }
+}
+
+/// The simplified model of the paper: parameters that the data determine well compared with the best.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Essential {
+    /// The parameters that are kept, with their own estimates.
+    pub parameters: Vec<ParameterEstimate>,
+    /// Parameters that were cancelled, in the order of cancelling.
+    pub cancelled: Vec<String>,
+    /// ||Y - W chi|| / ||Y|| with the kept parameters.
+    pub relative_error: f64,
+}
+
+/// An identified set of parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// How it was made.
+    pub method: Method,
+    /// Base parameters, then extra unknowns, in the order of the observation.
+    pub parameters: Vec<ParameterEstimate>,
+    /// Errors per trajectory and equation.
+    pub errors: Vec<EquationError>,
+    /// ||Y - W chi|| / ||Y|| over all rows that were used.
+    pub relative_error: f64,
+    /// The same per equation.
+    pub per_equation: Vec<f64>,
+    /// Rows that were used, all equations.
+    pub rows: usize,
+    /// Rows minus parameters.
+    pub degrees_of_freedom: usize,
+    /// Condition number of the weighted W with columns of unit length.
+    pub condition: f64,
+    /// Iterations of the weights.
+    pub iterations: usize,
+    /// What to know before believing it.
+    pub warnings: Vec<Warning>,
+    /// The simplified model, where it was asked for.
+    pub essential: Option<Essential>,
+}
+
+impl Estimate {
+    /// The parameters as a vector in the order of the observation's unknowns.
+    pub fn chi(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.value).collect()
+    }
+}
