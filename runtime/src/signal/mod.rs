@@ -4,16 +4,24 @@ mod butterworth;
 mod decimator;
 mod difference;
 mod error;
+mod lag;
 mod motion;
 #[cfg(test)]
 mod oracle;
+mod order;
 mod prepare;
 mod resample;
+mod standstill;
+mod welch;
 
 pub use butterworth::{Butterworth, Section};
 pub use decimator::{Decimator, KeptRows};
 pub use difference::{Stencil, central_difference};
 pub use error::SignalError;
+pub use lag::{Lag, lag_between};
 pub use motion::Motion;
+pub use order::{OrderPeak, OrderSpectrum, order_spectrum};
 pub use prepare::{Preparation, VelocitySource, prepare};
 pub use resample::UniformGrid;
+pub use standstill::Standstill;
+pub use welch::{Spectrum, welch};

@@ -8,6 +8,7 @@ pub(super) struct Oracle {
     pub decimate: Vec<Decimate>,
     pub spline: Vec<Spline>,
     pub gradient: Vec<Gradient>,
+    pub welch: Vec<Welch>,
 }
 
 #[derive(Deserialize)]
@@ -41,6 +42,15 @@ pub(super) struct Gradient {
     pub rate: f64,
     pub input: Vec<f64>,
     pub output: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Welch {
+    pub rate: f64,
+    pub segment: usize,
+    pub input: Vec<f64>,
+    pub frequency: Vec<f64>,
+    pub density: Vec<f64>,
 }
 
 pub(super) fn oracle() -> Oracle {

@@ -22,7 +22,7 @@ def rounded(x):
     return [float(f"{v:.17g}") for v in np.asarray(x)]
 
 
-out = {"filtfilt": [], "decimate": [], "spline": [], "gradient": []}
+out = {"filtfilt": [], "decimate": [], "spline": [], "gradient": [], "welch": []}
 for order, cutoff, rate, n in [(1, 30, 500, 80), (2, 5, 500, 120), (3, 60, 500, 90), (4, 20, 95, 100),
                                (5, 100, 5000, 200), (8, 100, 5000, 240)]:
     x = motion(n, rate)
@@ -46,6 +46,11 @@ out["spline"].append({"time": rounded(t), "input": rounded(x), "rate": 100,
                       "output": rounded(scipy.interpolate.CubicSpline(t, x, bc_type="not-a-knot")(grid))})
 x = motion(40, 500)
 out["gradient"].append({"rate": 500, "input": rounded(x), "output": rounded(np.gradient(x, 1 / 500))})
+for n, segment in [(300, 64), (301, 75)]:
+    x = motion(n, 500)
+    f, d = sig.welch(x, 500, nperseg=segment)
+    out["welch"].append({"rate": 500, "segment": segment, "input": rounded(x), "frequency": rounded(f),
+                         "density": rounded(d)})
 
 path = pathlib.Path(__file__).with_name("filters.json")
 path.write_text(json.dumps(out, separators=(",", ":")) + "\n")
