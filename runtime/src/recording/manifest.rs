@@ -397,3 +397,7 @@ impl fmt::Display for Column {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "manifest_tests.rs"]
+mod tests;

@@ -2,6 +2,8 @@
 
 mod channel;
 mod error;
+#[cfg(test)]
+mod folder;
 mod load;
 mod manifest;
 mod number;

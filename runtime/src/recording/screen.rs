@@ -265,3 +265,7 @@ fn typical_step(time: &[f64], kept: &[usize]) -> f64 {
 fn short(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) { format!("{x:.3e}") } else { format!("{x:.4}") }
 }
+
+#[cfg(test)]
+#[path = "screen_tests.rs"]
+mod tests;

@@ -355,3 +355,7 @@ fn trim_quotes(name: &[u8]) -> &[u8] {
         other => other,
     }
 }
+
+#[cfg(test)]
+#[path = "table_tests.rs"]
+mod tests;

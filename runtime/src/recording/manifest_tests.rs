@@ -1,0 +1,151 @@
+use std::path::Path;
+
+use proptest::prelude::*;
+
+use super::{Column, Manifest, Side, Time, place};
+use crate::recording::{Quantity, RecordingError};
+
+const WHOLE: &str = r#"
+robot: tx40
+title: all keys at once
+side: motor
+layout: {header: false, delimiter: ";", decimal: ",", skip: 2}
+time: {column: t, unit: ms, from_first_row: true, file: clock.csv}
+position: {file: pos.csv, columns: [a, 1], unit: [rad, deg], offset: [0.1, -2], gain: [1, -1]}
+velocity: {file: vel.csv, columns: [3, 4], unit: rpm}
+torque: {file: cur.csv, columns: [5, 6], unit: A, gain: [14.87, 13.26]}
+trajectories:
+  - {file: one.csv, from: 0.5, to: 7.25}
+  - {file: two.csv, fixed: [1, 2]}
+"#;
+
+fn parse(text: &str) -> Result<Manifest, RecordingError> {
+    Manifest::parse(Path::new("dir/rec.yaml"), text.as_bytes())
+}
+
+#[test]
+fn every_key_of_the_contract_is_read() {
+    let m = parse(WHOLE).expect("a whole manifest");
+    assert_eq!((m.robot.as_str(), m.title.as_str(), m.side), ("tx40", "all keys at once", Side::Motor));
+    assert_eq!(m.folder, Path::new("dir"));
+    assert!(!m.layout.header);
+    assert_eq!((m.layout.delimiter, m.layout.decimal, m.layout.skip), (b';', b',', 2));
+    match &m.time {
+        Time::Column { column, unit, from_first_row, file } => {
+            assert_eq!(*column, Column::Name("t".into()));
+            assert_eq!((unit.factor, *from_first_row, file.as_deref()), (1e-3, true, Some("clock.csv")));
+        }
+        Time::Rate(_) => panic!("a column was given"),
+    }
+    assert_eq!(m.position.columns, [Column::Name("a".into()), Column::Index(1)]);
+    assert_eq!(m.position.unit.iter().map(|u| u.name.as_str()).collect::<Vec<_>>(), ["rad", "deg"]);
+    assert_eq!(m.position.offset, [0.1, -2.0]);
+    assert_eq!(m.position.gain, [1.0, -1.0]);
+    assert_eq!(m.velocity.map(|v| v.unit[0].quantity), Some(Quantity::AngularVelocity));
+    assert_eq!(m.torque.gain, [14.87, 13.26]);
+    assert_eq!((m.trajectories[0].from, m.trajectories[0].to), (Some(0.5), Some(7.25)));
+    assert_eq!(m.trajectories[1].fixed, [1, 2]);
+}
+
+#[test]
+fn what_is_not_said_has_the_contracts_defaults() {
+    let m = parse("robot: arm\ntime: {rate: 100}\nposition: {file: a.csv, columns: [q]}\ntorque: {file: a.csv, columns: [u]}")
+        .expect("a short manifest");
+    assert_eq!((m.side, m.time.clone()), (Side::Joint, Time::Rate(100.0)));
+    assert!(m.layout.header && m.layout.delimiter == b',');
+    assert_eq!(m.trajectories.len(), 1, "no list means the whole file");
+}
+
+/// Each mistake, the line it is told at, and words the message must have.
+#[test]
+fn mistakes_are_told_with_their_place_and_what_was_expected() {
+    let cases: &[(&str, &str, usize, &[&str])] = &[
+        ("robot: tx40", "robott: tx40", 2, &["unknown field `robott`", "expected one of", "robot"]),
+        ("side: motor", "side: both", 4, &["both", "joint", "motor"]),
+        ("unit: rpm", "unit: furlong", 8, &["furlong", "rad/s"]),
+        ("unit: ms", "unit: rad", 6, &["rad", "time"]),
+        ("unit: A", "unit: [A, 7]", 9, &["7"]),
+        ("delimiter: \";\"", "delimiter: abc", 5, &["abc", "one ASCII character"]),
+        ("delimiter: \";\"", "delimiter: \",\"", 5, &["same"]),
+        ("columns: [3, 4]", "columns: 3", 8, &["sequence"]),
+        ("columns: [3, 4]", "columns: [3, -4]", 8, &["name", "index"]),
+        ("columns: [3, 4]", "columns: [3, 1.5]", 8, &["index from 0"]),
+        ("gain: [14.87, 13.26]", "gain: [14.87, .nan]", 9, &["finite"]),
+        ("gain: [14.87, 13.26]", "gain: [14.87, x]", 9, &["x"]),
+        ("from: 0.5", "from: .inf", 11, &["finite"]),
+        ("to: 7.25", "to: 0.25", 10, &["later"]),
+        ("fixed: [1, 2]", "fixxed: [1]", 12, &["unknown field `fixxed`", "fixed"]),
+        ("time: {column: t,", "time: {rate: 5, column: t,", 6, &["exclude"]),
+        ("title: all keys at once", "robot: panda", 1, &["duplicate", "robot"]),
+        ("side: motor", "side: [", 5, &[]),
+    ];
+    for (good, bad, line, words) in cases {
+        let text = WHOLE.replacen(good, bad, 1);
+        assert_ne!(text, WHOLE, "{good}");
+        let error = parse(&text).expect_err(bad);
+        let RecordingError::Manifest { file, line: at, column, message } = &error else {
+            panic!("{error:?}")
+        };
+        assert_eq!(file, "dir/rec.yaml");
+        assert!(*column >= 1);
+        // serde_yaml tells some errors at the mapping that holds them.
+        assert!(at.abs_diff(*line) <= 1, "{bad}: told at line {at}, not {line}: {message}");
+        for word in *words {
+            assert!(message.contains(word), "{bad}: `{message}` lacks `{word}`");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_manifest_is_told() {
+    for (bytes, word) in [
+        (&b""[..], "empty"),
+        (b"# only a comment\n", "empty"),
+        (b"robot: \xff\xfe", "UTF-8"),
+        (b"- a\n- b\n", "expected"),
+        (b"robot: a\n", "missing field"),
+        (b"time: {rate: 0}", "missing field"),
+    ] {
+        let error = Manifest::parse(Path::new("rec.yaml"), bytes).expect_err("no manifest").to_string();
+        assert!(error.starts_with("rec.yaml:") && error.contains(word), "{error}");
+    }
+    let missing = Manifest::read(Path::new("no/such/file.yaml")).expect_err("no file").to_string();
+    assert!(missing.contains("no/such/file.yaml") && missing.contains("no such file"), "{missing}");
+}
+
+#[test]
+fn rate_and_file_must_make_sense() {
+    let with = |time: &str, rest: &str| {
+        parse(&format!(
+            "robot: a\ntime: {time}\nposition: {{columns: [q]}}\ntorque: {{columns: [u]}}\n{rest}"
+        ))
+    };
+    assert!(with("{rate: -5}", "trajectories: [{file: a.csv}]").is_err());
+    assert!(with("{}", "trajectories: [{file: a.csv}]").is_err());
+    assert!(with("{rate: 5, unit: s}", "trajectories: [{file: a.csv}]").is_err());
+    assert!(with("{rate: 5}", "").expect_err("no file").to_string().contains("names no `file`"));
+    assert!(with("{rate: 5}", "trajectories: [{file: a.csv}]").is_ok());
+}
+
+#[test]
+fn keys_are_found_where_they_stand() {
+    assert_eq!(place(WHOLE, &["torque", "unit"]), (9, 42));
+    assert_eq!(place(WHOLE, &["position"]), (7, 1));
+    assert_eq!(place(WHOLE, &["nowhere"]), (1, 1));
+    assert_eq!(place("", &["x"]), (1, 1));
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+        let _ = Manifest::parse(Path::new("rec.yaml"), &bytes);
+    }
+
+    #[test]
+    fn no_damaged_manifest_panics(at in 0usize..600, len in 0usize..40, with in "[\\[\\]{}:,\\-#&*!|>'\"%@` \\na0.]{0,6}") {
+        let at = at.min(WHOLE.len());
+        let end = (at + len).min(WHOLE.len());
+        let text = format!("{}{with}{}", &WHOLE[..at], &WHOLE[end..]);
+        let _ = parse(&text);
+    }
+}
