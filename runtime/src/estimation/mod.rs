@@ -1,5 +1,6 @@
 //! From motions to parameters: observation rows, orthogonal factors, estimators, statistics.
 
+mod bandwidth;
 mod blocks;
 mod essential;
 mod estimate;
@@ -10,6 +11,7 @@ mod outcome;
 mod solve;
 mod weights;
 
+pub use bandwidth::{Bandwidth, choose_bandwidth};
 pub use estimate::{EstimateSettings, estimate, per_equation, relative_error};
 pub use factor::{BLOCK_ROWS, Factor};
 pub use outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Warning};

@@ -223,6 +223,7 @@ pub fn observe(
             return Err(ObserveError::Frequency { what, value });
         }
     }
+    let detected = crate::signal::Standstill::of(motions);
     let mut prepared = Vec::with_capacity(motions.len());
     for (trajectory, motion) in motions.iter().enumerate() {
         let source = source::source(equations, model, trajectory, motion, extra)?;
@@ -230,7 +231,7 @@ pub fn observe(
         let samples = motion.q.first().map_or(0, Vec::len);
         let valid = motion.spoiled..samples.saturating_sub(motion.spoiled).max(motion.spoiled);
         let grid = decimator.kept_rows(valid);
-        let selection = select::select(model, trajectory, motion, equations, &decimator, grid, settings)?;
+        let selection = select::select(trajectory, motion, equations, &decimator, grid, &detected, settings)?;
         let columns = source.equations();
         prepared.push(Prepared { source, motion, decimator, grid, equations: columns, selection });
     }

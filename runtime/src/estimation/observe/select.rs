@@ -1,27 +1,24 @@
 //! Which rows are used: standstill, joints that are fixed, windows of time.
 
 use super::{Equations, ObserveError, ObserveSettings, Prepared};
-use crate::model::Model;
-use crate::signal::{Decimator, KeptRows, Motion};
+use crate::signal::{Decimator, KeptRows, Motion, Standstill as DetectedStandstill};
 
 /// What is done with rows where the joint of the equation hardly moves.
 ///
 /// At rest the sign of the speed is noise and friction takes any value below its break-away level, so that such
 /// rows pull Coulomb friction towards zero. The power model keeps all rows: what rests has no power.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum Standstill {
+    /// Rows are left out where the joint is slower than 2 % of its fast speed or than the noise of its speed, or
+    /// turns within the reach of the row: [`crate::signal::Standstill`].
+    #[default]
+    Automatic,
     /// Every row is used.
     Keep,
     /// Rows where the joint is slower than this share of its fastest speed in the motion are left out.
     BelowShare(f64),
     /// Rows where joint j is slower than the j-th value, rad/s or m/s, are left out.
     Below(Vec<f64>),
-}
-
-impl Default for Standstill {
-    fn default() -> Self {
-        Standstill::BelowShare(0.02)
-    }
 }
 
 /// How many rows of one equation of one motion were used.
@@ -50,15 +47,15 @@ pub(super) struct Selection {
 }
 
 pub(super) fn select(
-    model: &dyn Model,
     trajectory: usize,
     motion: &Motion,
     equations: Equations,
     decimator: &Decimator,
     grid: KeptRows,
+    detected: &DetectedStandstill,
     settings: &ObserveSettings,
 ) -> Result<Vec<Selection>, ObserveError> {
-    let n = model.robot().joints();
+    let n = motion.dq.len();
     let samples = motion.q.first().map_or(0, Vec::len);
     let possible = samples.div_ceil(grid.step);
     let support = decimator.support() as f64 / motion.rate;
@@ -71,7 +68,7 @@ pub(super) fn select(
                 || settings.windows.iter().any(|w| t - support >= w[0] - 1e-9 && t + support <= w[1] + 1e-9)
         })
         .collect();
-    let speeds = slow_speeds(motion, n, &settings.standstill)?;
+    let moving = moving(motion, grid, decimator, detected, &settings.standstill)?;
     let count = if equations == Equations::Torque { n } else { 1 };
     Ok((0..count)
         .map(|equation| {
@@ -83,11 +80,11 @@ pub(super) fn select(
             };
             let torque = equations == Equations::Torque;
             let fixed = torque && motion.fixed.contains(&equation);
-            let used = grid
-                .centres()
-                .zip(&in_window)
-                .map(|(centre, &in_window)| {
-                    let slow = torque && motion.dq[equation][centre].abs() < speeds[equation];
+            let used = in_window
+                .iter()
+                .enumerate()
+                .map(|(row, &in_window)| {
+                    let slow = torque && !moving[equation][row];
                     let counter = match (in_window, fixed, slow) {
                         (false, _, _) => &mut left_out.windows,
                         (_, true, _) => &mut left_out.fixed,
@@ -103,17 +100,29 @@ pub(super) fn select(
         .collect())
 }
 
-fn slow_speeds(motion: &Motion, n: usize, policy: &Standstill) -> Result<Vec<f64>, ObserveError> {
-    match policy {
-        Standstill::Keep => Ok(vec![0.0; n]),
-        Standstill::Below(speeds) if speeds.len() == n => Ok(speeds.clone()),
-        Standstill::Below(speeds) => Err(ObserveError::StandstillSpeeds { found: speeds.len(), expected: n }),
-        Standstill::BelowShare(share) => Ok(motion
-            .dq
-            .iter()
-            .map(|dq| share * dq.iter().fold(0.0_f64, |fastest, v| fastest.max(v.abs())))
-            .collect()),
-    }
+/// For each joint and row, whether the joint moves.
+fn moving(
+    motion: &Motion,
+    grid: KeptRows,
+    decimator: &Decimator,
+    detected: &DetectedStandstill,
+    policy: &Standstill,
+) -> Result<Vec<Vec<bool>>, ObserveError> {
+    let n = motion.dq.len();
+    let speeds: Vec<f64> = match policy {
+        Standstill::Automatic => return Ok(detected.moving(motion, &grid, decimator.factor() / 2)),
+        Standstill::Keep => vec![0.0; n],
+        Standstill::Below(speeds) if speeds.len() == n => speeds.clone(),
+        Standstill::Below(speeds) => {
+            return Err(ObserveError::StandstillSpeeds { found: speeds.len(), expected: n });
+        }
+        Standstill::BelowShare(share) => {
+            let fastest = |dq: &Vec<f64>| dq.iter().fold(0.0_f64, |fastest, v| fastest.max(v.abs()));
+            motion.dq.iter().map(|dq| share * fastest(dq)).collect()
+        }
+    };
+    let faster = |(dq, speed): (&Vec<f64>, f64)| grid.centres().map(|c| dq[c].abs() >= speed).collect();
+    Ok(motion.dq.iter().zip(speeds).map(faster).collect())
 }
 
 /// What is to blame when no row is left.
