@@ -7,11 +7,15 @@
 //! one-parameter group, so that the span over the joint variable is the smallest space closed under the generator.
 
 use super::placement::{Inertia, Placement};
-use crate::exact::{Form, Span, Surd};
+use crate::exact::{Form, Number, Span};
 use crate::robot::JointKind;
 
 /// Length of an energy row: ten parameters, and 1 for the potential energy (0 for the kinetic).
-pub(super) const ROW: usize = 11;
+const ROW: usize = 11;
+/// Coordinate of a joint's offset torque in [`Attainable::frame`]'s second space.
+pub(super) const OFFSET: usize = 10;
+/// Coordinate of dq_joint dq_0 there; the other joints follow.
+pub(super) const SPEEDS: usize = 11;
 
 /// What the motions of one frame span.
 #[derive(Clone, Default)]
@@ -24,73 +28,64 @@ pub(super) struct Attainable {
 
 impl Attainable {
     /// The base: it stands still, and gravity is what it is.
-    pub fn base(gravity: &[Surd; 3], joints: usize) -> Attainable {
+    pub fn base(gravity: [Number; 3], joints: usize) -> Attainable {
         let mut base = Attainable::default();
-        let mut row = vec![Surd::zero(); ROW];
-        for i in 0..3 {
-            row[6 + i] = -&gravity[i];
+        let mut row = unit(ROW, ROW - 1);
+        for (x, g) in row[6..9].iter_mut().zip(gravity) {
+            *x = -g;
         }
-        row[ROW - 1] = Surd::one();
         base.energy.insert(row);
-        for k in 0..joints {
-            base.velocity.insert(unit(6 + joints, 6 + k));
-        }
+        (0..joints).for_each(|k| _ = base.velocity.insert(unit(6 + joints, 6 + k)));
         base
     }
 
-    /// A frame placed on this one, and what its joint makes visible.
+    /// A frame placed on this one (`joint`: its kind and index; `None` where it is fixed), and what its joint makes
+    /// visible.
     ///
     /// The second space has coordinates: ten parameters of the link, the joint's offset torque, then for each joint k
-    /// the coefficient of dq_joint dq_k. A combination of parameters and rotor inertias depends on this joint's
-    /// position or speed unless it is zero on all of that space.
-    pub fn frame(&self, placement: &Placement, kind: JointKind, joint: Option<usize>) -> (Attainable, Span) {
-        let matrix = parameter_matrix(placement);
-        let carried: Vec<Vec<Surd>> = self.energy.vectors().map(|row| times_matrix(row, &matrix)).collect();
-        let mut moved: Vec<Vec<Surd>> = self.velocity.vectors().map(|v| velocity_on(placement, v)).collect();
+    /// the coefficient of dq_joint dq_k. A combination of parameters, offset and rotor inertias depends on this
+    /// joint's position or speed unless it is zero on all of that space.
+    pub fn frame(&self, placement: &Placement, joint: Option<(JointKind, usize)>) -> (Attainable, Span) {
+        let columns = parameter_columns(placement);
+        let carried: Vec<Vec<Number>> =
+            self.energy.vectors().map(|row| times_columns(row, &columns)).collect();
+        let mut moved: Vec<Vec<Number>> =
+            self.velocity.vectors().map(|v| velocity_on(placement, v)).collect();
         let mut next = Attainable::default();
         let mut visible = Span::default();
-        let Some(joint) = joint else {
+        let Some((kind, joint)) = joint else {
             carried.into_iter().for_each(|row| _ = next.energy.insert(row));
             moved.into_iter().for_each(|v| _ = next.velocity.insert(v));
             return (next, visible);
         };
+        let revolute = kind == JointKind::Revolute;
 
-        // This joint's own speed turns or shifts the frame along its z.
-        let own = if kind == JointKind::Revolute { 5 } else { 2 };
-        let mut axis = unit(moved.first().map_or(0, Vec::len), own);
-        for v in &mut moved {
-            v[own] = &v[own] + &v[6 + joint];
-        }
-        axis[6 + joint] = Surd::one();
+        // The joint's own speed turns or shifts the frame along its z.
+        let own = if revolute { 5 } else { 2 };
+        moved.iter_mut().for_each(|v| v[own] = v[own] + v[6 + joint]);
+        let axis = unit(6, own);
         next.velocity.insert_closed(moved, |v| velocity_rate(v, kind));
-        let with_axis: Vec<Vec<Surd>> = next.velocity.vectors().map(|v| product_row(v, &axis)).collect();
+        let with_axis: Vec<Vec<Number>> = next.velocity.vectors().map(|v| product_row(v, &axis)).collect();
 
-        let joints = axis.len() - 6;
-        let extended = |row: &[Surd], offset: &Surd| -> Vec<Surd> {
-            let mut coordinates = row[..10].to_vec();
-            coordinates.push(offset.clone());
-            coordinates.resize(ROW + joints, Surd::zero());
-            coordinates
-        };
+        // The kinetic energy that depends on the joint's speed: dq_joint times a velocity.
         for (v, row) in next.velocity.vectors().zip(&with_axis) {
-            let mut coordinates = extended(row, &Surd::zero());
-            coordinates[ROW..].clone_from_slice(&v[6..]);
-            visible.insert(coordinates);
+            visible.insert([&row[..ROW - 1], &[Number::ZERO], &v[6..]].concat());
         }
         // The energy at q is e (1 + A q + A^2 q^2 / 2 + ..): all but the first term is visible. An offset torque has
         // the potential off q. No sine is linear in q, so beside a revolute joint it stands alone.
-        let rate = |row: &[Surd]| parameter_rate(row, kind);
-        let mut changes = Span::default();
+        let speeds = vec![Number::ZERO; axis_count(&next)];
+        let rate = |row: &[Number]| energy_rate(row, kind);
+        let mut later = Span::default();
         for row in &carried {
             let first = rate(row);
-            let linear = if kind == JointKind::Prismatic { row[ROW - 1].clone() } else { Surd::zero() };
-            visible.insert(extended(&first, &linear));
-            changes.insert_closed(vec![rate(&first)], rate);
+            let offset = if revolute { Number::ZERO } else { row[ROW - 1] };
+            visible.insert([&first[..ROW - 1], &[offset], &speeds].concat());
+            later.insert_closed(vec![rate(&first)], rate);
         }
-        if kind == JointKind::Revolute {
-            visible.insert(unit(ROW + joints, ROW - 1));
+        later.vectors().for_each(|row| _ = visible.insert([row.as_slice(), &speeds].concat()));
+        if revolute {
+            visible.insert(unit(SPEEDS + speeds.len(), OFFSET));
         }
-        changes.vectors().for_each(|row| _ = visible.insert(extended(row, &Surd::zero())));
 
         next.energy.insert_closed(carried, rate);
         with_axis.into_iter().for_each(|row| _ = next.energy.insert(row));
@@ -98,102 +93,84 @@ impl Attainable {
     }
 }
 
-fn unit(length: usize, k: usize) -> Vec<Surd> {
-    (0..length).map(|i| if i == k { Surd::one() } else { Surd::zero() }).collect()
+/// The number of joints of the robot.
+fn axis_count(attainable: &Attainable) -> usize {
+    attainable.velocity.vectors().next().map_or(0, |v| v.len() - 6)
 }
 
-/// Ten columns: each parameter alone, read at the parent's frame.
-fn parameter_matrix(placement: &Placement) -> Vec<[Surd; 10]> {
-    (0..10)
-        .map(|k| {
-            let mut body: Inertia = Default::default();
-            body[k] = Form::one();
-            placement.on_parent(&body).map(|form| form.value().clone())
-        })
-        .collect()
+fn unit(length: usize, k: usize) -> Vec<Number> {
+    (0..length).map(|i| if i == k { Number::ONE } else { Number::ZERO }).collect()
 }
 
-fn times_matrix(row: &[Surd], columns: &[[Surd; 10]]) -> Vec<Surd> {
-    let mut result: Vec<Surd> = columns.iter().map(|column| dot(&row[..10], column)).collect();
-    result.push(row[ROW - 1].clone());
-    result
-}
-
-fn dot(a: &[Surd], b: &[Surd]) -> Surd {
-    let products = a.iter().zip(b).filter(|(x, y)| !x.is_zero() && !y.is_zero()).map(|(x, y)| x * y);
-    products.fold(Surd::zero(), |sum, x| &sum + &x)
-}
-
-fn cross(a: &[Surd], b: &[Surd]) -> [Surd; 3] {
-    [0, 1, 2].map(|i: usize| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        &(&a[j] * &b[k]) - &(&a[k] * &b[j])
+/// Each parameter alone, read at the parent's frame.
+fn parameter_columns(placement: &Placement) -> [[Number; 10]; 10] {
+    std::array::from_fn(|k| {
+        let mut body: Inertia = Default::default();
+        body[k] = Form::one();
+        placement.on_parent(&body).map(|form| form.value())
     })
 }
 
+fn times_columns(row: &[Number], columns: &[[Number; 10]; 10]) -> Vec<Number> {
+    columns.iter().map(|column| dot(&row[..10], column)).chain([row[ROW - 1]]).collect()
+}
+
+fn dot(a: &[Number], b: &[Number]) -> Number {
+    a.iter().zip(b).filter(|(x, y)| !x.is_zero() && !y.is_zero()).map(|(x, y)| *x * *y).sum()
+}
+
+fn cross(a: &[Number], b: &[Number]) -> [Number; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 /// The velocity of a frame that is fixed at `placement` on a body that moves with v.
-fn velocity_on(placement: &Placement, v: &[Surd]) -> Vec<Surd> {
-    let origin: Vec<Surd> = placement.origin.iter().map(|form| form.value().clone()).collect();
+fn velocity_on(placement: &Placement, v: &[Number]) -> Vec<Number> {
+    let origin = [0, 1, 2].map(|i: usize| placement.origin[i].value());
     let swept = cross(&v[3..6], &origin);
-    let linear: Vec<Surd> = (0..3).map(|i| &v[i] + &swept[i]).collect();
-    let column = |j: usize| [0, 1, 2].map(|i: usize| placement.rotation[i][j].value().clone());
-    let mut moved: Vec<Surd> = (0..3).map(|j| dot(&column(j), &linear)).collect();
-    moved.extend((0..3).map(|j| dot(&column(j), &v[3..6])));
-    moved.extend_from_slice(&v[6..]);
-    moved
+    let linear = [0, 1, 2].map(|i: usize| v[i] + swept[i]);
+    let axes = [0, 1, 2].map(|j: usize| [0, 1, 2].map(|i: usize| placement.rotation[i][j].value()));
+    let turned = |x: &[Number]| axes.map(|axis| dot(&axis, x));
+    [&turned(&linear)[..], &turned(&v[3..6]), &v[6..]].concat()
 }
 
-/// d/dq of a velocity in the moving frame of a joint.
-fn velocity_rate(v: &[Surd], kind: JointKind) -> Vec<Surd> {
-    let turn = |x: &[Surd]| [x[1].clone(), -&x[0], Surd::zero()];
-    let mut rate = vec![Surd::zero(); v.len()];
-    match kind {
-        JointKind::Revolute => {
-            rate[..3].clone_from_slice(&turn(&v[..3]));
-            rate[3..6].clone_from_slice(&turn(&v[3..6]));
-        }
-        // omega x z
-        _ => rate[..3].clone_from_slice(&turn(&v[3..6])),
-    }
-    rate
+/// d/dq of a velocity in the moving frame of a joint: x z for a revolute joint; the angular velocity x z for a
+/// prismatic one.
+fn velocity_rate(v: &[Number], kind: JointKind) -> Vec<Number> {
+    let cross_z = |x: &[Number]| [x[1], -x[0], Number::ZERO];
+    let still = [Number::ZERO; 3];
+    let (linear, angular) = match kind {
+        JointKind::Revolute => (cross_z(&v[..3]), cross_z(&v[3..6])),
+        _ => (cross_z(&v[3..6]), still),
+    };
+    [&linear[..], &angular, &vec![Number::ZERO; v.len() - 6]].concat()
 }
 
-/// The energy row that two velocities have in common: T of v + w is that of v, that of w, and this.
-fn product_row(v: &[Surd], w: &[Surd]) -> Vec<Surd> {
+/// The energy row that two velocities have in common: twice the kinetic energy of v + w is that of v, that of w, and
+/// twice this.
+fn product_row(v: &[Number], w: &[Number]) -> Vec<Number> {
     let (a, b) = (&v[3..6], &w[3..6]);
-    let mixed = |i: usize, j: usize| &(&a[i] * &b[j]) + &(&a[j] * &b[i]);
-    let mut row = vec![&a[0] * &b[0], mixed(0, 1), mixed(0, 2), &a[1] * &b[1], mixed(1, 2), &a[2] * &b[2]];
+    let mixed = |i: usize, j: usize| a[i] * b[j] + a[j] * b[i];
     let (first, second) = (cross(&v[..3], b), cross(&w[..3], a));
-    row.extend((0..3).map(|i| &first[i] + &second[i]));
-    row.push(dot(&v[..3], &w[..3]));
-    row.push(Surd::zero());
-    row
+    let inertias = [a[0] * b[0], mixed(0, 1), mixed(0, 2), a[1] * b[1], mixed(1, 2), a[2] * b[2]];
+    let moments = [0, 1, 2].map(|i: usize| first[i] + second[i]);
+    [&inertias[..], &moments, &[dot(&v[..3], &w[..3]), Number::ZERO]].concat()
 }
 
 /// d/dq of an energy row in the moving frame of a joint: the row times the generator of the parameters' motion.
-fn parameter_rate(row: &[Surd], kind: JointKind) -> Vec<Surd> {
-    let [xx, xy, xz, yy, yz] = [0, 1, 2, 3, 4].map(|k: usize| &row[k]);
-    let [mx, my, mz] = [6, 7, 8].map(|k: usize| &row[k]);
-    let twice = |x: &Surd| x + x;
-    let mut rate = vec![Surd::zero(); ROW];
+fn energy_rate(row: &[Number], kind: JointKind) -> Vec<Number> {
+    let [xx, xy, xz, yy, yz] = [row[0], row[1], row[2], row[3], row[4]];
+    let [mx, my, mz] = [row[6], row[7], row[8]];
+    let zero = Number::ZERO;
     match kind {
-        // Body turned about z: dXX = -2 XY, dXY = XX - YY, dXZ = -YZ, dYY = 2 XY, dYZ = XZ, dMX = -MY, dMY = MX.
+        // A body turned about z: dXX = -2 XY, dXY = XX - YY, dXZ = -YZ, dYY = 2 XY, dYZ = XZ, dMX = -MY, dMY = MX.
         JointKind::Revolute => {
-            rate[0] = xy.clone();
-            rate[1] = twice(&(yy - xx));
-            rate[2] = yz.clone();
-            rate[3] = -xy;
-            rate[4] = -xz;
-            rate[6] = my.clone();
-            rate[7] = -mx;
+            let difference = yy - xx;
+            vec![xy, difference + difference, yz, -xy, -xz, zero, my, -mx, zero, zero, zero]
         }
-        // Body shifted along z: dXX = dYY = 2 MZ, dXZ = -MX, dYZ = -MY, dMZ = M.
+        // A body shifted along z: dXX = dYY = 2 MZ, dXZ = -MX, dYZ = -MY, dMZ = M.
         _ => {
-            rate[6] = -xz;
-            rate[7] = -yz;
-            rate[8] = twice(&(xx + yy));
-            rate[9] = mz.clone();
+            let sum = xx + yy;
+            vec![zero, zero, zero, zero, zero, zero, -xz, -yz, sum + sum, mz, zero]
         }
     }
-    rate
 }

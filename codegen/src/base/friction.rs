@@ -2,7 +2,7 @@
 
 use super::regroup::Regrouping;
 use super::{ParameterKind, StandardParameter};
-use crate::exact::{Form, Span, Surd, decimal};
+use crate::exact::{Form, Number, Span, decimal};
 use crate::robot::Robot;
 
 /// Regroups the viscous and Coulomb friction of motors.
@@ -17,7 +17,7 @@ pub(super) fn regroup_friction(robot: &Robot, standard: &[StandardParameter], re
     let index = |kind: ParameterKind, joint: usize| {
         standard.iter().position(|p| p.kind == kind && p.frame == joint_frames[joint])
     };
-    let motor_row = |m: usize| -> Vec<Surd> {
+    let motor_row = |m: usize| -> Vec<Number> {
         let own = decimal(robot.drive.gear[m][m]);
         robot.drive.gear[m].iter().map(|&x| (decimal(x) / &own).into()).collect()
     };
@@ -33,14 +33,14 @@ pub(super) fn regroup_friction(robot: &Robot, standard: &[StandardParameter], re
     }
 
     // Off-diagonal entries decide which motors are independent; the diagonal can always be made up by the joints' Fv.
-    let mut kept: Vec<(usize, Vec<Surd>)> = Vec::new();
+    let mut kept: Vec<(usize, Vec<Number>)> = Vec::new();
     let mut space = Span::default();
     for (column, parameter) in standard.iter().enumerate() {
         let (ParameterKind::Fvm, Some(joint)) = (parameter.kind, joint_of(parameter.frame)) else { continue };
         let row = motor_row(joint);
-        let entries: Vec<Surd> = row.iter().flat_map(|x| row.iter().map(move |y| x * y)).collect();
+        let entries: Vec<Number> = row.iter().flat_map(|x| row.iter().map(move |y| *x * *y)).collect();
         let mut mixed = entries.clone();
-        (0..joints).for_each(|k| mixed[k * joints + k] = Surd::zero());
+        (0..joints).for_each(|k| mixed[k * joints + k] = Number::ZERO);
         if space.insert(mixed) {
             kept.push((column, entries));
             continue;
@@ -49,14 +49,14 @@ pub(super) fn regroup_friction(robot: &Robot, standard: &[StandardParameter], re
         let mut taken = Vec::new();
         for (other, factor) in combination(&kept, &rest, joints) {
             for (x, y) in rest.iter_mut().zip(&kept[other].1) {
-                *x = &*x - &(y * &factor);
+                *x = *x - *y * factor;
             }
             taken.push((kept[other].0, Form::number(factor)));
         }
         for k in 0..joints {
-            let share = &rest[k * joints + k];
+            let share = rest[k * joints + k];
             if let (false, Some(fv)) = (share.is_zero(), index(ParameterKind::Fv, k)) {
-                taken.push((fv, Form::number(share.clone())));
+                taken.push((fv, Form::number(share)));
             }
         }
         regrouping.insert(column, taken);
@@ -64,16 +64,16 @@ pub(super) fn regroup_friction(robot: &Robot, standard: &[StandardParameter], re
 }
 
 /// The factors of the kept matrices that make up the off-diagonal entries of `target`, which depends on them.
-fn combination(kept: &[(usize, Vec<Surd>)], target: &[Surd], joints: usize) -> Vec<(usize, Surd)> {
+fn combination(kept: &[(usize, Vec<Number>)], target: &[Number], joints: usize) -> Vec<(usize, Number)> {
     let count = kept.len();
     // One equation per off-diagonal entry: the kept entries, then the target's.
     let mut equations = Span::default();
     for k in (0..joints * joints).filter(|k| k / joints != k % joints) {
-        let mut equation: Vec<Surd> = kept.iter().map(|(_, entries)| entries[k].clone()).collect();
-        equation.push(target[k].clone());
+        let mut equation: Vec<Number> = kept.iter().map(|(_, entries)| entries[k]).collect();
+        equation.push(target[k]);
         equations.insert(equation);
     }
     let order: Vec<usize> = (0..=count).collect();
     let solved = equations.reduced(&order).into_iter().filter(|(unknown, _)| *unknown < count);
-    solved.map(|(unknown, row)| (unknown, row[count].clone())).filter(|(_, x)| !x.is_zero()).collect()
+    solved.map(|(unknown, row)| (unknown, row[count])).filter(|(_, x)| !x.is_zero()).collect()
 }

@@ -107,7 +107,7 @@ fn base_parameter(
     for &(column, factor) in &regrouped {
         let (sign, product) = factor.signed_product(&standard[column].name);
         relation.push_str(&format!(" {sign} {product}"));
-        combination.push((column, factor.value().to_f64()));
+        combination.push((column, factor.value().real()));
     }
     combination.sort_by_key(|&(column, _)| column);
     BaseParameter {

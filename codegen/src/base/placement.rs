@@ -1,6 +1,6 @@
 //! Where a frame stands on its parent, and how the inertial parameters of a body read in the parent's frame.
 
-use crate::exact::{Angles, Form, Surd, decimal};
+use crate::exact::{Angles, Form, Number, decimal};
 use crate::robot::{Expression, Frame, JointKind, Robot};
 
 /// XX XY XZ YY YZ ZZ MX MY MZ M.
@@ -63,7 +63,7 @@ impl Placement {
             a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2]))
         };
         // J + (2 s.p + M p.p) 1 - (s pT + p sT + M p pT), with s the first moments.
-        let trace = dot(&first, p).scaled(&Surd::integer(2)).plus(&dot(p, p).times(mass));
+        let trace = dot(&first, p).scaled(Number::from(2)).plus(&dot(p, p).times(mass));
         let mut moved: Inertia = Default::default();
         for (k, (i, j)) in ENTRIES.into_iter().enumerate() {
             let cross =
@@ -82,7 +82,7 @@ impl Placement {
 }
 
 fn minus(a: &Form) -> Form {
-    a.scaled(&Surd::integer(-1))
+    a.scaled(-Number::ONE)
 }
 
 fn product(a: &[[Form; 3]; 3], b: &[[Form; 3]; 3]) -> [[Form; 3]; 3] {

@@ -1,9 +1,9 @@
-//! Which combinations of standard parameters the dynamics can show.
+//! Which columns of the standard regressor are kept, and how the others depend on them.
 
-use super::attainable::{Attainable, ROW};
+use super::attainable::{Attainable, OFFSET, SPEEDS};
 use super::placement::{Inertia, Placement, angles_of};
 use super::{ParameterKind, StandardParameter};
-use crate::exact::{Form, Surd, decimal};
+use crate::exact::{Form, Number, decimal};
 use crate::robot::{JointKind, Robot};
 use std::collections::BTreeMap;
 
@@ -15,49 +15,6 @@ const PRISMATIC: [usize; 10] = [9, 6, 7, 8, 5, 0, 1, 2, 3, 4];
 
 /// For each standard parameter that is not kept: its column as a combination of kept columns. Kept ones are absent.
 pub(super) type Regrouping = BTreeMap<usize, Vec<(usize, Form)>>;
-
-/// A standard column less kept columns: a function that does not depend on the joints done so far.
-struct Candidate {
-    /// The standard parameter.
-    column: usize,
-    /// Kept columns that were taken off, with their factor.
-    taken: BTreeMap<usize, Form>,
-    /// What is left, as the energy of bodies on frames not done yet.
-    bodies: BTreeMap<usize, Inertia>,
-    /// What is left as dqT C dq / 2.
-    rotor: Option<Vec<Vec<Surd>>>,
-    /// Whether it is the potential off q of this joint.
-    offset: Option<usize>,
-}
-
-impl Candidate {
-    fn of(column: usize) -> Candidate {
-        Candidate { column, taken: BTreeMap::new(), bodies: BTreeMap::new(), rotor: None, offset: None }
-    }
-
-    /// What it has to do with one frame: the coordinates of [`Attainable::frame`].
-    fn coordinates(&self, frame: usize, joint: usize, joints: usize) -> Option<Vec<Form>> {
-        let body = self.bodies.get(&frame);
-        let offset = self.offset == Some(joint);
-        let rotor = self.rotor.as_ref().map(|c| &c[joint]).filter(|row| row.iter().any(|x| !x.is_zero()));
-        if body.is_none() && !offset && rotor.is_none() {
-            return None;
-        }
-        let mut coordinates = body.map_or_else(|| vec![Form::zero(); 10], |body| body.to_vec());
-        coordinates.push(if offset { Form::one() } else { Form::zero() });
-        match rotor {
-            Some(row) => coordinates.extend(row.iter().map(|x| Form::number(x.clone()))),
-            None => coordinates.resize(ROW + joints, Form::zero()),
-        }
-        Some(coordinates)
-    }
-
-    /// Takes off a kept column.
-    fn take(&mut self, column: usize, factor: &Form) {
-        let slot = self.taken.entry(column).or_default();
-        *slot = slot.plus(factor);
-    }
-}
 
 /// Regroups the inertial parameters, rotor inertias and offsets of a robot.
 ///
@@ -72,33 +29,48 @@ pub(super) fn regroup(robot: &Robot, standard: &[StandardParameter]) -> Regroupi
     let angles = angles_of(robot);
     let placements: Vec<Placement> = robot.frames.iter().map(|f| Placement::of(f, &angles)).collect();
 
-    let base = Attainable::base(&robot.gravity.map(|g| decimal(g).into()), joints);
+    let base = Attainable::base(robot.gravity.map(|g| decimal(g).into()), joints);
     let mut attainable: Vec<Attainable> = Vec::new();
     let mut visible = Vec::new();
     for (k, frame) in robot.frames.iter().enumerate() {
         let parent = if frame.parent == 0 { &base } else { &attainable[frame.parent - 1] };
-        let (next, shown) = parent.frame(&placements[k], frame.kind, joint_of(k));
+        let (next, shown) = parent.frame(&placements[k], joint_of(k).map(|joint| (frame.kind, joint)));
         attainable.push(next);
         visible.push(shown);
     }
 
     let mut candidates = candidates(robot, standard, &joint_of);
     for (k, frame) in robot.frames.iter().enumerate().rev() {
-        if let Some(joint) = joint_of(k) {
+        let joint = joint_of(k);
+        if let Some(joint) = joint {
             let preference = if frame.kind == JointKind::Revolute { REVOLUTE } else { PRISMATIC };
-            let order: Vec<usize> = preference.into_iter().chain(10..ROW + joints).collect();
-            for (pivot, row) in visible[k].reduced(&order) {
-                keep_one(&mut candidates, standard, k, joint, joints, pivot, &row);
+            let order: Vec<usize> = preference.into_iter().chain(OFFSET..SPEEDS + joints).collect();
+            for (pivot, direction) in visible[k].reduced(&order) {
+                keep_one(&mut candidates, standard, (k, joint), pivot, &direction);
             }
         }
         for candidate in &mut candidates {
-            move_to_parent(candidate, &placements[k], k, frame.parent, joint_of(k));
+            candidate.move_to_parent(&placements[k], k, frame.parent, joint);
         }
     }
-    candidates
-        .into_iter()
-        .map(|c| (c.column, c.taken.into_iter().filter(|(_, f)| !f.is_zero()).collect()))
-        .collect()
+    let nonzero =
+        |taken: BTreeMap<usize, Form>| taken.into_iter().filter(|(_, factor)| !factor.is_zero()).collect();
+    candidates.into_iter().map(|c| (c.column, nonzero(c.taken))).collect()
+}
+
+/// A standard column less kept columns: a function that does not depend on the joints done so far.
+#[derive(Default)]
+struct Candidate {
+    /// The standard parameter.
+    column: usize,
+    /// Kept columns that were taken off, with their factor.
+    taken: BTreeMap<usize, Form>,
+    /// What is left, as the energy of bodies on frames that are not done yet.
+    bodies: BTreeMap<usize, Inertia>,
+    /// What is left, as dqT C dq / 2; empty where there is none.
+    rotor: Vec<Vec<Number>>,
+    /// Whether it is the potential off q of this joint.
+    offset: Option<usize>,
 }
 
 fn candidates(
@@ -106,17 +78,15 @@ fn candidates(
     standard: &[StandardParameter],
     joint_of: &impl Fn(usize) -> Option<usize>,
 ) -> Vec<Candidate> {
-    let rotors: Vec<Vec<Vec<Surd>>> = robot
-        .drive
-        .rotor_matrices()
-        .into_iter()
-        .map(|matrix| matrix.into_iter().map(|row| row.into_iter().map(Surd::from).collect()).collect())
-        .collect();
+    let rotors = robot.drive.rotor_matrices();
     let mut candidates = Vec::new();
     for (column, parameter) in standard.iter().enumerate() {
-        let mut candidate = Candidate::of(column);
+        let mut candidate = Candidate { column, ..Candidate::default() };
         match (parameter.kind, joint_of(parameter.frame)) {
-            (ParameterKind::Ia, Some(joint)) => candidate.rotor = Some(rotors[joint].clone()),
+            (ParameterKind::Ia, Some(joint)) => {
+                let row = |row: &Vec<_>| row.iter().cloned().map(Number::from).collect();
+                candidate.rotor = rotors[joint].iter().map(row).collect();
+            }
             (ParameterKind::Off, joint @ Some(_)) => candidate.offset = joint,
             (kind, _) if kind <= ParameterKind::M => {
                 let mut body: Inertia = Default::default();
@@ -130,103 +100,101 @@ fn candidates(
     candidates
 }
 
-/// Keeps one column that the visible direction `row` shows, and takes it off all others until they do not show there.
+impl Candidate {
+    /// How much of it a visible direction of a frame and its joint shows; see [`Attainable::frame`].
+    fn shown(&self, (frame, joint): (usize, usize), direction: &[Number]) -> Form {
+        let mut sum = Form::zero();
+        if let Some(body) = self.bodies.get(&frame) {
+            for (x, &factor) in
+                body.iter().zip(direction).filter(|(x, factor)| !x.is_zero() && !factor.is_zero())
+            {
+                sum = sum.plus(&x.scaled(factor));
+            }
+        }
+        if self.offset == Some(joint) {
+            sum = sum.plus(&Form::number(direction[OFFSET]));
+        }
+        if let Some(row) = self.rotor.get(joint) {
+            let products = row.iter().zip(&direction[SPEEDS..]).map(|(&x, &factor)| x * factor);
+            sum = sum.plus(&Form::number(products.sum()));
+        }
+        sum
+    }
+
+    /// Takes off `factor` times a column that is kept.
+    fn take(&mut self, kept: &Candidate, factor: &Form) {
+        let minus = factor.scaled(-Number::ONE);
+        let mut add = |column: usize, share: &Form| {
+            let taken = self.taken.entry(column).or_default();
+            *taken = taken.plus(share);
+        };
+        add(kept.column, factor);
+        kept.taken.iter().for_each(|(&column, taken)| add(column, &taken.times(&minus)));
+        kept.bodies.iter().for_each(|(&frame, body)| self.add_body(frame, body, &minus));
+        self.rotor.resize(self.rotor.len().max(kept.rotor.len()), Vec::new());
+        for (row, other) in self.rotor.iter_mut().zip(&kept.rotor) {
+            row.resize(other.len(), Number::ZERO);
+            row.iter_mut().zip(other).for_each(|(x, &y)| *x = *x + y * minus.value());
+        }
+    }
+
+    fn add_body(&mut self, frame: usize, body: &Inertia, factor: &Form) {
+        let sum = self.bodies.entry(frame).or_default();
+        for (x, y) in sum.iter_mut().zip(body) {
+            *x = x.plus(&y.times(factor));
+        }
+    }
+
+    /// Nothing of it depends on the frame's joint any more: what it has there stands on the parent.
+    fn move_to_parent(&mut self, placement: &Placement, frame: usize, parent: usize, joint: Option<usize>) {
+        let body = self.bodies.remove(&frame);
+        if let (Some(body), true) = (body, parent > 0) {
+            self.add_body(parent - 1, &placement.on_parent(&body), &Form::one());
+        }
+        let Some(joint) = joint else { return };
+        if self.offset == Some(joint) {
+            self.offset = None;
+        }
+        for (i, row) in self.rotor.iter_mut().enumerate() {
+            row.iter_mut()
+                .enumerate()
+                .filter(|(k, _)| i == joint || *k == joint)
+                .for_each(|(_, x)| *x = Number::ZERO);
+        }
+    }
+}
+
+/// Keeps one column that a visible direction shows, and takes it off all others until they do not show there.
+///
+/// First choice is the parameter of the frame or its joint that the direction's pivot stands for.
 fn keep_one(
     candidates: &mut Vec<Candidate>,
     standard: &[StandardParameter],
-    frame: usize,
-    joint: usize,
-    joints: usize,
+    place: (usize, usize),
     pivot: usize,
-    row: &[Surd],
+    direction: &[Number],
 ) {
-    let shown: Vec<(usize, Form)> = candidates
-        .iter()
-        .enumerate()
-        .filter_map(|(at, candidate)| {
-            let coordinates = candidate.coordinates(frame, joint, joints)?;
-            let parts = coordinates.iter().zip(row).filter(|(c, r)| !c.is_zero() && !r.is_zero());
-            let sum = parts.fold(Form::zero(), |sum, (c, r)| sum.plus(&c.scaled(r)));
-            (!sum.is_zero()).then_some((at, sum))
-        })
-        .collect();
-    // The link's own parameter at the pivot, then the joint's own, then any.
-    let rank = |at: usize| {
+    let wanted = match pivot {
+        0..OFFSET => super::standard::INERTIAL[pivot],
+        OFFSET => ParameterKind::Off,
+        _ => ParameterKind::Ia,
+    };
+    let is_wanted = |at: usize| {
         let parameter = &standard[candidates[at].column];
-        let own = parameter.frame == frame;
-        match pivot {
-            0..10 => !(own && parameter.kind as usize == pivot),
-            10 => !(own && parameter.kind == ParameterKind::Off),
-            _ => !(own && parameter.kind == ParameterKind::Ia),
-        }
+        parameter.frame == place.0 && parameter.kind == wanted
     };
-    let Some((kept, its_share)) =
-        shown.iter().min_by_key(|(at, _)| (rank(*at), candidates[*at].column)).cloned()
-    else {
-        return;
-    };
-    let column = candidates[kept].column;
-    let gone = std::mem::replace(&mut candidates[kept], Candidate::of(column));
-    for (at, share) in shown {
-        if at == kept {
-            continue;
-        }
-        let Some(factor) = share.over(&its_share) else { continue };
-        let candidate = &mut candidates[at];
-        candidate.take(column, &factor);
-        let minus = factor.scaled(&Surd::integer(-1));
-        for (&other, taken) in &gone.taken {
-            candidate.take(other, &taken.times(&minus));
-        }
-        for (&on, body) in &gone.bodies {
-            add_body(candidate, on, body, &minus);
-        }
-        if let Some(rotor) = &gone.rotor {
-            add_rotor(candidate, rotor, minus.value());
+    let shown: Vec<(usize, Form)> = (0..candidates.len())
+        .map(|at| (at, candidates[at].shown(place, direction)))
+        .filter(|(_, share)| !share.is_zero())
+        .collect();
+    let first_choice = shown.iter().find(|(at, _)| is_wanted(*at)).or(shown.first());
+    let Some((kept_at, kept_share)) = first_choice.cloned() else { return };
+    let kept = std::mem::take(&mut candidates[kept_at]);
+    for (at, share) in shown.iter().filter(|(at, _)| *at != kept_at) {
+        // The kept share is not zero, so the quotient exists.
+        if let Some(factor) = share.over(&kept_share) {
+            candidates[*at].take(&kept, &factor);
         }
     }
-    candidates.remove(kept);
-}
-
-fn add_body(candidate: &mut Candidate, frame: usize, body: &Inertia, factor: &Form) {
-    let sum = candidate.bodies.entry(frame).or_default();
-    for (x, y) in sum.iter_mut().zip(body) {
-        *x = x.plus(&y.times(factor));
-    }
-}
-
-fn add_rotor(candidate: &mut Candidate, rotor: &[Vec<Surd>], factor: &Surd) {
-    let n = rotor.len();
-    let sum = candidate.rotor.get_or_insert_with(|| vec![vec![Surd::zero(); n]; n]);
-    for (x, y) in sum.iter_mut().flatten().zip(rotor.iter().flatten()) {
-        *x = &*x + &(y * factor);
-    }
-}
-
-/// Nothing of the candidate depends on the frame's joint any more.
-fn move_to_parent(
-    candidate: &mut Candidate,
-    placement: &Placement,
-    frame: usize,
-    parent: usize,
-    joint: Option<usize>,
-) {
-    if let Some(body) = candidate.bodies.remove(&frame)
-        && parent > 0
-    {
-        add_body(candidate, parent - 1, &placement.on_parent(&body), &Form::one());
-    }
-    let Some(joint) = joint else { return };
-    if candidate.offset == Some(joint) {
-        candidate.offset = None;
-    }
-    if let Some(rotor) = &mut candidate.rotor {
-        for (i, row) in rotor.iter_mut().enumerate() {
-            for (k, x) in row.iter_mut().enumerate() {
-                if i == joint || k == joint {
-                    *x = Surd::zero();
-                }
-            }
-        }
-    }
+    candidates.remove(kept_at);
 }

@@ -1,13 +1,15 @@
 //! Sines and cosines of constant angles as exact numbers.
 
-use super::Surd;
-use num_bigint::BigInt;
-use num_rational::{BigRational, Ratio};
-use num_traits::{One, Zero};
+use super::Number;
+use num_rational::Ratio;
 use std::f64::consts::PI;
 
-/// A step of 15 degrees: its sine and cosine are in Q(sqrt 2, sqrt 3).
-const STEP: f64 = PI / 12.0;
+/// A hundredth of a degree: its multiples are exact.
+const STEP: f64 = PI / 18000.0;
+/// Steps in a full turn.
+const TURN: i64 = 36000;
+/// Steps in 15 degrees, the angles whose sine and cosine are written with square roots.
+const FIFTEEN: i64 = 1500;
 /// Angles closer than this are one angle, rad. Well above the rounding of an expression, far below any drawing.
 const SAME: f64 = 1e-12;
 /// Two angles share a unit when both are whole multiples of it, up to this one.
@@ -15,47 +17,58 @@ const MOST: f64 = 64.0;
 
 /// The constant angles of one robot.
 ///
-/// A multiple of 15 degrees is exact. What another angle is beyond such a multiple is a whole multiple of a unit; a
-/// unit's sine and cosine are those of the rational rotation 2 atan(t), t the simplest fraction within rounding of
-/// tan(unit / 2). Angles that are commensurable with each other share a unit, so that 20 and 70 degrees, or 0.3 and
-/// -0.1 rad, still add up exactly; units that are not are as independent as the angles are.
+/// A whole number of hundredths of a degree is exact. Any other angle is a multiple of 15 degrees plus a whole multiple
+/// of a unit; a unit's sine and cosine are those of the rational rotation 2 atan(t), t the simplest fraction within
+/// rounding of tan(unit / 2). Angles share a unit where they can, so that 0.3, 0.2 and -0.5 rad, or 0.1 and pi/6 - 0.1,
+/// still add up exactly; units that angles do not share are as independent as the angles are.
 #[derive(Debug, Clone, Default)]
 pub struct Angles {
     units: Vec<f64>,
 }
 
 /// Cosine and sine.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
     /// Cosine.
-    pub cos: Surd,
+    pub cos: Number,
     /// Sine.
-    pub sin: Surd,
+    pub sin: Number,
 }
 
 impl Rotation {
-    fn none() -> Rotation {
-        Rotation { cos: Surd::one(), sin: Surd::zero() }
-    }
+    const NONE: Rotation = Rotation { cos: Number::ONE, sin: Number::ZERO };
 
-    fn then(&self, next: &Rotation) -> Rotation {
+    fn then(self, next: Rotation) -> Rotation {
         Rotation {
-            cos: &(&self.cos * &next.cos) - &(&self.sin * &next.sin),
-            sin: &(&self.sin * &next.cos) + &(&self.cos * &next.sin),
+            cos: self.cos * next.cos - self.sin * next.sin,
+            sin: self.sin * next.cos + self.cos * next.sin,
         }
     }
 
-    fn times(&self, count: i64) -> Rotation {
-        let one = if count < 0 { Rotation { cos: self.cos.clone(), sin: -&self.sin } } else { self.clone() };
-        (0..count.unsigned_abs()).fold(Rotation::none(), |turned, _| turned.then(&one))
+    fn times(self, count: i64) -> Rotation {
+        let mut square = if count < 0 { Rotation { sin: -self.sin, ..self } } else { self };
+        let mut left = count.unsigned_abs();
+        let mut turned = Rotation::NONE;
+        while left > 0 {
+            if left & 1 == 1 {
+                turned = turned.then(square);
+            }
+            square = square.then(square);
+            left >>= 1;
+        }
+        turned
     }
 }
 
-/// Whole steps of 15 degrees, and the rest in (-7.5, 7.5] degrees.
-fn split(angle: f64) -> (i64, f64) {
+/// How many hundredths of a degree the angle is, if a whole number.
+fn whole_steps(angle: f64) -> Option<i64> {
     let steps = (angle / STEP).round();
-    let rest = angle - steps * STEP;
-    ((steps % 24.0) as i64, if rest.abs() < SAME { 0.0 } else { rest })
+    ((angle - steps * STEP).abs() < SAME).then_some((steps % TURN as f64) as i64)
+}
+
+/// The angle less each multiple of 15 degrees, in steps, small multiples first.
+fn shifted(angle: f64) -> impl Iterator<Item = (i64, f64)> {
+    (0..=24).flat_map(|k| [k * FIFTEEN, -k * FIFTEEN]).map(move |steps| (steps, angle - steps as f64 * STEP))
 }
 
 /// The largest angle that both are whole multiples of, if there is a sensible one (Euclid's algorithm).
@@ -75,84 +88,84 @@ impl Angles {
     /// Finds the units of a set of angles, rad.
     pub fn of(angles: impl IntoIterator<Item = f64>) -> Angles {
         let mut units: Vec<f64> = Vec::new();
-        for angle in angles {
-            let mut unit = split(angle).1.abs();
-            if unit == 0.0 {
-                continue;
+        for angle in angles.into_iter().filter(|&angle| whole_steps(angle).is_none()) {
+            let shared = |unit: f64| shifted(angle).find_map(|(_, rest)| common_unit(rest, unit));
+            match units.iter().position(|&unit| shared(unit).is_some()) {
+                Some(k) => units[k] = shared(units[k]).unwrap_or(units[k]),
+                None => units.push(angle),
             }
-            units.retain(|&other| match common_unit(unit, other) {
-                Some(common) => {
-                    unit = common;
-                    false
-                }
-                None => true,
-            });
-            units.push(unit);
         }
         Angles { units }
     }
 
     /// Cosine and sine of an angle, rad.
     pub fn rotation(&self, angle: f64) -> Rotation {
-        let (steps, rest) = split(angle);
-        let quarter = BigRational::new(BigInt::one(), BigInt::from(4));
-        let two = Surd::root(1, quarter.clone());
-        let six = Surd::root(3, quarter);
-        let step = Rotation { cos: &six + &two, sin: &six - &two };
-        let whole = step.times(steps);
-        if rest == 0.0 {
-            return whole;
-        }
-        let fits = |unit: &&f64| {
-            let count = rest / **unit;
-            (count - count.round()).abs() * **unit < SAME * MOST && count.abs() < 2.0 * MOST
+        let (cos, sin) = Number::smallest_rotation();
+        let step = Rotation { cos, sin };
+        let exact = match whole_steps(angle) {
+            Some(steps) => step.times(steps),
+            None => match self.in_units(angle) {
+                Some((steps, unit, count)) => step.times(steps).then(rational_rotation(unit).times(count)),
+                None => rational_rotation(angle),
+            },
         };
-        let (unit, count) = match self.units.iter().find(fits) {
-            Some(&unit) => (unit, (rest / unit).round() as i64),
-            None => (rest, 1),
-        };
-        whole.then(&rational_rotation(unit).times(count))
+        Rotation { cos: exact.cos.with_real(angle.cos()), sin: exact.sin.with_real(angle.sin()) }
+    }
+
+    /// The angle as steps and a count of one unit.
+    fn in_units(&self, angle: f64) -> Option<(i64, f64, i64)> {
+        self.units.iter().find_map(|&unit| {
+            shifted(angle).find_map(|(steps, rest)| {
+                let count = (rest / unit).round();
+                let fits = count.abs() <= MOST * MOST && (rest - count * unit).abs() < MOST * SAME;
+                fits.then_some((steps, unit, count as i64))
+            })
+        })
     }
 
     /// Whether the angle is a multiple of 15 degrees.
     pub fn is_special(angle: f64) -> bool {
-        split(angle).1 == 0.0
+        whole_steps(angle).is_some_and(|steps| steps % FIFTEEN == 0)
     }
 }
 
 fn rational_rotation(angle: f64) -> Rotation {
-    let t = Ratio::<i64>::approximate_float((angle / 2.0).tan()).unwrap_or_else(Ratio::zero);
-    let t = BigRational::new(BigInt::from(*t.numer()), BigInt::from(*t.denom()));
-    let square = &t * &t;
-    let below = (BigRational::one() + &square).recip();
-    let two = BigRational::from_integer(BigInt::from(2));
-    Rotation { cos: ((BigRational::one() - square) * &below).into(), sin: (two * t * below).into() }
+    let t = Ratio::<i64>::approximate_float((angle / 2.0).tan()).unwrap_or_else(|| Ratio::from_integer(0));
+    let (above, below) = (Number::from(*t.numer()), Number::from(*t.denom()));
+    let (aa, bb) = (above * above, below * below);
+    // The sum of two squares of whole numbers below P is 0 modulo P only if both are: P is 3 modulo 4.
+    let scale = (aa + bb).inverse().unwrap_or(Number::ZERO);
+    Rotation { cos: (bb - aa) * scale, sin: (above * below + above * below) * scale }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn half(x: Number) -> Number {
+        x * Number::from(2).inverse().expect("not zero")
+    }
+
     #[test]
-    fn multiples_of_15_degrees_are_exact() {
-        let angles = Angles::default();
-        for k in -30..=30_i64 {
-            let angle = k as f64 * STEP;
-            let rotation = angles.rotation(angle);
-            assert!((rotation.cos.to_f64() - angle.cos()).abs() < 1e-14, "{k}");
-            assert!((rotation.sin.to_f64() - angle.sin()).abs() < 1e-14, "{k}");
-            assert!((&(&rotation.cos * &rotation.cos) + &(&rotation.sin * &rotation.sin)).is_one());
-        }
-        assert!(angles.rotation(PI / 2.0).cos.is_zero());
+    fn well_known_angles_have_their_well_known_values() {
+        let angle = |degrees: f64| Angles::default().rotation(degrees.to_radians());
+        assert_eq!(angle(90.0), Rotation { cos: Number::ZERO, sin: Number::ONE });
+        assert_eq!(angle(-180.0), Rotation { cos: -Number::ONE, sin: Number::ZERO });
+        assert_eq!(angle(45.0), Rotation { cos: half(Number::root_2()), sin: half(Number::root_2()) });
+        assert_eq!(angle(-30.0), Rotation { cos: half(Number::root_3()), sin: -half(Number::ONE) });
+        // cos 36 - cos 72 = 1/2
+        assert_eq!(angle(36.0).cos - angle(72.0).cos, half(Number::ONE));
+        assert_eq!(angle(90.0).cos.real(), 0.0);
+        assert_eq!(angle(36.0).cos.real(), 36.0_f64.to_radians().cos());
     }
 
     #[test]
     fn a_general_angle_is_a_true_rotation_within_rounding() {
         for angle in [0.3, -1.1, 2.0_f64.sqrt(), 3.0, 1e-5] {
-            let rotation = Angles::of([angle]).rotation(angle);
-            assert!((rotation.cos.to_f64() - angle.cos()).abs() < 3e-16);
-            assert!((rotation.sin.to_f64() - angle.sin()).abs() < 3e-16);
-            assert!((&(&rotation.cos * &rotation.cos) + &(&rotation.sin * &rotation.sin)).is_one());
+            let rotation = rational_rotation(angle);
+            assert!((rotation.cos.real() - angle.cos()).abs() < 1e-15);
+            assert!((rotation.sin.real() - angle.sin()).abs() < 1e-15);
+            assert_eq!(rotation.cos * rotation.cos + rotation.sin * rotation.sin, Number::ONE);
         }
     }
 
@@ -162,9 +175,8 @@ mod tests {
             [[0.3, 0.2, -0.5], [PI / 9.0, 7.0 * PI / 18.0, -PI / 2.0], [0.1, PI / 6.0 - 0.1, -PI / 6.0]]
         {
             let angles = Angles::of(sum);
-            let all =
-                sum.iter().fold(Rotation::none(), |turned, &angle| turned.then(&angles.rotation(angle)));
-            assert_eq!(all, Rotation::none(), "{sum:?}");
+            let all = sum.iter().fold(Rotation::NONE, |turned, &angle| turned.then(angles.rotation(angle)));
+            assert_eq!(all, Rotation::NONE, "{sum:?}");
         }
     }
 }

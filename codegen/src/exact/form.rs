@@ -1,8 +1,8 @@
 //! Exact numbers that remember how they are written in symbols of the table.
 
-use super::surd::{Surd, write_part};
-use num_traits::{One, Signed};
+use super::Number;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fmt;
 use std::sync::Arc;
 
@@ -20,11 +20,14 @@ enum Symbol {
 /// Symbols with their powers, ascending symbol, no power 0.
 type Monomial = Vec<(Symbol, i32)>;
 
-/// A number with its expression: a sum of products of symbols. Two of them are equal where their values are.
+/// Longest sum that is kept in symbols; a longer one says less than its value does.
+const MAX_TERMS: usize = 24;
+
+/// A number with its expression: a sum of products of symbols.
 #[derive(Debug, Clone, Default)]
 pub struct Form {
-    value: Surd,
-    terms: BTreeMap<Monomial, Surd>,
+    value: Number,
+    terms: BTreeMap<Monomial, Number>,
 }
 
 impl Form {
@@ -35,33 +38,33 @@ impl Form {
 
     /// 1.
     pub fn one() -> Form {
-        Form::number(Surd::one())
+        Form::number(Number::ONE)
     }
 
     /// A number without symbols.
-    pub fn number(value: Surd) -> Form {
-        let terms = if value.is_zero() { BTreeMap::new() } else { [(Vec::new(), value.clone())].into() };
+    pub fn number(value: Number) -> Form {
+        let terms = if value.is_zero() { BTreeMap::new() } else { [(Vec::new(), value)].into() };
         Form { value, terms }
     }
 
     /// A symbol and what it stands for.
-    pub fn named(name: &str, value: Surd) -> Form {
+    pub fn named(name: &str, value: Number) -> Form {
         Form::symbol(Symbol::Named(name.into()), value)
     }
 
     /// Cosine and sine of an angle that is written `angle`.
-    pub fn cos_sin(angle: &str, cos: Surd, sin: Surd) -> (Form, Form) {
+    pub fn cos_sin(angle: &str, cos: Number, sin: Number) -> (Form, Form) {
         let angle: Arc<str> = angle.into();
         (Form::symbol(Symbol::Cos(angle.clone()), cos), Form::symbol(Symbol::Sin(angle), sin))
     }
 
-    fn symbol(symbol: Symbol, value: Surd) -> Form {
-        Form { value, terms: [(vec![(symbol, 1)], Surd::one())].into() }
+    fn symbol(symbol: Symbol, value: Number) -> Form {
+        Form { value, terms: [(vec![(symbol, 1)], Number::ONE)].into() }
     }
 
     /// The number.
-    pub fn value(&self) -> &Surd {
-        &self.value
+    pub fn value(&self) -> Number {
+        self.value
     }
 
     /// Whether the number is 0, however it is written.
@@ -77,25 +80,25 @@ impl Form {
         if self.is_zero() {
             return other.clone();
         }
-        let mut sum = Form { value: &self.value + &other.value, terms: self.terms.clone() };
+        let mut sum = Form { value: self.value + other.value, terms: self.terms.clone() };
         for (monomial, coefficient) in &other.terms {
-            sum.add_term(monomial.clone(), coefficient);
+            sum.add_term(monomial.clone(), *coefficient);
         }
-        sum
+        sum.bounded()
     }
 
     /// Difference.
     pub fn minus(&self, other: &Form) -> Form {
-        self.plus(&other.scaled(&Surd::integer(-1)))
+        self.plus(&other.scaled(-Number::ONE))
     }
 
     /// Product with a number.
-    pub fn scaled(&self, factor: &Surd) -> Form {
+    pub fn scaled(&self, factor: Number) -> Form {
         if factor.is_zero() {
             return Form::zero();
         }
-        let terms = self.terms.iter().map(|(monomial, c)| (monomial.clone(), c * factor)).collect();
-        Form { value: &self.value * factor, terms }
+        let terms = self.terms.iter().map(|(monomial, c)| (monomial.clone(), *c * factor)).collect();
+        Form { value: self.value * factor, terms }
     }
 
     /// Product.
@@ -103,68 +106,77 @@ impl Form {
         if self.is_zero() || other.is_zero() {
             return Form::zero();
         }
-        let mut product = Form { value: &self.value * &other.value, terms: BTreeMap::new() };
+        let mut product = Form { value: self.value * other.value, terms: BTreeMap::new() };
         for (a, x) in &self.terms {
             for (b, y) in &other.terms {
-                product.add_product(a, b, &(x * y));
+                product.add_product(a, b, *x * *y);
             }
         }
-        product
+        product.bounded()
     }
 
     /// Quotient, in symbols where the divisor is one product; `None` for a division by 0.
     pub fn over(&self, divisor: &Form) -> Option<Form> {
-        let value = &self.value * &divisor.value.inverse()?;
+        let inverse_value = divisor.value.inverse()?;
         let mut terms = divisor.terms.iter();
         match (terms.next(), terms.next()) {
             (Some((monomial, coefficient)), None) => {
                 let below = monomial.iter().map(|(symbol, power)| (symbol.clone(), -power)).collect();
-                let inverse =
-                    Form { value: divisor.value.inverse()?, terms: [(below, coefficient.inverse()?)].into() };
+                let inverse = Form { value: inverse_value, terms: [(below, coefficient.inverse()?)].into() };
                 Some(self.times(&inverse))
             }
-            _ => Some(Form::number(value)),
+            _ => Some(Form::number(self.value * inverse_value)),
         }
     }
 
-    fn add_term(&mut self, monomial: Monomial, coefficient: &Surd) {
-        let slot = self.terms.entry(monomial).or_default();
-        *slot = &*slot + coefficient;
-        if slot.is_zero() {
-            self.terms.retain(|_, c| !c.is_zero());
+    fn bounded(self) -> Form {
+        if self.terms.len() > MAX_TERMS { Form::number(self.value) } else { self }
+    }
+
+    fn add_term(&mut self, monomial: Monomial, coefficient: Number) {
+        match self.terms.entry(monomial) {
+            Entry::Vacant(slot) => _ = slot.insert(coefficient),
+            Entry::Occupied(mut slot) => {
+                let sum = *slot.get() + coefficient;
+                if sum.is_zero() {
+                    slot.remove();
+                } else {
+                    slot.insert(sum);
+                }
+            }
         }
     }
 
-    /// Adds a product of two monomials, with sin^2 written as 1 - cos^2.
-    fn add_product(&mut self, a: &Monomial, b: &Monomial, coefficient: &Surd) {
+    /// Adds a product of two monomials, with cos^2 written as 1 - sin^2.
+    fn add_product(&mut self, a: &[(Symbol, i32)], b: &[(Symbol, i32)], coefficient: Number) {
         let mut product: BTreeMap<&Symbol, i32> = BTreeMap::new();
         for (symbol, power) in a.iter().chain(b) {
             *product.entry(symbol).or_default() += power;
         }
-        let monomial: Monomial = product
-            .into_iter()
-            .filter(|&(_, power)| power != 0)
-            .map(|(symbol, power)| (symbol.clone(), power))
-            .collect();
-        let square =
-            monomial.iter().position(|(symbol, power)| matches!(symbol, Symbol::Sin(_)) && *power >= 2);
-        let Some(k) = square else { return self.add_term(monomial, coefficient) };
-        let Symbol::Sin(angle) = &monomial[k].0 else { return };
-        let cos_squared = vec![(Symbol::Cos(angle.clone()), 2)];
-        let mut rest = monomial.clone();
-        rest[k].1 -= 2;
-        rest.retain(|&(_, power)| power != 0);
-        self.add_product(&rest, &Vec::new(), coefficient);
-        self.add_product(&rest, &cos_squared, &-coefficient);
+        let mut monomial: Monomial =
+            product.into_iter().map(|(symbol, power)| (symbol.clone(), power)).collect();
+        monomial.retain(|&(_, power)| power != 0);
+        let square = monomial.iter_mut().find_map(|(symbol, power)| match symbol {
+            Symbol::Cos(angle) if *power >= 2 => {
+                *power -= 2;
+                Some(Symbol::Sin(angle.clone()))
+            }
+            _ => None,
+        });
+        match square {
+            None => self.add_term(monomial, coefficient),
+            Some(sine) => {
+                self.add_product(&monomial, &[], coefficient);
+                self.add_product(&monomial, &[(sine, 2)], -coefficient);
+            }
+        }
     }
 
-    /// `coefficient * what` for a sum: a sign, then the text without one. A coefficient that is a sum is bracketed.
+    /// `coefficient * what` as a term of a sum: its sign, and the text without it. A coefficient of several terms is
+    /// bracketed.
     pub fn signed_product(&self, what: &str) -> (char, String) {
-        // Symbols can cancel in value alone; then the number is all there is to say.
-        let parts = Parts(self);
-        let text = parts.to_string();
-        let several = self.terms.values().map(|c| c.terms().len()).sum::<usize>() > 1;
-        if several {
+        let text = self.to_string();
+        if with_cosines(&self.terms).len() > 1 {
             return ('+', format!("({text})*{what}"));
         }
         let (sign, bare) = match text.strip_prefix('-') {
@@ -175,62 +187,113 @@ impl Form {
     }
 }
 
+/// `d3^2 + 2*rl3*sin(alpha)`.
 impl fmt::Display for Form {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Parts(self).fmt(f)
-    }
-}
-
-struct Parts<'a>(&'a Form);
-
-/// One product of the sum, without its sign.
-struct Part<'a>(u8, num_rational::BigRational, &'a Monomial);
-
-impl fmt::Display for Part<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Part(root, coefficient, monomial) = self;
-        let unit = *root == 0 && coefficient.is_one();
-        if !unit || monomial.is_empty() {
-            write_part(f, *root, coefficient)?;
-        }
-        for (k, (symbol, power)) in monomial.iter().enumerate() {
-            match (k > 0 || !unit, *power < 0) {
-                (_, true) if k == 0 && unit => f.write_str("1/")?,
-                (_, true) => f.write_str("/")?,
-                (true, false) => f.write_str("*")?,
-                (false, false) => {}
-            }
-            match symbol {
-                Symbol::Named(name) => f.write_str(name)?,
-                Symbol::Cos(angle) => write!(f, "cos({angle})")?,
-                Symbol::Sin(angle) => write!(f, "sin({angle})")?,
-            }
-            if power.abs() != 1 {
-                write!(f, "^{}", power.abs())?;
-            }
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for Parts<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.0.terms.is_empty() {
+        if self.terms.is_empty() {
             return f.write_str("0");
         }
-        let mut first = true;
-        for (monomial, coefficient) in self.0.terms.iter().rev() {
-            for (root, a) in coefficient.terms() {
-                let sign = match (first, a.is_negative()) {
-                    (true, true) => "-",
-                    (true, false) => "",
-                    (false, true) => " - ",
-                    (false, false) => " + ",
-                };
-                write!(f, "{sign}{}", Part(*root, a.abs(), monomial))?;
-                first = false;
+        for (k, (monomial, coefficient)) in with_cosines(&self.terms).iter().rev().enumerate() {
+            let text = written(monomial, *coefficient);
+            match (k, text.strip_prefix('-')) {
+                (0, _) => f.write_str(&text)?,
+                (_, Some(bare)) => write!(f, " - {bare}")?,
+                (_, None) => write!(f, " + {text}")?,
             }
         }
         Ok(())
+    }
+}
+
+/// The sum with every x - x sin^2 in it as x cos^2.
+fn with_cosines(terms: &BTreeMap<Monomial, Number>) -> BTreeMap<Monomial, Number> {
+    let mut terms = terms.clone();
+    let pair = |terms: &BTreeMap<Monomial, Number>| {
+        terms.iter().find_map(|(monomial, &coefficient)| {
+            monomial.iter().enumerate().find_map(|(k, (symbol, power))| {
+                let Symbol::Sin(angle) = symbol else { return None };
+                let mut bare = monomial.clone();
+                bare[k].1 -= 2;
+                bare.retain(|(_, power)| *power != 0);
+                let opposite = *power >= 2 && terms.get(&bare) == Some(&-coefficient);
+                let mut cosine = bare.clone();
+                cosine.push((Symbol::Cos(angle.clone()), 2));
+                cosine.sort();
+                opposite.then(|| (monomial.clone(), bare, cosine))
+            })
+        })
+    };
+    while let Some((sine, bare, cosine)) = pair(&terms) {
+        terms.remove(&sine);
+        if let Some(coefficient) = terms.remove(&bare) {
+            terms.insert(cosine, coefficient);
+        }
+    }
+    terms
+}
+
+/// One product of the sum.
+fn written(monomial: &Monomial, coefficient: Number) -> String {
+    let one = |(symbol, power): &(Symbol, i32)| {
+        let text = match symbol {
+            Symbol::Named(name) => name.to_string(),
+            Symbol::Cos(angle) => format!("cos({angle})"),
+            Symbol::Sin(angle) => format!("sin({angle})"),
+        };
+        if power.abs() == 1 { text } else { format!("{text}^{}", power.abs()) }
+    };
+    let above: Vec<String> = monomial.iter().filter(|(_, power)| *power > 0).map(one).collect();
+    let below: String =
+        monomial.iter().filter(|(_, power)| *power < 0).map(|p| format!("/{}", one(p))).collect();
+    let number = coefficient.to_string();
+    let factors = match (number.as_str(), above.is_empty()) {
+        (_, true) => number,
+        ("1", _) => above.join("*"),
+        ("-1", _) => format!("-{}", above.join("*")),
+        _ => format!("{number}*{}", above.join("*")),
+    };
+    factors + &below
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::decimal;
+
+    fn symbol(name: &str, value: f64) -> Form {
+        Form::named(name, decimal(value).into())
+    }
+
+    #[test]
+    fn sums_of_products_read_as_they_are_written_in_a_table() {
+        let (d, r) = (symbol("d3", 0.5), symbol("rl3", -0.25));
+        let square = d.plus(&r).times(&d.plus(&r));
+        assert_eq!(square.to_string(), "rl3^2 + d3^2 + 2*d3*rl3");
+        assert_eq!(square.value().real(), 0.0625);
+        assert_eq!(d.minus(&r.times(&d)).to_string(), "-d3*rl3 + d3");
+        assert_eq!(d.over(&r.times(&r)).map(|f| f.to_string()), Some("d3/rl3^2".to_owned()));
+        assert_eq!(d.minus(&d).to_string(), "0");
+    }
+
+    #[test]
+    fn squares_of_sine_and_cosine_are_written_the_short_way() {
+        let (cos, sin) = Form::cos_sin("lean", decimal(0.6).into(), decimal(0.8).into());
+        assert_eq!(Form::one().minus(&cos.times(&cos)).to_string(), "sin(lean)^2");
+        assert_eq!(cos.times(&cos).plus(&sin.times(&sin)).to_string(), "1");
+        assert_eq!(cos.times(&cos).times(&sin).to_string(), "cos(lean)^2*sin(lean)");
+    }
+
+    #[test]
+    fn a_difference_of_different_symbols_with_one_value_is_zero() {
+        let difference = symbol("d3", 0.225).minus(&symbol("rl4", 0.225));
+        assert!(difference.is_zero());
+    }
+
+    #[test]
+    fn coefficients_carry_their_sign_before_what_they_multiply() {
+        let d = symbol("d3", 0.5);
+        assert_eq!(Form::one().signed_product("YY2"), ('+', "YY2".to_owned()));
+        assert_eq!(d.scaled(Number::from(-2)).signed_product("MZ3"), ('-', "2*d3*MZ3".to_owned()));
+        assert_eq!(d.plus(&Form::one()).signed_product("M3"), ('+', "(d3 + 1)*M3".to_owned()));
     }
 }

@@ -3,12 +3,12 @@
 
 mod angle;
 mod form;
+mod number;
 mod rational;
 mod span;
-mod surd;
 
 pub use angle::{Angles, Rotation};
 pub use form::Form;
+pub use number::Number;
 pub use rational::{decimal, determinant, inverse};
 pub use span::Span;
-pub use surd::Surd;
