@@ -1,1 +1,3 @@
 //! dynid.
+
+pub mod models;

@@ -1,10 +1,14 @@
 //! A robot's dynamics as linear forms in its parameters: the trait that generated and recursive models share.
 
+mod block;
+mod lanes;
 mod number;
 mod recursive;
 mod robot;
 mod standard;
 
+pub use block::{array, array_mut, evaluate_block};
+pub use lanes::{LANES, Lanes};
 pub use number::Number;
 pub use recursive::{
     Link, MAX_FRAMES, RecursiveModel, RecursiveModelError, Row, standard_energy, standard_idm, standard_power,
@@ -32,6 +36,19 @@ pub struct States<'a> {
     pub dq: &'a [&'a [f64]],
     /// Accelerations.
     pub ddq: &'a [&'a [f64]],
+}
+
+/// Arithmetic of one evaluation of a generated function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Operations {
+    /// `h`, `dh`, `IDM` or `M, N`.
+    pub function: &'static str,
+    /// Multiplications.
+    pub multiplications: usize,
+    /// Additions, subtractions and changes of sign.
+    pub additions: usize,
+    /// Sine and cosine of one angle, taken together.
+    pub sine_cosine_pairs: usize,
 }
 
 /// The dynamics of one robot in its base parameters chi (n joints, nb parameters).

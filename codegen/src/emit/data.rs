@@ -1,0 +1,146 @@
+//! The robot as numbers, as statics of the generated module.
+
+use crate::base::BaseSet;
+use crate::mechanics::Equations;
+use crate::robot::{JointKind, Robot};
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+/// `static ROBOT` and `static PATTERN`.
+pub fn statics(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
+    let (name, description) = (&robot.name, super::header::one_line(&robot.description));
+    let gravity = robot.gravity.map(float);
+    let frames = frames(robot);
+    let gear = floats(robot.drive.gear.iter().flatten());
+    let coupled = borrowed(robot.drive.coupled_friction.iter().map(|&m| index(m)));
+    let limits = limits(robot);
+    let standard = borrowed(set.standard.iter().map(|p| {
+        let (name, kind, frame) = (&p.name, format_ident!("{}", format!("{:?}", p.kind)), index(p.frame));
+        quote! {
+            StandardParameter { name: Cow::Borrowed(#name), kind: ParameterKind::#kind, frame: #frame }
+        }
+    }));
+    let base = borrowed(set.base.iter().map(|p| {
+        let (name, relation, unit, standard) = (&p.name, &p.relation, &p.unit, index(p.standard));
+        let combination = borrowed(p.combination.iter().map(|&(k, c)| {
+            let (k, c) = (index(k), float(c));
+            quote!((#k, #c))
+        }));
+        quote! {
+            BaseParameter {
+                name: Cow::Borrowed(#name),
+                standard: #standard,
+                combination: #combination,
+                relation: Cow::Borrowed(#relation),
+                unit: Cow::Borrowed(#unit),
+            }
+        }
+    }));
+    let nominal = nominal(robot, set);
+    let pattern = pattern(equations);
+    quote! {
+        /// The robot.
+        pub static ROBOT: Robot = Robot {
+            name: Cow::Borrowed(#name),
+            description: Cow::Borrowed(#description),
+            gravity: [#(#gravity),*],
+            frames: #frames,
+            drive: Drive { gear: #gear, coupled_friction: #coupled },
+            limits: #limits,
+            standard: #standard,
+            base: #base,
+            nominal: #nominal,
+        };
+        #pattern
+    }
+}
+
+fn frames(robot: &Robot) -> TokenStream {
+    borrowed(robot.frames.iter().map(|frame| {
+        let parent = match robot.frames.iter().position(|f| f.j == frame.parent) {
+            Some(k) => {
+                let k = index(k);
+                quote!(Some(#k))
+            }
+            None => quote!(None),
+        };
+        let kind = match frame.kind {
+            JointKind::Revolute => quote!(Revolute),
+            JointKind::Prismatic => quote!(Prismatic),
+            JointKind::Fixed => quote!(Fixed),
+        };
+        let [gamma, b, alpha, d, theta, r] =
+            [&frame.gamma, &frame.b, &frame.alpha, &frame.d, &frame.theta, &frame.r]
+                .map(|e| float(e.value()));
+        quote! {
+            Frame {
+                parent: #parent, kind: JointKind::#kind,
+                gamma: #gamma, b: #b, alpha: #alpha, d: #d, theta: #theta, r: #r,
+            }
+        }
+    }))
+}
+
+fn limits(robot: &Robot) -> TokenStream {
+    let pairs = |values: &[[f64; 2]]| {
+        borrowed(values.iter().map(|&[low, high]| {
+            let (low, high) = (float(low), float(high));
+            quote!([#low, #high])
+        }))
+    };
+    let limits = &robot.limits;
+    let [position, velocity, acceleration, torque] =
+        [&limits.position, &limits.velocity, &limits.acceleration, &limits.torque].map(|v| pairs(v));
+    quote! {
+        Limits { position: #position, velocity: #velocity, acceleration: #acceleration, torque: #torque }
+    }
+}
+
+fn nominal(robot: &Robot, set: &BaseSet) -> TokenStream {
+    let Some(nominal) = &robot.nominal else { return quote!(None) };
+    let value = |name: &str| nominal.standard.iter().find(|(n, _)| n == name).map_or(0.0, |(_, x)| *x);
+    let standard: Vec<f64> = set.standard.iter().map(|p| value(&p.name)).collect();
+    let lists =
+        [&standard, &nominal.kp, &nominal.kd, &nominal.ki, &nominal.position_noise, &nominal.torque_noise];
+    let [standard, kp, kd, ki, position_noise, torque_noise] = lists.map(|v| floats(v.iter()));
+    quote! {
+        Some(Nominal {
+            standard: #standard,
+            kp: #kp,
+            kd: #kd,
+            ki: #ki,
+            position_noise: #position_noise,
+            torque_noise: #torque_noise,
+        })
+    }
+}
+
+fn pattern(equations: &Equations) -> TokenStream {
+    let entries = equations.pattern();
+    let rows = (0..=equations.idm.len()).map(|i| index(entries.iter().filter(|e| e.0 < i).count()));
+    let rows = borrowed(rows);
+    let columns = borrowed(entries.iter().map(|e| index(e.1)));
+    quote! {
+        /// The entries of IDM that are not identically zero.
+        pub static PATTERN: Pattern = Pattern { rows: #rows, columns: #columns };
+    }
+}
+
+fn borrowed(items: impl Iterator<Item = TokenStream>) -> TokenStream {
+    quote!(Cow::Borrowed(&[#(#items),*]))
+}
+
+fn floats<'a>(values: impl Iterator<Item = &'a f64>) -> TokenStream {
+    borrowed(values.map(|&x| float(x)))
+}
+
+/// A number with its sign.
+pub fn float(value: f64) -> TokenStream {
+    let literal = Literal::f64_unsuffixed(value.abs());
+    if value < 0.0 { quote!(-#literal) } else { quote!(#literal) }
+}
+
+fn index(value: usize) -> TokenStream {
+    let literal = Literal::usize_unsuffixed(value);
+    quote!(#literal)
+}

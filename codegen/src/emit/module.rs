@@ -1,0 +1,221 @@
+//! The module of one robot.
+
+use super::function::{Output, Signature, function};
+use super::program::InputNames;
+use super::{comments, data, header};
+use crate::base::BaseSet;
+use crate::mechanics::Equations;
+use crate::robot::Robot;
+use crate::symbolic::Expr;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The source of a robot's module, formatted.
+pub fn module(robot: &Robot, set: &BaseSet, equations: &Equations) -> Result<String, syn::Error> {
+    let tokens = tokens(robot, set, equations);
+    let file = syn::parse2(tokens)?;
+    let code = comments::restore(&prettyplease::unparse(&file));
+    Ok(format!("{}\n{code}", header::header(robot, set, equations)))
+}
+
+fn tokens(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
+    let n = Literal::usize_unsuffixed(equations.idm.len());
+    let nb = Literal::usize_unsuffixed(set.base.len());
+    let entries = Literal::usize_unsuffixed(equations.pattern().len());
+    let statics = data::statics(robot, set, equations);
+    let functions = functions(robot, set, equations);
+    let model = model();
+    let operations = operations(equations);
+    quote! {
+        #![allow(non_snake_case, unused_variables, clippy::all)]
+
+        use dynid_runtime::model::{
+            BaseParameter, Drive, Frame, JointKind, Limits, Model, Nominal, Number, Operations, ParameterKind, Pattern,
+            Robot, StandardParameter, States, array, array_mut, evaluate_block,
+        };
+        use std::borrow::Cow;
+
+        /// Number of joints.
+        pub const N: usize = #n;
+        /// Number of base parameters.
+        pub const NB: usize = #nb;
+        /// Number of entries of IDM that are not identically zero.
+        pub const ENTRIES: usize = #entries;
+
+        #statics
+        #operations
+        #functions
+        #model
+    }
+}
+
+fn operations(equations: &Equations) -> TokenStream {
+    let counts = equations.counts();
+    let rows = [("h", counts.energy), ("dh", counts.power), ("IDM", counts.idm), ("M, N", counts.forward)];
+    let rows = rows.map(|(function, c)| {
+        let [multiplications, additions, pairs] =
+            [c.multiplications, c.additions, c.sincos].map(Literal::usize_unsuffixed);
+        quote! {
+            Operations {
+                function: #function,
+                multiplications: #multiplications,
+                additions: #additions,
+                sine_cosine_pairs: #pairs,
+            }
+        }
+    });
+    quote! {
+        /// What one evaluation costs.
+        pub static OPERATIONS: [Operations; 4] = [#(#rows),*];
+    }
+}
+
+fn functions(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
+    let joints = robot.joint_frames().iter().map(|&f| robot.frames[f].j).collect();
+    let inputs = InputNames { joints, parameters: set.base.iter().map(|p| p.name.clone()).collect() };
+    let g = &equations.graph;
+    let energy = function(
+        g,
+        &inputs,
+        &Signature {
+            name: "energy",
+            doc: "Energy row h(q, dq), J per unit parameter.",
+            arguments: &[("q", "N"), ("dq", "N")],
+            results: &[("h", "NB")],
+        },
+        &row(robot, set, &equations.energy),
+    );
+    let power = function(
+        g,
+        &inputs,
+        &Signature {
+            name: "power",
+            doc: "Power row dh(q, dq, ddq), W per unit parameter.",
+            arguments: &[("q", "N"), ("dq", "N"), ("ddq", "N")],
+            results: &[("dh", "NB")],
+        },
+        &row(robot, set, &equations.power),
+    );
+    let idm = function(
+        g,
+        &inputs,
+        &Signature {
+            name: "idm",
+            doc: "Entries of the inverse dynamic regressor IDM(q, dq, ddq), N.m or N per unit parameter.",
+            arguments: &[("q", "N"), ("dq", "N"), ("ddq", "N")],
+            results: &[("idm", "ENTRIES")],
+        },
+        &regressor(robot, set, equations),
+    );
+    let forward = function(
+        g,
+        &inputs,
+        &Signature {
+            name: "mass_and_bias",
+            doc: "Mass matrix M(q), row by row, and centrifugal, Coriolis and gravity torques N(q, dq).",
+            arguments: &[("chi", "NB"), ("q", "N"), ("dq", "N")],
+            results: &[("mass", "N * N"), ("bias", "N")],
+        },
+        &forward(equations),
+    );
+    quote! { #energy #power #idm #forward }
+}
+
+/// One value per base parameter; what is zero is written too.
+fn row(robot: &Robot, set: &BaseSet, values: &[Expr]) -> Vec<Output> {
+    let output = |(index, &value): (usize, &Expr)| {
+        let j = robot.frames[set.standard[set.base[index].standard].frame].j;
+        Output { index, result: 0, value, group: format!("Link {j}.") }
+    };
+    values.iter().enumerate().map(output).collect()
+}
+
+/// Link by link, and for each link from its own joint inwards, so that the wrenches of its columns stay at hand.
+fn regressor(robot: &Robot, set: &BaseSet, equations: &Equations) -> Vec<Output> {
+    let pattern = equations.pattern();
+    let joint_frames = robot.joint_frames();
+    let place = |&(i, k): &(usize, usize)| {
+        let standard = &set.standard[set.base[k].standard];
+        (standard.frame, standard.kind >= crate::base::ParameterKind::Ia, std::cmp::Reverse(i), k)
+    };
+    let mut order: Vec<usize> = (0..pattern.len()).collect();
+    order.sort_by_key(|&e| place(&pattern[e]));
+    order
+        .into_iter()
+        .map(|index| {
+            let (i, k) = pattern[index];
+            let frame = set.standard[set.base[k].standard].frame;
+            let (row, link) = (robot.frames[joint_frames[i]].j, robot.frames[frame].j);
+            let group = format!("Row {row}, link {link}.");
+            Output { index, result: 0, value: equations.idm[i][k], group }
+        })
+        .collect()
+}
+
+fn forward(equations: &Equations) -> Vec<Output> {
+    let n = equations.bias.len();
+    let mut outputs = Vec::new();
+    for i in (0..n).rev() {
+        for k in 0..=i {
+            let value = equations.mass[i * (i + 1) / 2 + k];
+            let mut push = |index| {
+                let group = "Mass matrix.".to_owned();
+                outputs.push(Output { index, result: 0, value, group });
+            };
+            push(i * n + k);
+            if i != k {
+                push(k * n + i);
+            }
+        }
+    }
+    for (index, &value) in equations.bias.iter().enumerate().rev() {
+        outputs.push(Output { index, result: 1, value, group: "Bias.".to_owned() });
+    }
+    outputs
+}
+
+fn model() -> TokenStream {
+    quote! {
+        /// The dynamics as a [`Model`].
+        #[derive(Debug, Clone, Copy)]
+        pub struct Dynamics;
+
+        impl Model for Dynamics {
+            fn robot(&self) -> &Robot {
+                &ROBOT
+            }
+
+            fn pattern(&self) -> &Pattern {
+                &PATTERN
+            }
+
+            fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]) {
+                energy(array(q), array(dq), array_mut(h));
+            }
+
+            fn power(&self, q: &[f64], dq: &[f64], ddq: &[f64], dh: &mut [f64]) {
+                power(array(q), array(dq), array(ddq), array_mut(dh));
+            }
+
+            fn idm(&self, q: &[f64], dq: &[f64], ddq: &[f64], entries: &mut [f64]) {
+                idm(array(q), array(dq), array(ddq), array_mut(entries));
+            }
+
+            fn idm_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
+                evaluate_block::<N, ENTRIES>([states.q, states.dq, states.ddq], stride, out, |[q, dq, ddq], values| idm(q, dq, ddq, values));
+            }
+
+            fn power_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
+                evaluate_block::<N, NB>([states.q, states.dq, states.ddq], stride, out, |[q, dq, ddq], values| power(q, dq, ddq, values));
+            }
+
+            fn energy_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
+                evaluate_block::<N, NB>([states.q, states.dq, states.dq], stride, out, |[q, dq, _], values| energy(q, dq, values));
+            }
+
+            fn mass_and_bias(&self, chi: &[f64], q: &[f64], dq: &[f64], mass: &mut [f64], bias: &mut [f64]) {
+                mass_and_bias(array(chi), array(q), array(dq), array_mut(mass), array_mut(bias));
+            }
+        }
+    }
+}

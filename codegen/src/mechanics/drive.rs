@@ -1,0 +1,109 @@
+//! Rotor inertia, friction and offsets, with motors that several joints turn: (9), (25), (26).
+
+use super::model::ModelError;
+use crate::base::{ParameterKind, StandardParameter};
+use crate::robot::Drive;
+use crate::symbolic::{Expr, Graph, Symbol};
+use num_rational::BigRational;
+use num_traits::ToPrimitive;
+
+/// The transmission per unit of its diagonal, and the quadratic forms of the rotor inertias.
+#[derive(Debug, Clone)]
+pub struct Transmission {
+    /// N[m][j] / N[m][m].
+    relative: Vec<Vec<f64>>,
+    /// A_j: ddq -> torques per unit Ia_j.
+    inertia: Vec<Vec<Vec<f64>>>,
+}
+
+impl Transmission {
+    /// From the gear matrix (motor speed = gear * joint speed).
+    pub fn new(drive: &Drive) -> Result<Self, ModelError> {
+        for (m, row) in drive.gear.iter().enumerate() {
+            if row[m] == 0.0 {
+                return Err(ModelError::ZeroGear { motor: m + 1 });
+            }
+        }
+        let relative =
+            drive.gear.iter().enumerate().map(|(m, row)| row.iter().map(|x| x / row[m]).collect()).collect();
+        let value = |x: &BigRational| x.to_f64().unwrap_or(f64::NAN);
+        let inertia = drive
+            .rotor_matrices()
+            .iter()
+            .map(|form| form.iter().map(|row| row.iter().map(value).collect()).collect())
+            .collect();
+        Ok(Transmission { relative, inertia })
+    }
+
+    /// A_j of the rotor inertia Ia_j, row-major.
+    pub fn rotor_form(&self, joint: usize) -> &[Vec<f64>] {
+        &self.inertia[joint]
+    }
+
+    /// Torques of all joints per unit of a drive parameter of joint `joint`.
+    pub fn column(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Vec<Expr> {
+        let n = self.relative.len();
+        let mut column = vec![Graph::ZERO; n];
+        let dq = g.symbol(Symbol::Velocity(joint));
+        match parameter.kind {
+            ParameterKind::Ia => {
+                for (row, weights) in self.inertia[joint].iter().enumerate() {
+                    column[row] = weighted(g, weights, Symbol::Acceleration);
+                }
+            }
+            ParameterKind::Fv => column[joint] = dq,
+            ParameterKind::Fc => column[joint] = g.sign(dq),
+            ParameterKind::Off => column[joint] = Graph::ONE,
+            ParameterKind::Fvm | ParameterKind::Fcm => {
+                let speed = weighted(g, &self.relative[joint], Symbol::Velocity);
+                let level = if parameter.kind == ParameterKind::Fvm { speed } else { g.sign(speed) };
+                for (row, &share) in self.relative[joint].iter().enumerate() {
+                    column[row] = g.scale(share, level);
+                }
+            }
+            _ => {}
+        }
+        column
+    }
+
+    /// Kinetic energy per unit of a rotor inertia; friction and offsets store none.
+    pub fn energy(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Expr {
+        if parameter.kind != ParameterKind::Ia {
+            return Graph::ZERO;
+        }
+        let mut double = Graph::ZERO;
+        for (row, weights) in self.inertia[joint].iter().enumerate() {
+            let momentum = weighted(g, weights, Symbol::Velocity);
+            let dq = g.symbol(Symbol::Velocity(row));
+            let term = g.mul(dq, momentum);
+            double = g.add(double, term);
+        }
+        g.scale(0.5, double)
+    }
+
+    /// Power per unit of a drive parameter: dqT times its column, motor by motor.
+    pub fn power(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Expr {
+        if matches!(parameter.kind, ParameterKind::Fvm | ParameterKind::Fcm) {
+            let speed = weighted(g, &self.relative[joint], Symbol::Velocity);
+            let level = if parameter.kind == ParameterKind::Fvm { speed } else { g.sign(speed) };
+            return g.mul(speed, level);
+        }
+        let mut total = Graph::ZERO;
+        for (row, entry) in self.column(g, parameter, joint).into_iter().enumerate() {
+            let dq = g.symbol(Symbol::Velocity(row));
+            let term = g.mul(dq, entry);
+            total = g.add(total, term);
+        }
+        total
+    }
+}
+
+fn weighted(g: &mut Graph, weights: &[f64], symbol: impl Fn(usize) -> Symbol) -> Expr {
+    let mut total = Graph::ZERO;
+    for (joint, &weight) in weights.iter().enumerate() {
+        let s = g.symbol(symbol(joint));
+        let term = g.scale(weight, s);
+        total = g.add(total, term);
+    }
+    total
+}

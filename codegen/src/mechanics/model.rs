@@ -1,0 +1,177 @@
+//! All equations of one robot in one graph.
+
+use super::drive::Transmission;
+use super::energy::{energy, frame_energies, power};
+use super::forward::{bias, mass_matrix};
+use super::geometry::Geometry;
+use super::inverse::{Derivation, inertial_column};
+use super::motion::{frame_motions, screws};
+use crate::base::{BaseSet, ParameterKind};
+use crate::robot::Robot;
+use crate::symbolic::{Expr, Graph, OperationCounts, Point, Symbol};
+
+/// Why a robot has no model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// A motor must turn with its own joint.
+    #[error(
+        "the gear ratio of motor {motor} to its own joint is zero; give a matrix with a diagonal free of zeros"
+    )]
+    ZeroGear {
+        /// Number of the motor, from 1.
+        motor: usize,
+    },
+}
+
+/// Operations of the functions of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModelCounts {
+    /// Energy row h.
+    pub energy: OperationCounts,
+    /// Power row dh.
+    pub power: OperationCounts,
+    /// Inverse dynamic regressor IDM.
+    pub idm: OperationCounts,
+    /// Mass matrix and bias together.
+    pub forward: OperationCounts,
+}
+
+/// The equations of a robot in its base parameters.
+#[derive(Debug, Clone)]
+pub struct Equations {
+    /// Every expression.
+    pub graph: Graph,
+    /// Energy row, one per base parameter.
+    pub energy: Vec<Expr>,
+    /// Power row, one per base parameter.
+    pub power: Vec<Expr>,
+    /// Inverse dynamic regressor: `idm[i][k]`, joint i, base parameter k.
+    pub idm: Vec<Vec<Expr>>,
+    /// Lower triangle of the mass matrix: entry (i, k), k <= i, at i (i + 1) / 2 + k.
+    pub mass: Vec<Expr>,
+    /// Centrifugal, Coriolis and gravity torques.
+    pub bias: Vec<Expr>,
+}
+
+impl Equations {
+    /// Derives everything from the table; of the possible derivations the one with fewer operations is taken.
+    pub fn derive(robot: &Robot, set: &BaseSet) -> Result<Self, ModelError> {
+        let mut best: Option<(usize, Equations)> = None;
+        for merge in [true, false] {
+            for derivation in [Derivation::ScrewsOutward, Derivation::WrenchesInward] {
+                let equations = Equations::derive_as(robot, set, merge, derivation)?;
+                let cost = equations.counts().idm.arithmetic();
+                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    best = Some((cost, equations));
+                }
+            }
+        }
+        match best {
+            Some((_, equations)) => Ok(equations),
+            None => Equations::derive_as(robot, set, true, Derivation::ScrewsOutward),
+        }
+    }
+
+    pub(super) fn derive_as(
+        robot: &Robot,
+        set: &BaseSet,
+        merge: bool,
+        derivation: Derivation,
+    ) -> Result<Self, ModelError> {
+        let transmission = Transmission::new(&robot.drive)?;
+        let mut graph = Graph::new();
+        let g = &mut graph;
+        let geometry = Geometry::new(g, robot, merge);
+        let n = geometry.joint_frames.len();
+        let motions = frame_motions(g, &geometry, true);
+        let screws = screws(g, &geometry);
+        let energies = frame_energies(g, &geometry, &motions);
+        let mut idm = vec![Vec::with_capacity(set.base.len()); n];
+        let (mut h, mut dh) = (Vec::new(), Vec::new());
+        for base in &set.base {
+            let parameter = &set.standard[base.standard];
+            let frame = parameter.frame;
+            let column = match geometry.links[frame].joint {
+                Some(joint) if parameter.kind >= ParameterKind::Ia => {
+                    h.push(transmission.energy(g, parameter, joint));
+                    dh.push(transmission.power(g, parameter, joint));
+                    transmission.column(g, parameter, joint)
+                }
+                _ => {
+                    h.push(energy(g, &motions[frame], &energies[frame], parameter));
+                    dh.push(power(g, &motions[frame], &energies[frame], parameter));
+                    inertial_column(g, &geometry, &motions, &screws, parameter, derivation)
+                }
+            };
+            for (row, entry) in idm.iter_mut().zip(column) {
+                row.push(entry);
+            }
+        }
+        let mut mass = mass_matrix(g, &geometry, set, &screws);
+        for (k, base) in set.base.iter().enumerate() {
+            let parameter = &set.standard[base.standard];
+            if let (ParameterKind::Ia, Some(joint)) = (parameter.kind, geometry.links[parameter.frame].joint)
+            {
+                let chi = g.symbol(Symbol::Parameter(k));
+                for (i, row) in transmission.rotor_form(joint).iter().enumerate() {
+                    for (l, &weight) in row[..=i].iter().enumerate() {
+                        let rotor = g.scale(weight, chi);
+                        let entry = &mut mass[i * (i + 1) / 2 + l];
+                        *entry = g.add(*entry, rotor);
+                    }
+                }
+            }
+        }
+        let bias = bias(g, &geometry, set);
+        let mut equations = Equations { graph, energy: h, power: dh, idm, mass, bias };
+        equations.drop_vanishing_entries();
+        Ok(equations)
+    }
+
+    /// Entries of the regressor whose terms cancel for every state become zero.
+    ///
+    /// Such an entry is an analytic function; one that is zero to rounding at several states drawn at random is zero
+    /// with probability one.
+    fn drop_vanishing_entries(&mut self) {
+        let n = self.idm.len();
+        let outputs = self.idm.concat();
+        let mut largest = vec![0.0_f64; outputs.len()];
+        let mut seed = 1_u64;
+        let mut uniform = || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for _ in 0..8 {
+            let mut signals = || (0..n).map(|_| 2.0 * uniform()).collect();
+            let point = Point { q: signals(), dq: signals(), ddq: signals(), chi: Vec::new() };
+            for (most, value) in largest.iter_mut().zip(self.graph.evaluate(&outputs, &point)) {
+                *most = most.max(value.abs());
+            }
+        }
+        for (entry, most) in self.idm.iter_mut().flatten().zip(largest) {
+            if most < 1e-13 {
+                *entry = Graph::ZERO;
+            }
+        }
+    }
+
+    /// The entries of the regressor that are not identically zero: (joint, base parameter), row by row.
+    pub fn pattern(&self) -> Vec<(usize, usize)> {
+        let mut entries = Vec::new();
+        for (i, row) in self.idm.iter().enumerate() {
+            entries.extend((0..row.len()).filter(|&k| row[k] != Graph::ZERO).map(|k| (i, k)));
+        }
+        entries
+    }
+
+    /// What evaluating each of the generated functions costs.
+    pub fn counts(&self) -> ModelCounts {
+        let count = |outputs: &[Expr]| self.graph.operation_counts(outputs);
+        ModelCounts {
+            energy: count(&self.energy),
+            power: count(&self.power),
+            idm: count(&self.idm.concat()),
+            forward: count(&[self.mass.as_slice(), &self.bias].concat()),
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! The generated models against the recursive engine, an independent engine, and each other.
+#![allow(clippy::unwrap_used)]
+
+use dynid::models;
+use dynid_runtime::model::{JointKind, Model, ParameterKind, RecursiveModel, States};
+
+/// A small linear congruential generator, so that the states never change.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn values(&mut self, count: usize, scale: f64) -> Vec<f64> {
+        (0..count).map(|_| scale * self.unit()).collect()
+    }
+}
+
+/// q, dq and ddq.
+type State = [Vec<f64>; 3];
+
+fn states(model: &dyn Model, count: usize) -> Vec<State> {
+    let n = model.robot().joints();
+    let mut random = Random(n as u64);
+    (0..count).map(|_| [random.values(n, 3.0), random.values(n, 3.0), random.values(n, 8.0)]).collect()
+}
+
+fn recursive(model: &dyn Model) -> RecursiveModel {
+    RecursiveModel::new(model.robot().clone()).unwrap()
+}
+
+/// Row i, column k of IDM, zeros included.
+fn dense_idm(model: &dyn Model, state: &State) -> Vec<Vec<f64>> {
+    let pattern = model.pattern();
+    let mut entries = vec![0.0; pattern.columns.len()];
+    model.idm(&state[0], &state[1], &state[2], &mut entries);
+    let mut dense = vec![vec![0.0; model.robot().base.len()]; model.robot().joints()];
+    for (i, row) in dense.iter_mut().enumerate() {
+        for e in pattern.rows[i]..pattern.rows[i + 1] {
+            row[pattern.columns[e]] = entries[e];
+        }
+    }
+    dense
+}
+
+fn energy(model: &dyn Model, state: &State) -> Vec<f64> {
+    let mut h = vec![0.0; model.robot().base.len()];
+    model.energy(&state[0], &state[1], &mut h);
+    h
+}
+
+fn power(model: &dyn Model, state: &State) -> Vec<f64> {
+    let mut dh = vec![0.0; model.robot().base.len()];
+    model.power(&state[0], &state[1], &state[2], &mut dh);
+    dh
+}
+
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (k, (a, b)) in found.iter().zip(expected).enumerate() {
+        assert!((a - b).abs() <= tolerance * b.abs().max(1.0), "{what}, value {k}: {a} and {b}");
+    }
+}
+
+#[test]
+fn every_function_agrees_with_the_recursive_engine() {
+    for &model in models::all() {
+        let name = &model.robot().name;
+        let (n, nb) = (model.robot().joints(), model.robot().base.len());
+        let reference = recursive(model);
+        let chi = Random(5).values(nb, 1.0);
+        for state in states(model, 20) {
+            let (found, expected) = (dense_idm(model, &state), dense_idm(&reference, &state));
+            for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                assert_close(found, expected, 1e-10, &format!("{name} IDM row {i}"));
+            }
+            assert_close(&energy(model, &state), &energy(&reference, &state), 1e-10, &format!("{name} h"));
+            assert_close(&power(model, &state), &power(&reference, &state), 1e-10, &format!("{name} dh"));
+            let forward = |model: &dyn Model| {
+                let (mut mass, mut bias) = (vec![0.0; n * n], vec![0.0; n]);
+                model.mass_and_bias(&chi, &state[0], &state[1], &mut mass, &mut bias);
+                (mass, bias)
+            };
+            let (found, expected) = (forward(model), forward(&reference));
+            assert_close(&found.0, &expected.0, 1e-10, &format!("{name} M"));
+            assert_close(&found.1, &expected.1, 1e-10, &format!("{name} N"));
+        }
+    }
+}
+
+#[test]
+fn columns_agree_with_an_independent_engine() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference/regressors.json");
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        println!("skipped: {} is not there", path.display());
+        return;
+    };
+    let reference: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let numbers = |value: &serde_json::Value| -> Vec<f64> { serde_json::from_value(value.clone()).unwrap() };
+    let mut compared = 0;
+    for &model in models::all() {
+        let robot = model.robot();
+        let Some(expected) = reference.get(robot.name.as_ref()) else { continue };
+        compared += 1;
+        // The reference lists the ten inertial parameters of the joints' links, and knows no payload frames.
+        let joints = robot.joint_of_frame();
+        let column = |k: usize| {
+            let parameter = &robot.standard[robot.base[k].standard];
+            let moves = robot.frames[parameter.frame].kind != JointKind::Fixed;
+            (parameter.kind <= ParameterKind::M && moves)
+                .then(|| 10 * joints[parameter.frame].unwrap() + parameter.kind as usize)
+        };
+        let inertial: Vec<(usize, usize)> =
+            (0..robot.base.len()).filter_map(|k| column(k).map(|c| (k, c))).collect();
+        assert_eq!(
+            inertial.len() as u64,
+            expected["inertial_base_count"].as_u64().unwrap(),
+            "{}",
+            robot.name
+        );
+        for state in expected["states"].as_array().unwrap() {
+            let at = [numbers(&state["q"]), numbers(&state["dq"]), numbers(&state["ddq"])];
+            let pick = |row: &[f64], from: fn(&(usize, usize)) -> usize| -> Vec<f64> {
+                inertial.iter().map(|pair| row[from(pair)]).collect()
+            };
+            for (i, row) in dense_idm(model, &at).iter().enumerate() {
+                let expected = pick(&numbers(&state["torque"][i]), |p| p.1);
+                assert_close(&pick(row, |p| p.0), &expected, 1e-10, &format!("{} row {i}", robot.name));
+            }
+            let expected = pick(&numbers(&state["energy"]), |p| p.1);
+            assert_close(&pick(&energy(model, &at), |p| p.0), &expected, 1e-10, &format!("{} h", robot.name));
+        }
+    }
+    assert_eq!(compared, 7);
+}
+
+#[test]
+fn power_is_what_the_joint_torques_do() {
+    for &model in models::all() {
+        for state in states(model, 20) {
+            let mut total = vec![0.0; model.robot().base.len()];
+            for (row, dq) in dense_idm(model, &state).iter().zip(&state[1]) {
+                total.iter_mut().zip(row).for_each(|(t, x)| *t += dq * x);
+            }
+            assert_close(&power(model, &state), &total, 1e-11, &format!("{} dh", model.robot().name));
+        }
+    }
+}
+
+#[test]
+fn power_without_friction_is_the_rate_of_energy() {
+    for &model in models::all() {
+        let robot = model.robot();
+        for [q, dq, ddq] in states(model, 10) {
+            let at = |t: f64| {
+                let q = q.iter().zip(&dq).zip(&ddq).map(|((q, v), a)| q + v * t + 0.5 * a * t * t).collect();
+                let dq = dq.iter().zip(&ddq).map(|(v, a)| v + a * t).collect();
+                energy(model, &[q, dq, ddq.clone()])
+            };
+            // Five points, error of fourth order.
+            let step = 1e-4;
+            let (a, b, c, d) = (at(-2.0 * step), at(-step), at(step), at(2.0 * step));
+            let dh = power(model, &[q.clone(), dq.clone(), ddq.clone()]);
+            for (k, parameter) in robot.base.iter().enumerate() {
+                if robot.standard[parameter.standard].kind <= ParameterKind::Ia {
+                    let rate = (a[k] - 8.0 * b[k] + 8.0 * c[k] - d[k]) / (12.0 * step);
+                    assert!(
+                        (dh[k] - rate).abs() < 1e-8,
+                        "{} {}: {} {rate}",
+                        robot.name,
+                        parameter.name,
+                        dh[k]
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Blocks and single samples agree, for any number of samples and any stride; nothing is written past the samples.
+#[test]
+fn blocks_give_what_single_samples_give() {
+    for &model in models::all() {
+        let (robot, n, nb) = (model.robot(), model.robot().joints(), model.robot().base.len());
+        let entries = model.pattern().columns.len();
+        for samples in [0, 1, 3, 4, 5, 8, 13] {
+            let states = states(model, samples);
+            let signal = |s: usize| -> Vec<Vec<f64>> {
+                (0..n).map(|j| states.iter().map(|state| state[s][j]).collect()).collect()
+            };
+            let (q, dq, ddq) = (signal(0), signal(1), signal(2));
+            let (qs, dqs, ddqs): (Vec<&[f64]>, Vec<&[f64]>, Vec<&[f64]>) = (
+                q.iter().map(Vec::as_slice).collect(),
+                dq.iter().map(Vec::as_slice).collect(),
+                ddq.iter().map(Vec::as_slice).collect(),
+            );
+            let block = States { q: &qs, dq: &dqs, ddq: &ddqs };
+            let stride = samples + 2;
+            let check = |count: usize,
+                         write: &dyn Fn(&mut [f64]),
+                         single: &dyn Fn(&State) -> Vec<f64>,
+                         what: &str| {
+                let mut out = vec![f64::NAN; count * stride];
+                write(&mut out);
+                for (t, state) in states.iter().enumerate() {
+                    let column: Vec<f64> = (0..count).map(|k| out[k * stride + t]).collect();
+                    assert_close(
+                        &column,
+                        &single(state),
+                        1e-12,
+                        &format!("{} {what} sample {t}", robot.name),
+                    );
+                }
+                assert!(
+                    (0..count)
+                        .all(|k| out[k * stride + samples..(k + 1) * stride].iter().all(|x| x.is_nan()))
+                );
+            };
+            let single_idm = |state: &State| {
+                let mut values = vec![0.0; entries];
+                model.idm(&state[0], &state[1], &state[2], &mut values);
+                values
+            };
+            check(entries, &|out| model.idm_block(block, stride, out), &single_idm, "IDM");
+            check(nb, &|out| model.power_block(block, stride, out), &|s| power(model, s), "dh");
+            check(nb, &|out| model.energy_block(block, stride, out), &|s| energy(model, s), "h");
+        }
+    }
+}
+
+/// An entry of the pattern that were zero at every state would be computed and stored for nothing.
+#[test]
+fn every_entry_of_the_pattern_is_needed() {
+    for &model in models::all() {
+        let pattern = model.pattern();
+        let mut largest = vec![0.0_f64; pattern.columns.len()];
+        for state in states(model, 10) {
+            let mut entries = vec![0.0; pattern.columns.len()];
+            model.idm(&state[0], &state[1], &state[2], &mut entries);
+            largest.iter_mut().zip(&entries).for_each(|(l, e)| *l = l.max(e.abs()));
+        }
+        for (e, size) in largest.iter().enumerate() {
+            let base = &model.robot().base[pattern.columns[e]];
+            assert!(*size > 1e-9, "{} entry {e} ({}) is {size}", model.robot().name, base.name);
+        }
+    }
+}
