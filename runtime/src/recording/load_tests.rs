@@ -323,3 +323,24 @@ fn rows_at_fault_are_reported_with_file_line_and_reason() {
     assert_eq!(found, wanted);
     assert_eq!(recording.trajectories.len(), 1, "single rows are bridged");
 }
+
+#[test]
+fn a_binary_recording_is_the_recording_in_text() {
+    let text = load_text(MANIFEST, &table(300), &revolute(2)).expect("a recording").trajectories.remove(0);
+    let mut dict = String::from("{'descr': '<f8', 'fortran_order': True, 'shape': (300, 5), }");
+    dict.push_str(&" ".repeat(128 - 11 - dict.len()));
+    dict.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(dict.bytes());
+    for column in [&text.time, &text.position[0], &text.position[1], &text.torque[0], &text.torque[1]] {
+        bytes.extend(column.iter().flat_map(|v| v.to_le_bytes()));
+    }
+    let manifest = "robot: arm\ntime: {column: 0}\nposition: {columns: [1, 2]}\n\
+                    torque: {columns: [3, 4]}\ntrajectories: [{file: a.npy}]\n";
+    let folder = Folder::with(&[("rec.yaml", manifest)]);
+    std::fs::write(folder.path("a.npy"), bytes).expect("a file");
+    let manifest = Manifest::read(&folder.path("rec.yaml")).expect("a manifest");
+    let mut binary = load(&manifest, &revolute(2)).expect("a recording").trajectories.remove(0);
+    binary.name = text.name.clone();
+    assert_eq!(binary, text);
+}

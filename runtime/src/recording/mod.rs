@@ -6,6 +6,7 @@ mod error;
 mod folder;
 mod load;
 mod manifest;
+mod npy;
 mod number;
 mod report;
 mod rows;
