@@ -210,3 +210,194 @@ fn random_drive(random: &mut Pcg64, joints: usize) -> Drive {
     drive.coupled_friction = (0..joints).filter(|_| random.random_bool(0.3)).collect();
     drive
 }
+
+fn names(set: &BaseSet) -> Vec<&str> {
+    set.base.iter().map(|p| p.name.as_str()).collect()
+}
+
+fn relation<'a>(set: &'a BaseSet, name: &str) -> &'a str {
+    &set.base
+        .iter()
+        .find(|p| p.name == name)
+        .unwrap_or_else(|| panic!("no {name} in {:?}", names(set)))
+        .relation
+}
+
+/// A robot from rows of its table.
+fn table_of(rows: &str, rest: &str) -> Robot {
+    let text = format!("name: arm\nframes:\n{rows}{rest}\n");
+    parse("arm.yaml", text.as_bytes()).unwrap_or_else(|m| panic!("{}", m[0]))
+}
+
+#[test]
+fn inertial_counts_are_those_of_the_independent_reference() {
+    let path = workspace().join("../shared/reference/regressors.json");
+    let Ok(text) = std::fs::read(&path) else {
+        println!("skipped: {} is not there", path.display());
+        return;
+    };
+    let reference: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    for name in ROBOTS.iter().filter(|name| reference.get(**name).is_some()) {
+        let set = base_set(&robot(name));
+        let inertial = |p: &&dynid_codegen::base::BaseParameter| {
+            set.standard[p.standard].kind <= dynid_codegen::base::ParameterKind::M
+        };
+        let expected = reference[*name]["inertial_base_count"].as_u64().unwrap() as usize;
+        assert_eq!(set.base.iter().filter(inertial).count(), expected, "{name}");
+    }
+}
+
+#[test]
+fn the_tx40_has_the_sixty_base_parameters_of_table_ii() {
+    let mut with_payload = robot("tx40");
+    let set = base_set(&with_payload);
+    assert_eq!(set.base.len(), 60);
+    with_payload.frames.pop();
+    let bare = base_set(&with_payload);
+    let expected = "ZZ1R Fv1 Fc1 off1 XX2R XY2 XZ2R YZ2 ZZ2R MX2R MY2 Fv2 Fc2 off2 XX3R XY3 XZ3 YZ3 ZZ3R MX3 MY3R Ia3 \
+                    Fv3 Fc3 off3 XX4R XY4 XZ4 YZ4 ZZ4R MX4 MY4R Ia4 Fv4 Fc4 off4 XX5R XY5 XZ5 YZ5 ZZ5R MX5 MY5R Ia5 Fv5 \
+                    Fc5 off5 XX6R XY6 XZ6 YZ6 ZZ6 MX6 MY6 Ia6 Fv6 Fc6 off6 Fvm6 Fcm6";
+    assert_eq!(names(&bare).join(" "), expected);
+    // The payload stands on link 6, so that it is regrouped into all of that link.
+    let payload = ["XY6R", "XZ6R", "YZ6R", "ZZ6R", "MX6R", "MY6R"];
+    let expected = expected.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    for (name, bare_name) in names(&set).into_iter().zip(expected) {
+        assert!(
+            name == bare_name || payload.contains(&name) && name == format!("{bare_name}R"),
+            "{name} {bare_name}"
+        );
+    }
+    assert_eq!(
+        relation(&bare, "ZZ1R"),
+        "ZZ1 + Ia1 + YY2 + YY3 + 2*rl3*MZ3 + (rl3^2 + d3^2)*M3 + (rl3^2 + d3^2)*M4 + (rl3^2 + d3^2)*M5 + (rl3^2 + d3^2)*M6"
+    );
+    assert_eq!(relation(&bare, "ZZ2R"), "ZZ2 + Ia2 + d3^2*M3 + d3^2*M4 + d3^2*M5 + d3^2*M6");
+    assert_eq!(relation(&bare, "MX2R"), "MX2 + d3*M3 + d3*M4 + d3*M5 + d3*M6");
+    assert_eq!(relation(&bare, "XZ2R"), "XZ2 - d3*MZ3 - d3*rl3*M3 - d3*rl3*M4 - d3*rl3*M5 - d3*rl3*M6");
+    assert_eq!(relation(&bare, "MY3R"), "MY3 - MZ4 - rl4*M4 - rl4*M5 - rl4*M6");
+    assert_eq!(relation(&bare, "XX6R"), "XX6 - YY6");
+    let without: Vec<&str> =
+        bare.without_effect().into_iter().map(|k| bare.standard[k].name.as_str()).collect();
+    assert_eq!(without.join(" "), "XX1 XY1 XZ1 YY1 YZ1 MX1 MY1 MZ1 M1 MZ2 M2");
+}
+
+/// The closed form for a revolute joint (Gautier and Khalil 1990, Khalil and Dombre 2002): YY, MZ and M of link j go
+/// into link j and, through alpha, d and r, into link j - 1.
+#[test]
+fn a_revolute_link_regroups_by_the_closed_form_rule() {
+    let rows = "  - {j: 1, sigma: 0, alpha: 0.3, d: 0, theta: q1, r: 0}\n  \
+                - {j: 2, sigma: 0, alpha: 0.8, d: 0.1, theta: q2, r: 0.7}\n  \
+                - {j: 3, sigma: 0, alpha: a3, d: d3, theta: q3, r: r3}\n";
+    let set = base_set(&table_of(rows, "constants: {a3: 0.4, d3: 0.2, r3: 0.5}"));
+    let rule = [
+        ("XX2R", "XX2 - YY2 + sin(a3)^2*YY3 + 2*r3*sin(a3)^2*MZ3 + (r3^2*sin(a3)^2 - d3^2)*M3"),
+        ("XY2R", "XY2 + d3*sin(a3)*MZ3 + d3*r3*sin(a3)*M3"),
+        ("XZ2R", "XZ2 - d3*cos(a3)*MZ3 - d3*r3*cos(a3)*M3"),
+        ("YZ2R", "YZ2 + cos(a3)*sin(a3)*YY3 + 2*r3*cos(a3)*sin(a3)*MZ3 + r3^2*cos(a3)*sin(a3)*M3"),
+        ("ZZ2R", "ZZ2 + sin(a3)^2*YY3 + 2*r3*sin(a3)^2*MZ3 + (r3^2*sin(a3)^2 + d3^2)*M3"),
+        ("MX2R", "MX2 + d3*M3"),
+        ("MY2R", "MY2 - sin(a3)*MZ3 - r3*sin(a3)*M3"),
+        ("XX3R", "XX3 - YY3"),
+    ];
+    for (name, expected) in rule {
+        assert_eq!(relation(&set, name), expected);
+    }
+}
+
+#[test]
+fn a_prismatic_link_leaves_its_inertias_to_its_parent() {
+    let rows = "  - {j: 1, sigma: 0, alpha: 0.3, d: 0, theta: q1, r: 0}\n  \
+                - {j: 2, sigma: 0, alpha: 0.8, d: 0.1, theta: q2, r: 0.7}\n  \
+                - {j: 3, sigma: 1, alpha: pi/2, d: 0.2, theta: 0, r: q3}\n";
+    let set = base_set(&table_of(rows, ""));
+    assert_eq!(relation(&set, "XX2R"), "XX2 - YY2 + XX3 - ZZ3");
+    assert_eq!(relation(&set, "ZZ2R"), "ZZ2 + YY3");
+    assert_eq!(relation(&set, "XY2R"), "XY2 - XZ3");
+    for name in ["MX3", "MY3", "MZ3", "M3", "Ia3"] {
+        assert_eq!(relation(&set, name), name);
+    }
+}
+
+#[test]
+fn gravity_along_an_axis_hides_what_gravity_across_it_shows() {
+    let row = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n";
+    assert_eq!(names(&base_set(&table_of(row, "gravity: [0, 0, -9.81]"))), ["ZZ1R", "Fv1", "Fc1", "off1"]);
+    assert_eq!(
+        names(&base_set(&table_of(row, "gravity: [0, -9.81, 0]"))),
+        ["ZZ1R", "MX1", "MY1", "Fv1", "Fc1", "off1"]
+    );
+    let tilted = names(&base_set(&table_of(row, "gravity: [0, 0.001, -9.81]"))).len();
+    assert_eq!(tilted, 6);
+}
+
+#[test]
+fn lengths_and_angles_that_only_rounding_keeps_apart_are_the_same() {
+    // 0.1 + 0.2 and 0.3 differ in floating point; 0.3 - 0.2 - 0.1 rad does too.
+    let rows = |d: &str, alpha: &str| {
+        format!(
+            "  - {{j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}}\n  \
+             - {{j: 2, sigma: 2, alpha: 0.2, d: {d}, theta: 0, r: 0}}\n  \
+             - {{j: 3, sigma: 2, alpha: 0.1, d: 0, theta: 0, r: 0}}\n  \
+             - {{j: 4, sigma: 0, alpha: {alpha}, d: -0.3, theta: q4, r: 0}}\n"
+        )
+    };
+    let count = |d: &str, alpha: &str| base_set(&table_of(&rows(d, alpha), "")).base.len();
+    // Two joints about one vertical axis: ZZ1, ZZ4, Ia4 less one, and friction.
+    assert_eq!(count("0.1 + 0.2", "-0.3"), count("0.3", "-0.3"));
+    assert!(count("0.1 + 0.2", "-0.3") < count("0.31", "-0.3"));
+    assert!(count("0.3", "-0.3") < count("0.3", "-0.31"));
+}
+
+#[test]
+fn friction_of_a_motor_that_turns_with_its_own_joint_is_that_joints_friction() {
+    let rows = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n  \
+                - {j: 2, sigma: 0, alpha: 0, d: 0.5, theta: q2, r: 0}\n";
+    let set = base_set(&table_of(rows, "drive: {gear: [10, 10], coupled_friction: [2]}"));
+    assert_eq!((relation(&set, "Fv2R"), relation(&set, "Fc2R")), ("Fv2 + Fvm2", "Fc2 + Fcm2"));
+    let set = base_set(&table_of(rows, "drive: {gear: [[10, 0], [5, 10]], coupled_friction: [2]}"));
+    assert_eq!(
+        (relation(&set, "Fv2"), relation(&set, "Fvm2"), relation(&set, "Fcm2")),
+        ("Fv2", "Fvm2", "Fcm2")
+    );
+    // Of a differential's two motors the viscous frictions add up to those of the joints.
+    let set = base_set(&table_of(rows, "drive: {gear: [[10, 10], [10, -10]], coupled_friction: [1, 2]}"));
+    assert_eq!((relation(&set, "Fv1R"), relation(&set, "Fvm1R")), ("Fv1 + 2*Fvm2", "Fvm1 - Fvm2"));
+}
+
+#[test]
+fn on_a_vertical_axis_a_rotor_cannot_be_told_from_mass_and_offset() {
+    let set = base_set(&robot("scara4"));
+    assert_eq!(relation(&set, "M3R"), "M3 + Ia3 + M4");
+    assert_eq!(relation(&set, "off3R"), "off3 - 9.81*Ia3");
+}
+
+#[test]
+fn the_same_table_gives_the_same_base_every_time() {
+    for name in ROBOTS {
+        assert_eq!(base_set(&robot(name)), base_set(&robot(name)));
+    }
+}
+
+#[test]
+fn calibrated_tables_with_general_angles_everywhere_are_no_harder() {
+    let mut random = Pcg64::seed_from_u64(5);
+    let mut rows = String::new();
+    for j in 1..=8 {
+        let mut draw = |middle: f64, spread: f64| middle + random.random_range(-spread..spread);
+        let (alpha, d, theta, r) = (draw(PI / 2.0, 1e-3), draw(0.2, 0.1), draw(0.0, 1e-3), draw(0.1, 0.1));
+        let (theta, r, sigma) = if j == 5 {
+            (format!("{theta}"), format!("{r}"), 2)
+        } else {
+            (format!("q{j} + {theta}"), format!("{r}"), 0)
+        };
+        rows.push_str(&format!(
+            "  - {{j: {j}, sigma: {sigma}, alpha: {alpha}, d: {d}, theta: {theta}, r: {r}}}\n"
+        ));
+    }
+    let robot = table_of(&rows, "");
+    let start = std::time::Instant::now();
+    let count = base_set(&robot).base.len();
+    assert!(start.elapsed().as_secs_f64() < 1.0, "{:?}", start.elapsed());
+    // Seven links: gravity is along no axis, so the first keeps ZZ, MX, MY, the others seven each; Ia2 .. Ia7; friction.
+    assert_eq!(count, 3 + 6 * 7 + 6 + 3 * 7);
+}

@@ -25,8 +25,8 @@ impl std::error::Error for Diagnostic {}
 
 /// The known name that is closest to a mistyped one, if one is close.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let close = known.into_iter().map(|k| (edit_distance(name, k), k)).min_by_key(|&(d, _)| d)?;
-    (close.0 <= (name.chars().count().max(3) / 3).min(3)).then_some(close.1)
+    let (distance, close) = known.into_iter().map(|k| (edit_distance(name, k), k)).min_by_key(|&(d, _)| d)?;
+    (2 * distance < close.len().max(name.len())).then_some(close)
 }
 
 /// Letters to insert, delete or replace to make one word the other, regardless of case.

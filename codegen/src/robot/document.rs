@@ -61,6 +61,15 @@ pub(super) fn shortened(text: &str) -> String {
     }
 }
 
+/// A tab at the start of this line or the next: the usual cause of an error that the scanner puts elsewhere.
+fn indenting_tab(text: &str, line: usize) -> Option<Place> {
+    text.lines().enumerate().skip(line - 1).take(2).find_map(|(k, text)| {
+        let indent = text.chars().take_while(|c| c.is_whitespace());
+        let column = indent.enumerate().find(|&(_, c)| c == '\t').map(|(column, _)| column + 1)?;
+        Some(Place { line: k + 1, column })
+    })
+}
+
 /// Reads the one document of a YAML file.
 pub(super) fn read_document(path: &str, bytes: &[u8]) -> Result<Node, Diagnostic> {
     let fail = |place: Place, message: String| Diagnostic {
@@ -89,8 +98,13 @@ pub(super) fn read_document(path: &str, bytes: &[u8]) -> Result<Node, Diagnostic
     let mut root: Option<Node> = None;
     let mut open: Vec<(Node, Option<Node>)> = Vec::new();
     for event in Parser::new_from_str(text) {
-        let (event, span) =
-            event.map_err(|e| fail(Place::of(*e.marker()), format!("not YAML: {}", e.info())))?;
+        let (event, span) = event.map_err(|e| {
+            let place = Place::of(*e.marker());
+            match indenting_tab(text, place.line) {
+                Some(tab) => fail(tab, "not YAML: indented with a tab; expected spaces".to_owned()),
+                None => fail(place, format!("not YAML: {}", e.info())),
+            }
+        })?;
         let place = Place::of(span.start);
         let tagged = matches!(
             &event,

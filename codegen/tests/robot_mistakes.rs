@@ -1,0 +1,366 @@
+//! Every mistake in a robot's YAML is reported at its place, all of them at once.
+
+use dynid_codegen::robot::{JointKind, Robot, parse};
+use proptest::prelude::*;
+
+/// The mistakes of a text as `line:column: message`.
+fn mistakes(text: impl AsRef<[u8]>) -> Vec<String> {
+    match parse("arm.yaml", text.as_ref()) {
+        Ok(robot) => panic!("no mistake found in {robot:?}"),
+        Err(found) => found
+            .iter()
+            .map(|m| m.to_string().strip_prefix("arm.yaml:").expect("names the file").to_owned())
+            .collect(),
+    }
+}
+
+/// That the text has exactly one mistake, at this place, with these words in its message.
+#[track_caller]
+fn one_mistake(text: &str, place: &str, words: &[&str]) {
+    let found = mistakes(text);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert!(found[0].starts_with(&format!("{place}: ")), "{found:#?}");
+    for word in words {
+        assert!(found[0].contains(word), "no '{word}' in {found:#?}");
+    }
+}
+
+fn read(text: &str) -> Robot {
+    parse("arm.yaml", text.as_bytes()).unwrap_or_else(|m| panic!("{}", m[0]))
+}
+
+/// A robot of two revolute joints with one line replaced or added.
+fn arm(rest: &str) -> String {
+    format!(
+        "name: arm\nframes:\n  - {{j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}}\n  \
+         - {{j: 2, sigma: 0, alpha: 0, d: 0.5, theta: q2, r: 0}}\n{rest}\n"
+    )
+}
+
+/// A robot whose second row is given.
+fn arm_with_row(row: &str) -> String {
+    format!(
+        "name: arm\nconstants: {{d2: 0.5, zero: 0}}\nframes:\n  \
+         - {{j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}}\n  - {{{row}}}\n"
+    )
+}
+
+#[test]
+fn an_empty_file_says_what_a_robot_has() {
+    one_mistake("", "1:1", &["empty", "name", "frames"]);
+    one_mistake("# only a comment\n", "1:1", &["empty"]);
+    one_mistake("---\n", "1:1", &["empty"]);
+}
+
+#[test]
+fn bytes_that_are_not_utf_8_are_pointed_at() {
+    let found = mistakes(b"name: arm\nframes: caf\xe9\n");
+    assert_eq!(found.len(), 1);
+    assert!(found[0].starts_with("2:12: ") && found[0].contains("UTF-8"), "{found:?}");
+}
+
+#[test]
+fn yaml_that_is_not_yaml_is_pointed_at() {
+    one_mistake("name: arm\nframes: [1, 2\n", "3:1", &["not YAML"]);
+    one_mistake("name: arm\n\tframes: 1\n", "2:1", &["not YAML", "tab"]);
+    one_mistake("a list\n", "1:1", &["expected a robot", "name"]);
+    one_mistake("name: a\n---\nname: b\n", "2:1", &["second document"]);
+    one_mistake("name: &x arm\nframes: *x\n", "2:9", &["alias"]);
+    one_mistake("name: !!str arm\n", "1:7", &["tag"]);
+}
+
+#[test]
+fn an_unknown_key_names_the_nearest_known_one() {
+    one_mistake(
+        &arm("gravitiy: [0, 0, -9.81]"),
+        "5:1",
+        &["unknown key 'gravitiy'", "did you mean 'gravity'"],
+    );
+    one_mistake(
+        &arm_with_row("j: 2, sigma: 0, alfa: 0, alpha: 0, d: 0, theta: q2, r: 0"),
+        "5:22",
+        &["did you mean 'alpha'"],
+    );
+    one_mistake(&arm("drive: {gears: [1, 2]}"), "5:9", &["'gear'"]);
+    one_mistake(&arm("nominal: {noise: {velocity: 1}}"), "5:19", &["velocity", "position"]);
+    one_mistake(&arm("nominal: {parameters: {ZZ3: 1}}"), "5:24", &["ZZ3", "standard parameter"]);
+}
+
+#[test]
+fn a_duplicate_key_is_reported_where_it_stands_the_second_time() {
+    one_mistake(&arm("name: again"), "5:1", &["'name'", "twice", "line 1"]);
+    one_mistake(&arm("constants: {a: 1, a: 2}"), "5:19", &["'a'", "twice", "line 5"]);
+    one_mistake(
+        &arm_with_row("j: 2, sigma: 0, alpha: 0, d: 0, d: 1, theta: q2, r: 0"),
+        "5:38",
+        &["'d'", "twice"],
+    );
+    one_mistake(&arm("nominal: {parameters: {M1: 1, M1: 2}}"), "5:31", &["M1", "twice"]);
+}
+
+#[test]
+fn a_number_that_is_not_finite_is_refused_wherever_it_stands() {
+    for number in [".nan", ".inf", "-.inf", "1e999", "nan", "1e308*10"] {
+        one_mistake(&arm(&format!("gravity: [0, {number}, 0]")), &place_of(number), &["finite"]);
+        let row = format!("j: 2, sigma: 0, alpha: 0, d: {number}, theta: q2, r: 0");
+        assert!(mistakes(arm_with_row(&row))[0].contains("finite"), "{number}");
+        assert!(mistakes(arm(&format!("constants: {{a: {number}}}")))[0].contains("finite"), "{number}");
+        assert!(mistakes(arm(&format!("nominal: {{parameters: {{M1: {number}}}}}")))[0].contains("finite"));
+    }
+}
+
+/// Column of the part of the number that is wrong, in `gravity: [0, NUMBER`.
+fn place_of(number: &str) -> String {
+    if number == "-.inf" { "5:15".to_owned() } else { "5:14".to_owned() }
+}
+
+#[test]
+fn sigma_is_0_1_or_2() {
+    for sigma in ["3", "-1", "revolute", "0.0"] {
+        let row = format!("j: 2, sigma: {sigma}, alpha: 0, d: 0, theta: q2, r: 0");
+        one_mistake(&arm_with_row(&row), "5:19", &["sigma", "0 (revolute), 1 (prismatic) or 2 (fixed)"]);
+    }
+}
+
+#[test]
+fn the_joint_variable_stands_where_sigma_says() {
+    let rows = [
+        ("sigma: 0, alpha: 0, d: 0, theta: 0.3, r: 0", "theta of frame 2 does not match sigma 0"),
+        ("sigma: 0, alpha: 0, d: 0, theta: q1, r: 0", "expected q2 once, plus a constant"),
+        ("sigma: 0, alpha: 0, d: 0, theta: q2 + q2, r: 0", "expected q2 once"),
+        ("sigma: 0, alpha: 0, d: 0, theta: -q2, r: 0", "expected q2 once"),
+        ("sigma: 0, alpha: 0, d: 0, theta: 2*q2, r: 0", "q2 may only be added"),
+        ("sigma: 0, alpha: 0, d: 0, theta: q2, r: q2", "r of frame 2 does not match sigma 0"),
+        ("sigma: 1, alpha: 0, d: 0, theta: q2, r: q2", "theta of frame 2 does not match sigma 1"),
+        ("sigma: 1, alpha: 0, d: 0, theta: 0, r: 0.1", "r of frame 2 does not match sigma 1"),
+        ("sigma: 2, alpha: 0, d: 0, theta: q2, r: 0", "theta of frame 2 does not match sigma 2"),
+        ("sigma: 0, alpha: q2, d: 0, theta: q2, r: 0", "alpha must not depend on q2"),
+    ];
+    for (row, words) in rows {
+        let found = mistakes(arm_with_row(&format!("j: 2, {row}")));
+        assert!(
+            found.len() == 1 && found[0].starts_with("5:") && found[0].contains(words),
+            "{row}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn theta_is_the_joint_variable_plus_a_constant_in_any_order() {
+    let expected = 0.5 - std::f64::consts::PI / 2.0;
+    for theta in [
+        "q2 - pi/2 + d2",
+        "d2 - pi/2 + q2",
+        "-(pi/2 - q2) + d2",
+        "(q2) + (d2 - 2*pi/4)",
+        "\"q2 - pi/2 + d2\"",
+    ] {
+        let robot = read(&arm_with_row(&format!("j: 2, sigma: 0, alpha: 0, d: d2, theta: {theta}, r: 0")));
+        assert_eq!(robot.frames[1].kind, JointKind::Revolute);
+        assert!((robot.frames[1].theta.value() - expected).abs() < 1e-15, "{theta}");
+    }
+    assert_eq!(read(&arm("")).frames[1].theta.value(), 0.0);
+}
+
+#[test]
+fn an_expression_says_what_is_wrong_at_its_character() {
+    let row = |d: &str| arm_with_row(&format!("j: 2, sigma: 0, alpha: 0, d: {d}, theta: q2, r: 0"));
+    // d starts in column 35.
+    one_mistake(&row("d2 + d3"), "5:40", &["unknown constant 'd3'", "d2", "pi"]);
+    one_mistake(&row("1/(d2 - 0.5)"), "5:37", &["division by zero"]);
+    one_mistake(&row("1/zero"), "5:37", &["division by zero"]);
+    one_mistake(&row("2 3"), "5:37", &["operator"]);
+    one_mistake(&row("(2 + 1"), "5:41", &["')'"]);
+    one_mistake(&row("2 + 1)"), "5:40", &["without its '('"]);
+    one_mistake(&row("2 +"), "5:38", &["ends where"]);
+    one_mistake(&row("2^2"), "5:36", &["'^'"]);
+    one_mistake(&row("1.2.3"), "5:35", &["not a number"]);
+    one_mistake(&row("[1]"), "5:35", &["expected d", "a list of 1"]);
+    one_mistake(&row(""), "5:33", &["expected d", "nothing"]);
+}
+
+#[test]
+fn constants_use_those_above_and_hide_nothing() {
+    let robot = read(&arm("constants: {a: 0.5, b: 2*a + pi}"));
+    assert_eq!(robot.constants[1], ("b".to_owned(), 1.0 + std::f64::consts::PI));
+    one_mistake(&arm("constants: {a: b, b: 1}"), "5:16", &["unknown constant 'b'"]);
+    one_mistake(&arm("constants: {pi: 3}"), "5:13", &["'pi'", "hide"]);
+    one_mistake(&arm("constants: {q1: 3}"), "5:13", &["'q1'", "hide"]);
+    one_mistake(&arm("constants: {2a: 3}"), "5:13", &["identifier"]);
+    one_mistake(&arm("constants: {fn: 3}"), "5:13", &["keyword"]);
+}
+
+#[test]
+fn a_name_is_a_rust_identifier_and_no_keyword() {
+    for (name, why) in [
+        ("my-arm", "identifier"),
+        ("2r", "identifier"),
+        ("b\u{e9}ta", "identifier"),
+        ("_", "identifier"),
+        ("struct", "keyword"),
+        ("self", "keyword"),
+        ("gen", "keyword"),
+    ] {
+        one_mistake(&arm("").replace("name: arm", &format!("name: {name}")), "1:7", &[why]);
+    }
+    assert_eq!(read(&arm("").replace("name: arm", "name: Arm_2")).name, "Arm_2");
+    one_mistake(&arm("").replace("name: arm\n", "\n"), "2:1", &["no 'name'"]);
+}
+
+#[test]
+fn j_counts_from_1_without_a_gap() {
+    one_mistake(
+        &arm_with_row("j: 3, sigma: 0, alpha: 0, d: 0, theta: q2, r: 0"),
+        "5:9",
+        &["j is 3", "expected 2"],
+    );
+    one_mistake(&arm_with_row("j: two, sigma: 0, alpha: 0, d: 0, theta: q2, r: 0"), "5:9", &["whole number"]);
+    one_mistake(&arm_with_row("sigma: 0, alpha: 0, d: 0, theta: q2, r: 0"), "5:5", &["no 'j'"]);
+}
+
+#[test]
+fn a_parent_comes_earlier() {
+    let rows = |parents: [usize; 3]| {
+        let row = |(k, p): (usize, usize)| {
+            let j = k + 1;
+            format!("  - {{j: {j}, parent: {p}, sigma: 0, alpha: 0, d: 0, theta: q{j}, r: 0}}\n")
+        };
+        format!("name: arm\nframes:\n{}", parents.into_iter().enumerate().map(row).collect::<String>())
+    };
+    assert_eq!(read(&rows([0, 0, 1])).frames[2].parent, 1);
+    one_mistake(&rows([0, 3, 1]), "4:20", &["parent 3 of frame 2 comes later", "0 to 1"]);
+    one_mistake(&rows([0, 2, 1]), "4:20", &["its own parent"]);
+    one_mistake(&rows([0, 3, 2]), "4:20", &["circle", "2 -> 3 -> 2"]);
+    one_mistake(&rows([0, 9, 1]), "4:20", &["3 frames"]);
+}
+
+#[test]
+fn a_gear_is_regular_and_has_the_right_size() {
+    assert_eq!(read(&arm("drive: {gear: [32, -48]}")).drive.gear, [[32.0, 0.0], [0.0, -48.0]]);
+    assert_eq!(read(&arm("drive: {gear: [[1, 0], [1, 1]]}")).drive.gear, [[1.0, 0.0], [1.0, 1.0]]);
+    assert_eq!(read(&arm("")).drive.gear, [[1.0, 0.0], [0.0, 1.0]]);
+    one_mistake(&arm("drive: {gear: [[0.1, 0.2], [0.3, 0.6]]}"), "5:15", &["singular"]);
+    one_mistake(&arm("drive: {gear: [0, 1]}"), "5:16", &["gear[1][1] is 0"]);
+    one_mistake(&arm("drive: {gear: [[0, 1], [1, 1]]}"), "5:17", &["gear[1][1] is 0"]);
+    one_mistake(&arm("drive: {gear: [1, 2, 3]}"), "5:15", &["3 entries", "expected 2"]);
+    one_mistake(&arm("drive: {gear: [[1, 0], [1]]}"), "5:24", &["1 entry", "expected 2"]);
+    one_mistake(&arm("drive: {gear: 5}"), "5:15", &["list"]);
+    one_mistake(&arm("drive: {gear: [[0, 1], [1, 0, 0]]}"), "5:24", &["3 entries"]);
+}
+
+#[test]
+fn coupled_friction_names_joints_by_their_number() {
+    assert_eq!(read(&arm("drive: {coupled_friction: [2]}")).drive.coupled_friction, [1]);
+    one_mistake(&arm("drive: {coupled_friction: [3]}"), "5:28", &["names 3", "[1, 2]"]);
+    one_mistake(&arm("drive: {coupled_friction: [2, 2]}"), "5:31", &["twice"]);
+    let fixed =
+        arm_with_row("j: 2, sigma: 2, alpha: 0, d: 0, theta: 0, r: 0") + "drive: {coupled_friction: [2]}\n";
+    one_mistake(&fixed, "6:28", &["not a joint"]);
+}
+
+#[test]
+fn limits_are_symmetric_or_low_and_high() {
+    let limits = read(&arm("limits: {position: [pi, [-1, 2]], velocity: 3}")).limits;
+    assert_eq!(limits.position, [[-std::f64::consts::PI, std::f64::consts::PI], [-1.0, 2.0]]);
+    assert_eq!(limits.velocity, [[-3.0, 3.0], [-3.0, 3.0]]);
+    assert!(limits.torque.is_empty());
+    one_mistake(&arm("limits: {position: [1]}"), "5:20", &["1 entry", "expected 2"]);
+    one_mistake(&arm("limits: {position: [1, [2, 1]]}"), "5:24", &["low < high"]);
+    one_mistake(&arm("limits: {torque: [1, -2]}"), "5:22", &["above 0"]);
+    one_mistake(&arm("limits: {torque: [1, [1, 2, 3]]}"), "5:22", &["3 entries", "expected 2"]);
+}
+
+#[test]
+fn nominal_values_are_read_by_name() {
+    let text = "nominal: {parameters: {ZZ1: 0.3, Ia2: 1}, controller: {kp: 5, kd: [1, 2]}, noise: {torque: [0.1, 0.2]}}";
+    let nominal = read(&arm(text)).nominal.expect("it is there");
+    assert_eq!(nominal.standard, [("ZZ1".to_owned(), 0.3), ("Ia2".to_owned(), 1.0)]);
+    assert_eq!((nominal.kp, nominal.kd, nominal.ki), (vec![5.0, 5.0], vec![1.0, 2.0], vec![]));
+    assert_eq!((nominal.position_noise, nominal.torque_noise), (vec![], vec![0.1, 0.2]));
+    one_mistake(&arm("nominal: {parameters: {ZZ1: big}}"), "5:29", &["ZZ1", "unknown constant 'big'"]);
+    one_mistake(&arm("nominal: {parameters: [1]}"), "5:23", &["by name"]);
+    one_mistake(&arm("nominal: {noise: {torque: [0.1, -1]}}"), "5:27", &["-1", "below 0"]);
+    one_mistake(&arm("nominal: {parameters: {Fvm1: 1}}"), "5:24", &["Fvm1"]);
+}
+
+#[test]
+fn a_table_needs_a_joint_and_rows() {
+    one_mistake("name: arm\nframes: []\n", "2:9", &["empty"]);
+    one_mistake("name: arm\n", "1:1", &["no 'frames'"]);
+    let fixed = "name: arm\nframes: [{j: 1, sigma: 2, alpha: 0, d: 0, theta: 0, r: 0}]\n";
+    one_mistake(fixed, "2:9", &["at least one joint"]);
+    one_mistake(&arm_with_row("j: 2, sigma: 0, alpha: 0, d: 0, theta: q2"), "5:5", &["no 'r'"]);
+}
+
+#[test]
+fn all_mistakes_are_reported_at_once_in_the_order_of_the_file() {
+    let text = "name: my arm
+gravity: [0, 0]
+colour: red
+constants: {a: .nan, a: 1}
+frames:
+  - {j: 1, sigma: 5, alpha: x, d: 0, theta: q1, r: 0}
+  - {j: 7, sigma: 0, alpha: 0, d: a, theta: 0, r: 1/0, extra: 1}
+";
+    let places: Vec<String> =
+        mistakes(text).iter().map(|m| m.splitn(3, ':').take(2).collect::<Vec<_>>().join(":")).collect();
+    assert_eq!(places, ["1:7", "2:10", "3:1", "4:16", "4:22", "6:19", "6:29", "7:9", "7:45", "7:53", "7:56"]);
+}
+
+#[test]
+fn nesting_and_size_have_bounds() {
+    let deep = format!("name: {}{}", "[".repeat(5000), "]".repeat(5000));
+    assert!(mistakes(&deep)[0].contains("recursion limit"));
+    let deep = format!("name: {}", "{a: ".repeat(100));
+    assert!(mistakes(&deep)[0].contains("nested deeper"));
+    let indented: String = (0..500).map(|k| format!("{}a:\n", " ".repeat(k))).collect();
+    assert!(mistakes(&indented)[0].contains("nested deeper"));
+    let brackets = arm(&format!("gravity: [0, 0, {}1{}]", "(".repeat(100_000), ")".repeat(100_000)));
+    assert!(mistakes(&brackets)[0].contains("expression longer"));
+    let sum = arm(&format!("gravity: [0, 0, {}1]", "1+".repeat(100_000)));
+    assert!(mistakes(&sum)[0].contains("expression longer"));
+    assert!(mistakes(vec![b'a'; 3 << 20])[0].contains("bytes"));
+    let rows = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n".repeat(1000);
+    assert!(mistakes(format!("name: arm\nframes:\n{rows}"))[0].contains("1000 rows"));
+}
+
+#[test]
+fn windows_line_ends_and_a_byte_order_mark_do_no_harm() {
+    let text = format!("\u{feff}{}", arm("gravity: [0, 0, -9.81]").replace('\n', "\r\n"));
+    assert_eq!(read(&text).gravity, [0.0, 0.0, -9.81]);
+}
+
+#[test]
+fn expressions_print_as_they_are_written() {
+    for text in ["d2 - pi/2", "2*(d2 + 1)", "-d2/(2*pi)", "d2 - (1 - zero)", "-0.6", "-(d2 + 1)", "d2/(pi/2)"]
+    {
+        let robot = read(&arm_with_row(&format!("j: 2, sigma: 0, alpha: 0, d: {text}, theta: q2, r: 0")));
+        assert_eq!(robot.frames[1].d.to_string(), text);
+    }
+}
+
+proptest! {
+    /// Whatever the file holds, the answer is a robot or mistakes with a place.
+    #[test]
+    fn no_text_makes_the_reader_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+        let _ = parse("arm.yaml", &bytes);
+    }
+
+    /// The same for robots with a piece torn out, doubled or replaced.
+    #[test]
+    fn no_damage_makes_the_reader_panic(
+        at in 0usize..400,
+        length in 0usize..12,
+        piece in "[\\[\\]{}:,q0-9 \n+*/()a-z.-]{0,8}",
+    ) {
+        let text = arm("constants: {a: 1}\ndrive: {gear: [[32, 0], [1, 2]], coupled_friction: [2]}\nlimits: {position: [1, [0, 2]]}");
+        let chars: Vec<char> = text.chars().collect();
+        let at = at.min(chars.len());
+        let end = (at + length).min(chars.len());
+        let damaged: String = chars[..at].iter().copied().chain(piece.chars()).chain(chars[end..].iter().copied()).collect();
+        if let Err(found) = parse("arm.yaml", damaged.as_bytes()) {
+            prop_assert!(!found.is_empty());
+            prop_assert!(found.iter().all(|m| m.line >= 1 && m.column >= 1));
+        }
+    }
+}
