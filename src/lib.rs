@@ -1,3 +1,13 @@
-//! dynid.
+//! From a modified Denavit-Hartenberg table to a dynamic model that can be trusted.
+//!
+//! [`models`] holds the closed-form regressors generated from `robots/` at build time, [`robots`] finds a robot
+//! by name or by path; identification, simulation and diagnosis live in [`dynid_runtime`].
+#![deny(missing_docs)]
 
+pub mod commands;
+pub mod failure;
 pub mod models;
+pub mod output;
+pub mod pages;
+pub mod recorded;
+pub mod robots;

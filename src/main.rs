@@ -1,1 +1,5 @@
-fn main() {}
+//! The `dynid` command.
+
+fn main() -> std::process::ExitCode {
+    dynid::commands::run()
+}

@@ -44,7 +44,7 @@ impl Axis {
         (first..=last)
             .map(|k| {
                 let value = k as f64 * step;
-                let label = if step >= 1e6 || step < 1e-6 {
+                let label = if !(1e-6..1e6).contains(&step) {
                     format!("{value:.1e}")
                 } else {
                     format!("{value:.decimals$}")

@@ -1,0 +1,217 @@
+//! `dynid identify REC`: parameters from a recording.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use dynid_runtime::estimation::observe::{Equations, Observation, observe};
+use dynid_runtime::estimation::{
+    Estimate, EstimateSettings, Identified, Method, NamedParameter, Observed, estimate, per_equation,
+    relative_error,
+};
+use dynid_runtime::report::{percent, significant};
+
+use crate::failure::Failure;
+use crate::output::{Bar, print, table, write, write_json};
+use crate::recorded::{Recorded, RecordingOptions, left_out_words, observe_failure, read};
+
+/// What to identify and where to put it.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    recording: RecordingOptions,
+    /// idim-ols, idim-wls, pim-ols or pim-wls
+    #[arg(long, default_value = "idim-wls")]
+    method: Method,
+    /// The power model from dh in closed form instead of differentiating h as in the paper
+    #[arg(long)]
+    closed_form: bool,
+    /// Ratio of the largest to the smallest relative standard deviation among the essential parameters
+    #[arg(long, default_value_t = 20.0)]
+    r_sigma: f64,
+    /// Also print what is regrouped into each parameter
+    #[arg(long)]
+    base: bool,
+    /// Save the model for `validate`, `simulate` and `diagnose --reference`
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Write a page with the parameters, and the torques measured and predicted
+    #[arg(long)]
+    report: Option<PathBuf>,
+    /// Write the result for other programs; `-` is standard output
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+/// Identifies, prints, saves.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let recorded = read(&arguments.recording)?;
+    let (identified, estimate) = identify(&recorded, arguments)?;
+    if arguments.json.as_deref() != Some(Path::new("-")) {
+        print(&summary(&recorded, &identified, &estimate, arguments));
+    }
+    if let Some(path) = &arguments.json {
+        write_json(path, &identified)?;
+    }
+    if let Some(path) = &arguments.out {
+        write_json(path, &identified)?;
+    }
+    if let Some(path) = &arguments.report {
+        let page = crate::pages::identification::page(&recorded, &identified)
+            .map_err(|error| observe_failure(&arguments.recording.recording, &error))?;
+        write(path, &page)?;
+    }
+    Ok(())
+}
+
+fn identify(recorded: &Recorded, arguments: &Arguments) -> Result<(Identified, Estimate), Failure> {
+    let model = recorded.dynamics.model();
+    let settings = &recorded.settings;
+    let observed = |equations: Equations| -> Result<Observation, Failure> {
+        let bar = Bar::new("samples");
+        observe(model, &recorded.motions, equations, None, settings, Some(&|done, all| bar.at(done, all)))
+            .map_err(|error| observe_failure(&arguments.recording.recording, &error))
+    };
+    let equations = if arguments.method.is_power() {
+        Equations::Power { closed_form: arguments.closed_form }
+    } else {
+        Equations::Torque
+    };
+    let observation = observed(equations)?;
+    let estimate = estimate(
+        &observation,
+        &EstimateSettings {
+            weighted: arguments.method.is_weighted(),
+            r_sigma: Some(arguments.r_sigma),
+            ..EstimateSettings::default()
+        },
+    );
+    let determined = estimate.parameters.iter().filter(|p| p.sigma.is_some()).count();
+    if estimate.rows <= determined {
+        return Err(Failure::Data(format!(
+            "{}: {} equations cannot determine {} parameters: record longer, or raise --band",
+            arguments.recording.recording.display(),
+            estimate.rows,
+            model.robot().base.len(),
+        )));
+    }
+    let torques = if arguments.method.is_power() { observed(Equations::Torque)? } else { observation.clone() };
+    let chi = estimate.chi();
+    let errors = (relative_error(&torques, &chi), per_equation(&torques, &chi));
+    let robot_name = arguments.recording.robot.as_deref().unwrap_or(&model.robot().name);
+    let identified = Identified::new(
+        model.robot(),
+        robot_name,
+        &Observed {
+            samples: observation.samples,
+            trajectories: &observation.trajectories,
+            left_out: &observation.left_out,
+            settings,
+        },
+        &estimate,
+        errors,
+        recorded.rows.left_out,
+    );
+    Ok((identified, estimate))
+}
+
+fn summary(
+    recorded: &Recorded,
+    identified: &Identified,
+    estimate: &Estimate,
+    arguments: &Arguments,
+) -> String {
+    let robot = recorded.dynamics.model().robot();
+    let mut text = format!("{}: {}\n", robot.name, recorded.title);
+    for line in left_out_words(recorded) {
+        text.push_str(&format!("{line}\n"));
+    }
+    text.push_str(&format!(
+        "{} on {} samples, {} equations of {} Hz bandwidth, condition number {}\n\n",
+        identified.method,
+        identified.samples,
+        estimate.rows,
+        significant(identified.band, 3),
+        significant(identified.condition_number, 3),
+    ));
+    text.push_str(&parameters(robot, identified, arguments.base));
+    if let Some(essential) = &identified.essential_parameters {
+        text.push_str(&format!(
+            "\n\n{} of {} parameters are essential (r_sigma {}), error with them {}; cancelled: {}",
+            essential.parameters.len(),
+            identified.base_parameters.len(),
+            significant(arguments.r_sigma, 3),
+            percent(essential.relative_error),
+            if essential.cancelled.is_empty() { "none".to_owned() } else { essential.cancelled.join(" ") },
+        ));
+    }
+    text.push_str("\n\n");
+    text.push_str(&equations(identified));
+    if let Some(power) = identified.power_relative_error {
+        text.push_str(&format!("\n\nrelative error of the power {}", percent(power)));
+    }
+    text.push_str(&format!("\n\nrelative error of the torques {}; per joint:", percent(identified.relative_error)));
+    for (joint, error) in identified.per_joint.iter().enumerate() {
+        text.push_str(&format!(" {}: {}", joint + 1, percent(*error)));
+    }
+    for warning in &identified.warnings {
+        text.push_str(&format!("\nwarning: {warning}"));
+    }
+    text
+}
+
+fn parameters(robot: &dynid_runtime::model::Robot, identified: &Identified, relations: bool) -> String {
+    let essential = identified.essential_parameters.as_ref();
+    let rows = identified
+        .base_parameters
+        .iter()
+        .map(|p| {
+            let kept = essential.and_then(|e| e.parameters.iter().find(|kept| kept.name == p.name));
+            let mut row = cells(p);
+            row.push(kept.map_or_else(String::new, |k| significant(k.value, 4)));
+            if relations {
+                let relation = robot.base.iter().find(|b| b.name == p.name).map_or("", |b| &b.relation);
+                row.push(format!("= {relation}"));
+            }
+            row
+        })
+        .collect();
+    let mut header = vec!["<parameter", "value", "sigma", "sigma %", "sigma by blocks", "<unit", "essential"];
+    if relations {
+        header.push("<");
+    }
+    table(&header, rows)
+}
+
+/// Name, value, sigma, relative sigma, sigma by blocks and unit as text.
+pub(crate) fn cells(p: &NamedParameter) -> Vec<String> {
+    let optional = |value: Option<f64>, digits| value.map_or_else(|| "-".to_owned(), |v| significant(v, digits));
+    vec![
+        p.name.clone(),
+        significant(p.value, 4),
+        optional(p.sigma, 2),
+        optional(p.relative_sigma_percent, 2),
+        optional(p.sigma_blocks, 2),
+        p.unit.clone(),
+    ]
+}
+
+/// Which equations were used and which were not.
+fn equations(identified: &Identified) -> String {
+    let rows = identified
+        .equations
+        .iter()
+        .map(|e| {
+            vec![
+                e.trajectory.clone(),
+                if e.joint == 0 { "power".to_owned() } else { e.joint.to_string() },
+                e.used.to_string(),
+                e.standstill.to_string(),
+                e.fixed.to_string(),
+                e.windows.to_string(),
+                e.edges.to_string(),
+                e.relative_error.map_or_else(|| "-".to_owned(), percent),
+            ]
+        })
+        .collect();
+    table(&["<trajectory", "joint", "used", "standstill", "fixed", "outside window", "at ends", "error"], rows)
+}

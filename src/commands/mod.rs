@@ -1,0 +1,48 @@
+//! The command line: one file a command.
+
+mod identify;
+mod robots;
+mod show;
+mod validate;
+
+pub(crate) use identify::cells as parameter_cells;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// From a modified-DH table and a recording to a dynamic model you can trust.
+#[derive(Debug, Parser)]
+#[command(name = "dynid", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// List the robots that have generated models
+    Robots,
+    /// Identify a robot's parameters from a recording
+    Identify(identify::Arguments),
+    /// Predict the torques of a recording with an identified model
+    Validate(validate::Arguments),
+    /// Show a robot: its table, its base parameters, its operation counts
+    Show(show::Arguments),
+}
+
+/// Runs the command line of this process and says how it went.
+pub fn run() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Robots => robots::run(),
+        Command::Identify(arguments) => identify::run(&arguments),
+        Command::Validate(arguments) => validate::run(&arguments),
+        Command::Show(arguments) => show::run(&arguments),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            failure.exit_code()
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! `dynid show ROBOT`: its table, what can be identified, what evaluating it costs.
+
+use clap::Args;
+use dynid_runtime::model::{Frame, JointKind, Robot};
+use dynid_runtime::report::significant;
+
+use crate::failure::Failure;
+use crate::models;
+use crate::output::{print, table};
+use crate::robots::{Dynamics, resolve};
+
+/// What to show.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A robot of `dynid robots`, or the path of a robot YAML
+    robot: String,
+    /// What is regrouped into each base parameter
+    #[arg(long)]
+    base: bool,
+    /// Operations of the generated h, dh and IDM
+    #[arg(long)]
+    ops: bool,
+}
+
+/// Prints the table, and what was asked for.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let dynamics = resolve(&arguments.robot, None)?;
+    let robot = dynamics.model().robot();
+    print(&format!("{}: {}", robot.name, robot.description));
+    print(&format!("gravity {:?} m/s2, {} joints", robot.gravity, robot.joints()));
+    print("");
+    print(&frames(robot));
+    print("");
+    print(&format!(
+        "{} standard parameters, {} base parameters:",
+        robot.standard.len(),
+        robot.base.len()
+    ));
+    if arguments.base {
+        print(&relations(robot));
+    } else {
+        print(&names(robot));
+    }
+    if arguments.ops {
+        print("");
+        print(&operations(&dynamics)?);
+    }
+    Ok(())
+}
+
+/// The modified-DH table; angles in rad, lengths in m.
+fn frames(robot: &Robot) -> String {
+    let number = |value: f64| significant(value, 6);
+    let variable = |frame: &Frame, kind: JointKind, j: usize, constant: f64| {
+        if frame.kind != kind {
+            return number(constant);
+        }
+        match constant {
+            0.0 => format!("q{j}"),
+            c if c < 0.0 => format!("q{j} - {}", number(-c)),
+            c => format!("q{j} + {}", number(c)),
+        }
+    };
+    let branched = robot.frames.iter().any(|f| f.gamma != 0.0 || f.b != 0.0);
+    let mut header = vec!["j", "a(j)", "sigma", "alpha", "d", "theta", "r"];
+    if branched {
+        header.splice(3..3, ["gamma", "b"]);
+    }
+    let rows = robot
+        .frames
+        .iter()
+        .enumerate()
+        .map(|(k, frame)| {
+            let j = k + 1;
+            let sigma = match frame.kind {
+                JointKind::Revolute => "0",
+                JointKind::Prismatic => "1",
+                JointKind::Fixed => "2",
+            };
+            let mut row = vec![
+                j.to_string(),
+                frame.parent.map_or(0, |p| p + 1).to_string(),
+                sigma.to_owned(),
+                number(frame.alpha),
+                number(frame.d),
+                variable(frame, JointKind::Revolute, j, frame.theta),
+                variable(frame, JointKind::Prismatic, j, frame.r),
+            ];
+            if branched {
+                row.splice(3..3, [number(frame.gamma), number(frame.b)]);
+            }
+            row
+        })
+        .collect();
+    table(&header, rows)
+}
+
+/// The names of the base parameters, a line a frame.
+fn names(robot: &Robot) -> String {
+    let mut lines: Vec<(usize, String)> = Vec::new();
+    for parameter in robot.base.iter() {
+        let frame = robot.standard[parameter.standard].frame;
+        match lines.last_mut() {
+            Some((known, line)) if *known == frame => {
+                line.push(' ');
+                line.push_str(&parameter.name);
+            }
+            _ => lines.push((frame, format!("  {}", parameter.name))),
+        }
+    }
+    lines.into_iter().map(|(_, line)| line).collect::<Vec<_>>().join("\n")
+}
+
+fn relations(robot: &Robot) -> String {
+    let rows = robot
+        .base
+        .iter()
+        .map(|p| vec![format!("  {}", p.name), format!("[{}]", p.unit), format!("= {}", p.relation)])
+        .collect();
+    let mut used = vec![false; robot.standard.len()];
+    for parameter in robot.base.iter() {
+        for &(index, _) in parameter.combination.iter() {
+            used[index] = true;
+        }
+    }
+    let silent: Vec<&str> =
+        robot.standard.iter().zip(&used).filter(|(_, used)| !**used).map(|(p, _)| p.name.as_ref()).collect();
+    let mut text = table(&["<", "<", "<"], rows);
+    if !silent.is_empty() {
+        text.push_str(&format!("\nwithout any effect on the joint torques: {}", silent.join(" ")));
+    }
+    text
+}
+
+fn operations(dynamics: &Dynamics) -> Result<String, Failure> {
+    let Dynamics::Generated(model) = dynamics else {
+        return Err(Failure::Input(
+            "operation counts are those of generated code: put the YAML into robots/ and build".to_owned(),
+        ));
+    };
+    let counts = models::operations(&model.robot().name).unwrap_or_default();
+    let rows = counts
+        .iter()
+        .map(|c| {
+            vec![
+                c.function.to_owned(),
+                c.multiplications.to_string(),
+                c.additions.to_string(),
+                c.sine_cosine_pairs.to_string(),
+                (c.multiplications + c.additions).to_string(),
+            ]
+        })
+        .collect();
+    Ok(table(&["<", "multiplications", "additions", "sin/cos pairs", "mul + add"], rows))
+}

@@ -1,0 +1,87 @@
+//! Words and tables on a terminal, files for other programs.
+
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, ContentArrangement, Table};
+
+use crate::failure::{Failure, file_failure};
+
+/// Prints to standard output; a reader that has gone away (`dynid show | head`) ends the output, not the program.
+pub fn print(text: &str) {
+    let mut out = std::io::stdout().lock();
+    // A closed pipe is the reader's decision, and there is nowhere left to report another failure.
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.write_all(b"\n"));
+}
+
+/// A table for a terminal. A header that starts with `<` sets its column to the left; the others hold numbers.
+pub fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
+    let mut table = Table::new();
+    table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(header.iter().map(|name| name.trim_start_matches('<')));
+    for row in rows {
+        table.add_row(row);
+    }
+    for (column, name) in table.column_iter_mut().zip(header) {
+        if !name.starts_with('<') {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table.to_string().lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
+}
+
+/// Writes a file, or standard output for `-`.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path.
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        print(text);
+        return Ok(());
+    }
+    std::fs::write(path, text).map_err(|error| file_failure("write it", path, &error))
+}
+
+/// Writes a value as JSON, or to standard output for `-`.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path.
+pub fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::Data(format!("the result cannot be written as JSON: {error}")))?;
+    write(path, &text)
+}
+
+/// True where progress may be drawn: a person is watching.
+pub fn watched() -> bool {
+    std::io::stderr().is_terminal()
+}
+
+/// A progress bar on standard error; silent where nobody watches.
+pub struct Bar(indicatif::ProgressBar);
+
+impl Bar {
+    /// A bar that counts `what`.
+    pub fn new(what: &'static str) -> Self {
+        let bar = if watched() { indicatif::ProgressBar::new(0) } else { indicatif::ProgressBar::hidden() };
+        // The template is a literal; should it not parse, the default style serves as well.
+        if let Ok(style) = indicatif::ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta}") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        Self(bar)
+    }
+
+    /// Moves it to `done` of `all`.
+    pub fn at(&self, done: usize, all: usize) {
+        self.0.set_length(all as u64);
+        self.0.set_position(done as u64);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

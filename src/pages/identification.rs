@@ -1,0 +1,109 @@
+//! The report of `identify`: the parameters, and the torques measured and predicted.
+
+use dynid_runtime::estimation::Identified;
+use dynid_runtime::estimation::observe::{Equations, ObserveError, ObserveSettings, Rows, observe};
+use dynid_runtime::model::Robot;
+use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
+
+use crate::recorded::{Recorded, left_out_words};
+
+/// The whole page.
+///
+/// # Errors
+/// What the observation refuses.
+pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, ObserveError> {
+    let model = recorded.dynamics.model();
+    let robot = model.robot();
+    let settings = ObserveSettings { keep_rows: true, ..recorded.settings.clone() };
+    let observation = observe(model, &recorded.motions, Equations::Torque, None, &settings, None)?;
+    let chi = identified.chi(robot).unwrap_or_else(|_| vec![0.0; robot.base.len()]);
+
+    let mut page = Page::new(&format!("{}: {}", robot.name, recorded.title));
+    page.verdict(&verdict(identified));
+    page.list(left_out_words(recorded));
+    page.list(&identified.warnings);
+    page.heading("Torques, measured and predicted");
+    for rows in observation.rows.iter().flatten() {
+        let name = &observation.trajectories[rows.trajectory];
+        page.plot(&torque_plot(rows, &chi, name, observation.trajectories.len() > 1));
+    }
+    page.note(&format!(
+        "Both are seen through the same filter of {} Hz bandwidth. Gaps are rows that were left out.",
+        significant(identified.band, 3)
+    ));
+    page.heading("Base parameters");
+    page.table(&["parameter", "value", "sigma", "sigma %", "sigma by blocks", "unit"], &parameters(identified));
+    page.note("sigma assumes errors that are independent from row to row; sigma by blocks does not.");
+    if let Some(essential) = &identified.essential_parameters {
+        page.subheading("Essential parameters");
+        page.paragraph(&format!(
+            "{} parameters are enough for an error of {}. Cancelled: {}.",
+            essential.parameters.len(),
+            percent(essential.relative_error),
+            essential.cancelled.join(", ")
+        ));
+    }
+    page.details("What is regrouped into each base parameter", |page| {
+        page.table(&["parameter", "relation"], &relations(robot));
+    });
+    page.details("Rows used and left out", |page| {
+        page.table(&["trajectory", "joint", "used", "standstill", "fixed", "window", "ends"], &rows(identified));
+    });
+    Ok(page.to_html())
+}
+
+fn verdict(identified: &Identified) -> String {
+    let worst = (0..identified.per_joint.len())
+        .max_by(|&a, &b| identified.per_joint[a].total_cmp(&identified.per_joint[b]));
+    let worst = worst.map_or_else(String::new, |joint| {
+        format!(" The worst joint is {} with {}.", joint + 1, percent(identified.per_joint[joint]))
+    });
+    format!(
+        "{} parameters identified with {}: the torques are reproduced with a relative error of {}.{worst}",
+        identified.base_parameters.len(),
+        identified.method,
+        percent(identified.relative_error)
+    )
+}
+
+fn torque_plot(rows: &Rows, chi: &[f64], trajectory: &str, several: bool) -> Plot {
+    let predicted = rows.predict(chi);
+    let curve = |values: &[f64]| -> Vec<(f64, f64)> {
+        rows.time
+            .iter()
+            .zip(values)
+            .zip(&rows.used)
+            .map(|((&t, &v), &used)| (t, if used { v } else { f64::NAN }))
+            .collect()
+    };
+    let mut title = format!("Joint {}", rows.equation + 1);
+    if several {
+        title.push_str(&format!(", {trajectory}"));
+    }
+    Plot::new(title, "time, s", "torque, N.m or N")
+        .with("measured", Role::Measured, SeriesKind::Line, curve(&rows.y))
+        .with("predicted", Role::After, SeriesKind::Line, curve(&predicted))
+        .with("difference", Role::Law, SeriesKind::Line, curve(&rows.residual(chi)))
+}
+
+fn parameters(identified: &Identified) -> Vec<Vec<String>> {
+    identified.base_parameters.iter().map(crate::commands::parameter_cells).collect()
+}
+
+fn relations(robot: &Robot) -> Vec<Vec<String>> {
+    robot.base.iter().map(|p| vec![p.name.to_string(), p.relation.to_string()]).collect()
+}
+
+fn rows(identified: &Identified) -> Vec<Vec<String>> {
+    identified
+        .equations
+        .iter()
+        .map(|e| {
+            let mut row = vec![e.trajectory.clone()];
+            row.extend(
+                [e.joint, e.used, e.standstill, e.fixed, e.windows, e.edges].iter().map(ToString::to_string),
+            );
+            row
+        })
+        .collect()
+}

@@ -1,0 +1,3 @@
+//! The HTML reports.
+
+pub mod identification;

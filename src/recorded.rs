@@ -1,0 +1,187 @@
+//! From the path of a recording to motions that a model can be evaluated on.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use dynid_runtime::estimation::observe::{ObserveError, ObserveSettings, Standstill};
+use dynid_runtime::estimation::{Bandwidth, choose_bandwidth};
+use dynid_runtime::recording::{Manifest, RecordingError, RowReport, Trajectory, load};
+use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare};
+
+use crate::failure::Failure;
+use crate::robots::{Dynamics, resolve};
+
+/// Which recording is read, and how it is sampled. The defaults are the same for every robot and recording.
+#[derive(Debug, Clone, Args)]
+pub struct RecordingOptions {
+    /// The recording: a YAML that names the robot, the files and the columns
+    pub recording: PathBuf,
+    /// Another robot than the one the recording names: a name, or the path of a robot YAML
+    #[arg(long)]
+    pub robot: Option<String>,
+    /// Use only what comes after this time, s
+    #[arg(long, allow_negative_numbers = true)]
+    pub from: Option<f64>,
+    /// Use only what comes before this time, s
+    #[arg(long, allow_negative_numbers = true)]
+    pub to: Option<f64>,
+    #[command(flatten)]
+    /// How it is sampled.
+    pub sampling: Sampling,
+}
+
+/// How signals become equations.
+#[derive(Debug, Clone, Args)]
+pub struct Sampling {
+    /// Band of the equations, Hz: what is faster is filtered out of torques and model alike [default: the widest, up
+    /// to 50 Hz, in which the encoders' noise hardly shows in the accelerations]
+    #[arg(long)]
+    pub band: Option<f64>,
+    /// Equations a second, Hz [default: twice the band]
+    #[arg(long)]
+    pub rate: Option<f64>,
+    /// Cut-off of the position filter, Hz [default: twice the band, at most a fifth of the recording's rate]
+    #[arg(long)]
+    pub cutoff: Option<f64>,
+    /// Leave out rows where the joint is slower than this, rad/s or m/s: one value, or one per joint [default: 2 %
+    /// of the joint's fastest speed]
+    #[arg(long, value_delimiter = ',', conflicts_with = "all_rows")]
+    pub standstill: Vec<f64>,
+    /// Keep the rows where joints stand still
+    #[arg(long)]
+    pub all_rows: bool,
+    /// Threads; the result is the same for every number [default: all cores]
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+}
+
+impl Sampling {
+    /// The same as settings of the observation.
+    pub fn settings(&self, joints: usize, band: f64, windows: Vec<[f64; 2]>) -> ObserveSettings {
+        let standstill = match (self.all_rows, self.standstill.as_slice()) {
+            (true, _) => Standstill::Keep,
+            (false, []) => Standstill::default(),
+            (false, [one]) => Standstill::Below(vec![*one; joints]),
+            (false, several) => Standstill::Below(several.to_vec()),
+        };
+        ObserveSettings {
+            band,
+            rate: self.rate,
+            standstill,
+            windows,
+            threads: self.threads,
+            ..ObserveSettings::default()
+        }
+    }
+}
+
+/// A recording that was read and prepared.
+pub struct Recorded {
+    /// The robot's dynamics.
+    pub dynamics: Dynamics,
+    /// The title of the recording.
+    pub title: String,
+    /// Its motions: filtered, differentiated, on a uniform grid.
+    pub motions: Vec<Motion>,
+    /// Motions, or pieces between two gaps, that are too short to be filtered and were left out.
+    pub too_short: Vec<String>,
+    /// Rows that could not be right.
+    pub rows: RowReport,
+    /// How equations are sampled from it.
+    pub settings: ObserveSettings,
+}
+
+/// Reads a recording and prepares its motions.
+///
+/// # Errors
+/// [`Failure::Input`] for what is wrong in a file, [`Failure::Data`] where the rows cannot support an answer.
+pub fn read(options: &RecordingOptions) -> Result<Recorded, Failure> {
+    let manifest = Manifest::read(&options.recording).map_err(recording_failure)?;
+    let dynamics = match &options.robot {
+        Some(name) => resolve(name, None)?,
+        None => resolve(&manifest.robot, Some(&manifest.folder))?,
+    };
+    let robot = dynamics.model().robot();
+    let windows = window(options.from, options.to)?;
+    let recording = load(&manifest, robot).map_err(recording_failure)?;
+    let band = match options.sampling.band {
+        Some(band) => band,
+        None => {
+            choose_bandwidth(&recording.trajectories)
+                .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?
+                .band
+        }
+    };
+    let mut motions: Vec<Motion> = Vec::new();
+    let mut too_short = Vec::new();
+    for trajectory in &recording.trajectories {
+        match prepare(trajectory, &preparation(&options.sampling, band, trajectory)) {
+            Ok(motion) => motions.push(motion),
+            Err(error @ SignalError::TooShort { .. }) => too_short.push(error.to_string()),
+            Err(error) => return Err(Failure::Data(in_recording(&options.recording, &error))),
+        }
+    }
+    if motions.is_empty() {
+        return Err(Failure::Data(format!("{}: {}", options.recording.display(), too_short.join("; "))));
+    }
+    let settings = options.sampling.settings(robot.joints(), band, windows);
+    Ok(Recorded { dynamics, title: manifest.title, motions, too_short, rows: recording.rows, settings })
+}
+
+/// The position filter that goes with a band at the trajectory's rate.
+fn preparation(sampling: &Sampling, band: f64, trajectory: &Trajectory) -> Preparation {
+    let rate = match (trajectory.time.first(), trajectory.time.last()) {
+        (Some(first), Some(last)) if last > first => (trajectory.time.len() - 1) as f64 / (last - first),
+        _ => 0.0,
+    };
+    // A rate of zero is refused where the trajectory is laid on its grid.
+    let cutoff = (rate > 0.0).then(|| Bandwidth::cutoff_for(band, rate));
+    Preparation { cutoff: sampling.cutoff.or(cutoff), ..Preparation::default() }
+}
+
+/// What the observation refuses, as the end of a command.
+pub fn observe_failure(recording: &Path, error: &ObserveError) -> Failure {
+    match error {
+        ObserveError::NoRows { .. } | ObserveError::Signal(_) => Failure::Data(in_recording(recording, error)),
+        _ => Failure::Input(in_recording(recording, error)),
+    }
+}
+
+/// One window from what was asked for; none: everything.
+fn window(from: Option<f64>, to: Option<f64>) -> Result<Vec<[f64; 2]>, Failure> {
+    if from.is_none() && to.is_none() {
+        return Ok(Vec::new());
+    }
+    let window = [from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY)];
+    if window[0] < window[1] {
+        Ok(vec![window])
+    } else {
+        Err(Failure::Input(format!("--from {} is not before --to {}", window[0], window[1])))
+    }
+}
+
+fn recording_failure(error: RecordingError) -> Failure {
+    if error.is_about_data() { Failure::Data(error.to_string()) } else { Failure::Input(error.to_string()) }
+}
+
+fn in_recording(path: &Path, error: &dyn std::error::Error) -> String {
+    format!("{}: {error}", path.display())
+}
+
+/// What of the files was not used: a line about the rows that were left out, the first of them, the cuts; nothing
+/// where every row was used.
+pub fn left_out_words(recorded: &Recorded) -> Vec<String> {
+    let rows = &recorded.rows;
+    let mut words = Vec::new();
+    if rows.left_out > 0 {
+        let reasons: Vec<String> =
+            rows.by_reason.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+        words.push(format!("{} of {} rows left out: {}", rows.left_out, rows.rows, reasons.join(", ")));
+        words.extend(rows.examples.iter().map(|row| format!("  {row}")));
+    }
+    words.extend(rows.cuts.iter().map(|cut| {
+        format!("{}: cut between {:.3} s and {:.3} s: {}", cut.trajectory, cut.after, cut.until, cut.what)
+    }));
+    words.extend(recorded.too_short.iter().map(|what| format!("left out: {what}")));
+    words
+}
