@@ -142,7 +142,9 @@ fn preparation(sampling: &Sampling, band: f64, trajectory: &Trajectory) -> Prepa
 /// What the observation refuses, as the end of a command.
 pub fn observe_failure(recording: &Path, error: &ObserveError) -> Failure {
     match error {
-        ObserveError::NoRows { .. } | ObserveError::Signal(_) => Failure::Data(in_recording(recording, error)),
+        ObserveError::NoRows { .. } | ObserveError::Signal(_) => {
+            Failure::Data(in_recording(recording, error))
+        }
         _ => Failure::Input(in_recording(recording, error)),
     }
 }

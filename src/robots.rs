@@ -50,8 +50,8 @@ pub fn resolve(name: &str, beside: Option<&Path>) -> Result<Dynamics, Failure> {
         _ => direct,
     };
     let robot = read(&path)?;
-    let model = RecursiveModel::new(robot)
-        .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+    let model =
+        RecursiveModel::new(robot).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
     Ok(Dynamics::Recursive(Box::new(model)))
 }
 

@@ -94,7 +94,8 @@ fn identify(recorded: &Recorded, arguments: &Arguments) -> Result<(Identified, E
             model.robot().base.len(),
         )));
     }
-    let torques = if arguments.method.is_power() { observed(Equations::Torque)? } else { observation.clone() };
+    let torques =
+        if arguments.method.is_power() { observed(Equations::Torque)? } else { observation.clone() };
     let chi = estimate.chi();
     let errors = (relative_error(&torques, &chi), per_equation(&torques, &chi));
     let robot_name = arguments.recording.robot.as_deref().unwrap_or(&model.robot().name);
@@ -149,7 +150,10 @@ fn summary(
     if let Some(power) = identified.power_relative_error {
         text.push_str(&format!("\n\nrelative error of the power {}", percent(power)));
     }
-    text.push_str(&format!("\n\nrelative error of the torques {}; per joint:", percent(identified.relative_error)));
+    text.push_str(&format!(
+        "\n\nrelative error of the torques {}; per joint:",
+        percent(identified.relative_error)
+    ));
     for (joint, error) in identified.per_joint.iter().enumerate() {
         text.push_str(&format!(" {}: {}", joint + 1, percent(*error)));
     }
@@ -184,7 +188,8 @@ fn parameters(robot: &dynid_runtime::model::Robot, identified: &Identified, rela
 
 /// Name, value, sigma, relative sigma, sigma by blocks and unit as text.
 pub(crate) fn cells(p: &NamedParameter) -> Vec<String> {
-    let optional = |value: Option<f64>, digits| value.map_or_else(|| "-".to_owned(), |v| significant(v, digits));
+    let optional =
+        |value: Option<f64>, digits| value.map_or_else(|| "-".to_owned(), |v| significant(v, digits));
     vec![
         p.name.clone(),
         significant(p.value, 4),
@@ -213,5 +218,8 @@ fn equations(identified: &Identified) -> String {
             ]
         })
         .collect();
-    table(&["<trajectory", "joint", "used", "standstill", "fixed", "outside window", "at ends", "error"], rows)
+    table(
+        &["<trajectory", "joint", "used", "standstill", "fixed", "outside window", "at ends", "error"],
+        rows,
+    )
 }

@@ -27,15 +27,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dynamics = resolve(&arguments.robot, None)?;
     let robot = dynamics.model().robot();
     print(&format!("{}: {}", robot.name, robot.description));
-    print(&format!("gravity {:?} m/s2, {} joints", robot.gravity, robot.joints()));
+    let [x, y, z] = robot.gravity;
+    print(&format!("gravity ({x}, {y}, {z}) m/s2, {} joints", robot.joints()));
     print("");
     print(&frames(robot));
     print("");
-    print(&format!(
-        "{} standard parameters, {} base parameters:",
-        robot.standard.len(),
-        robot.base.len()
-    ));
+    print(&format!("{} standard parameters, {} base parameters:", robot.standard.len(), robot.base.len()));
     if arguments.base {
         print(&relations(robot));
     } else {
@@ -50,7 +47,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The modified-DH table; angles in rad, lengths in m.
 fn frames(robot: &Robot) -> String {
-    let number = |value: f64| significant(value, 6);
+    let number = |value: f64| {
+        let text = significant(value, 6);
+        if text.contains('.') && !text.contains('e') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    };
     let variable = |frame: &Frame, kind: JointKind, j: usize, constant: f64| {
         if frame.kind != kind {
             return number(constant);

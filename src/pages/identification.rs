@@ -32,7 +32,10 @@ pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, Obse
         significant(identified.band, 3)
     ));
     page.heading("Base parameters");
-    page.table(&["parameter", "value", "sigma", "sigma %", "sigma by blocks", "unit"], &parameters(identified));
+    page.table(
+        &["parameter", "value", "sigma", "sigma %", "sigma by blocks", "unit"],
+        &parameters(identified),
+    );
     page.note("sigma assumes errors that are independent from row to row; sigma by blocks does not.");
     if let Some(essential) = &identified.essential_parameters {
         page.subheading("Essential parameters");
@@ -47,7 +50,10 @@ pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, Obse
         page.table(&["parameter", "relation"], &relations(robot));
     });
     page.details("Rows used and left out", |page| {
-        page.table(&["trajectory", "joint", "used", "standstill", "fixed", "window", "ends"], &rows(identified));
+        page.table(
+            &["trajectory", "joint", "used", "standstill", "fixed", "window", "ends"],
+            &rows(identified),
+        );
     });
     Ok(page.to_html())
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::observe::{LeftOut, ObserveSettings};
-use super::{Estimate, EquationError, ParameterEstimate, Warning};
+use super::{EquationError, Estimate, ParameterEstimate, Warning};
 use crate::model::Robot;
 
 /// An identified model: what `identify` writes as JSON and saves, and what `validate` reads back.
@@ -113,7 +113,11 @@ impl Identified {
             sigma: p.sigma,
             relative_sigma_percent: p.relative_sigma_percent,
             sigma_blocks: p.sigma_blocks,
-            unit: robot.base.iter().find(|b| b.name == p.name).map_or_else(String::new, |b| b.unit.to_string()),
+            unit: robot
+                .base
+                .iter()
+                .find(|b| b.name == p.name)
+                .map_or_else(String::new, |b| b.unit.to_string()),
         };
         let power = estimate.method.is_power();
         Identified {
