@@ -45,7 +45,7 @@ impl<R: Read + Seek> NpyReader<R> {
         let (start, shape) = header(&mut source).map_err(&error)?;
         let size = (shape.rows as u128 * shape.columns as u128).saturating_mul(shape.width as u128);
         let end = source.seek(SeekFrom::End(0)).map_err(|e| error(e.to_string()))?;
-        if u128::from(end) < size + u128::from(start) {
+        if u128::from(end) < size.saturating_add(u128::from(start)) {
             return Err(error(format!(
                 "the header promises {} rows of {} columns, but the file ends before that",
                 shape.rows, shape.columns
