@@ -5,6 +5,7 @@ use super::controller::{Controller, ControllerSettings};
 use super::plant::{Plant, State};
 use super::reference::Reference;
 use super::sensors::{SensorSettings, Sensors};
+use crate::model::Model;
 use crate::recording::Trajectory;
 use crate::signal::Motion;
 
@@ -21,6 +22,25 @@ pub struct LoopSettings {
     pub longest_step: f64,
     /// Name of the recorded trajectory.
     pub name: String,
+}
+
+impl LoopSettings {
+    /// The robot's nominal controller and sensors for base parameters `chi`, recorded at every control sample.
+    pub fn nominal(model: &dyn Model, chi: &[f64], reference: &dyn Reference, rate: f64, seed: u64) -> Self {
+        let robot = model.robot();
+        let n = robot.joints();
+        let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        reference.at(0.0, &mut q, &mut dq, &mut ddq);
+        let (mut mass, mut bias) = (vec![0.0; n * n], vec![0.0; n]);
+        model.mass_and_bias(chi, &q, &dq, &mut mass, &mut bias);
+        Self {
+            controller: ControllerSettings::nominal(robot, chi, &mass, rate),
+            sensors: SensorSettings::nominal(robot, seed),
+            record_every: 1,
+            longest_step: 5e-4,
+            name: "simulated".to_string(),
+        }
+    }
 }
 
 /// What a closed loop gives.

@@ -15,6 +15,7 @@ mod extra;
 mod integrator;
 mod plant;
 mod reference;
+mod residue;
 mod rest;
 mod sensors;
 
@@ -25,6 +26,7 @@ pub use error::SimulationError;
 pub use extra::{ExtraTorque, Instant};
 pub use plant::{ElasticJoint, Hold, Plant, State};
 pub use reference::{Reference, SampledReference};
+pub use residue::Residue;
 pub use sensors::SensorSettings;
 
 #[cfg(test)]

@@ -107,3 +107,140 @@ pub fn arm() -> (RecursiveModel, Vec<f64>) {
 pub fn random_state(n: usize, random: &mut rand_pcg::Pcg64) -> [Vec<f64>; 3] {
     [2.0, 3.0, 20.0].map(|size| (0..n).map(|_| random.random_range(-size..size)).collect())
 }
+
+/// The robot with only the independent columns of its regressor kept, found numerically: each column that depends
+/// on those before it is regrouped into them. An oracle of its own, for tests that need a small base.
+pub fn with_numeric_base(robot: &Robot) -> Robot {
+    use crate::model::{BaseParameter, Model};
+    use nalgebra::{DMatrix, DVector};
+    let model = RecursiveModel::new(robot.clone()).unwrap();
+    let (n, columns) = (robot.joints(), robot.standard.len());
+    let pattern = model.pattern();
+    let mut random = rand_pcg::Pcg64::seed_from_u64(1);
+    let states = 3 * columns / n + 10;
+    let mut w = DMatrix::<f64>::zeros(states * n, columns);
+    let mut entries = vec![0.0; pattern.columns.len()];
+    for s in 0..states {
+        let [q, dq, ddq] = random_state(n, &mut random);
+        model.idm(&q, &dq, &ddq, &mut entries);
+        for i in 0..n {
+            for e in pattern.rows[i]..pattern.rows[i + 1] {
+                w[(s * n + i, pattern.columns[e])] = entries[e];
+            }
+        }
+    }
+    let mut kept: Vec<usize> = Vec::new();
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut dropped = Vec::new();
+    for c in 0..columns {
+        let mut rest: DVector<f64> = w.column(c).into();
+        let size = rest.norm();
+        for _ in 0..2 {
+            for b in &basis {
+                rest -= b * b.dot(&rest);
+            }
+        }
+        if rest.norm() > 1e-9 * size.max(1e-9) {
+            basis.push(&rest / rest.norm());
+            kept.push(c);
+        } else {
+            dropped.push(c);
+        }
+    }
+    let small = DMatrix::from_columns(&kept.iter().map(|&c| w.column(c)).collect::<Vec<_>>());
+    let svd = small.svd(true, true);
+    let mut combinations: Vec<Vec<(usize, f64)>> = kept.iter().map(|&c| vec![(c, 1.0)]).collect();
+    for c in dropped {
+        let x = svd.solve(&w.column(c), 1e-12).unwrap();
+        for (k, &value) in x.iter().enumerate() {
+            if value.abs() > 1e-9 {
+                combinations[k].push((c, value));
+            }
+        }
+    }
+    let mut robot = robot.clone();
+    robot.base = kept
+        .iter()
+        .zip(combinations)
+        .map(|(&c, mut combination)| {
+            combination.sort_by_key(|x| x.0);
+            let regrouped = if combination.len() > 1 { "R" } else { "" };
+            BaseParameter {
+                name: format!("{}{regrouped}", robot.standard[c].name).into(),
+                standard: c,
+                combination: combination.into(),
+                relation: "".into(),
+                unit: "".into(),
+            }
+        })
+        .collect::<Vec<_>>()
+        .into();
+    robot
+}
+
+/// The TX-40 of Table I without payload, with parameters of published order, limits, gains and noise.
+pub fn tx40() -> (RecursiveModel, Vec<f64>) {
+    use crate::model::Nominal;
+    use JointKind::Revolute;
+    let half = std::f64::consts::FRAC_PI_2;
+    let mut frames = vec![
+        frame(Revolute, 0.0, 0.0, 0.0, None),
+        frame(Revolute, -half, 0.0, 0.0, Some(0)),
+        frame(Revolute, 0.0, 0.225, 0.035, Some(1)),
+        frame(Revolute, half, 0.0, 0.225, Some(2)),
+        frame(Revolute, -half, 0.0, 0.0, Some(3)),
+        frame(Revolute, half, 0.0, 0.0, Some(4)),
+    ];
+    frames[1].theta = -half;
+    frames[2].theta = half;
+    let mut gear = vec![0.0; 36];
+    for (k, ratio) in [32.0, 32.0, 45.0, -48.0, 45.0, 32.0].into_iter().enumerate() {
+        gear[7 * k] = ratio;
+    }
+    gear[34] = 32.0;
+    let drive = Drive { gear: gear.into(), coupled_friction: vec![5].into() };
+    let mut robot = Robot::with_standard_as_base("tx40", [0.0, 0.0, -9.81], frames, drive, Limits::default());
+    let values = [
+        ("XX", [0.424, 0.0443, 0.0397, 0.147, 0.001, 0.0035]),
+        ("YY", [0.424, 0.14, 0.0398, 0.146, 0.001, 0.0035]),
+        ("ZZ", [0.352, 0.124, 0.0046, 0.0042, 0.001, 0.00035]),
+        ("MX", [0.0, 0.392, 0.0326, 0.0145, 0.0, 0.0]),
+        ("MY", [0.0, -0.0072, 0.0244, -0.00724, -0.00306, 0.0]),
+        ("MZ", [-0.43, 0.162, 0.265, -0.369, -0.00102, 0.00168]),
+        ("M", [8.61, 4.85, 4.07, 3.62, 1.02, 0.2]),
+        ("Ia", [0.362, 0.507, 0.0829, 0.0341, 0.0361, 0.0114]),
+        ("Fv", [7.94, 5.69, 1.98, 1.11, 1.6, 0.69]),
+        ("Fc", [6.98, 7.83, 6.19, 2.41, 3.41, 1.83]),
+        ("Fvm", [0.0, 0.0, 0.0, 0.0, 0.0, 0.7]),
+        ("Fcm", [0.0, 0.0, 0.0, 0.0, 0.0, 1.7]),
+    ];
+    let mut standard = vec![0.0; robot.standard.len()];
+    for (p, value) in robot.standard.iter().zip(&mut standard) {
+        let letters = p.name.trim_end_matches(|c: char| c.is_ascii_digit());
+        if let Some((_, list)) = values.iter().find(|(name, _)| *name == letters) {
+            *value = list[p.frame];
+        }
+    }
+    let degrees = |list: [f64; 6]| -> Vec<[f64; 2]> {
+        list.iter().map(|x| [-x.to_radians(), x.to_radians()]).collect()
+    };
+    robot.limits = Limits {
+        position: degrees([180.0, 125.0, 138.0, 270.0, 120.0, 270.0]).into(),
+        velocity: degrees([287.0, 287.0, 430.0, 410.0, 320.0, 700.0]).into(),
+        acceleration: vec![[-50.0, 50.0]; 6].into(),
+        torque: [150.0, 180.0, 80.0, 35.0, 35.0, 20.0].map(|x| [-x, x]).to_vec().into(),
+    };
+    robot.nominal = Some(Nominal {
+        standard: standard.clone().into(),
+        kp: vec![9000.0, 9000.0, 2200.0, 500.0, 350.0, 150.0].into(),
+        kd: vec![260.0, 260.0, 65.0, 15.0, 10.0, 4.5].into(),
+        ki: vec![].into(),
+        position_noise: [0.057, 0.057, 0.122, 0.114, 0.122, 0.172]
+            .map(|x: f64| (x * 1e-3).to_radians())
+            .to_vec()
+            .into(),
+        torque_noise: vec![0.6, 0.6, 0.3, 0.1, 0.1, 0.08].into(),
+    });
+    let model = RecursiveModel::new(with_numeric_base(&robot)).unwrap();
+    (model, standard)
+}

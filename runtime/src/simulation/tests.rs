@@ -1,8 +1,10 @@
 #![allow(clippy::unwrap_used)]
 //! The plant against energy, against the inverse dynamics, and against friction worked out by hand.
 
-use super::excitation::{FourierJoint, FourierMotion};
-use super::testing::{arm, pendulum, random_state, wrist};
+use super::excitation::{
+    ExcitationSettings, FourierJoint, FourierMotion, Identification, MotionKind, excite,
+};
+use super::testing::{arm, pendulum, random_state, tx40, wrist};
 use super::*;
 use crate::model::{Model, ParameterKind, RecursiveModel};
 use rand::{RngExt, SeedableRng};
@@ -345,4 +347,28 @@ fn settings_that_do_not_fit_are_refused() {
     }
     let mut plant = Plant::new(&model, &chi).unwrap();
     assert!(simulate(&mut plant, &wave(&[0.0, 0.0], 1.0), &good, &mut |_| {}).is_err());
+}
+
+#[test]
+fn the_tx40_follows_an_exciting_motion_under_control() {
+    let (model, standard) = tx40();
+    check_standard(model.robot(), &standard).unwrap();
+    assert_eq!(model.robot().base.len(), 60);
+    let chi = model.robot().base_from_standard(&standard);
+    let settings = ExcitationSettings {
+        kind: MotionKind::Fourier { harmonics: 5, period: 4.0, periods: 1 },
+        identification: Identification::Idim,
+        sets: 1,
+        starts: 1,
+        evaluations: 60,
+        share: 0.9,
+        seed: 1,
+    };
+    let plan = excite(&model, Some(&chi), &settings, &|_| {}).unwrap();
+    let residue = Residue::typical(model.robot(), &standard, 1.0).boxed();
+    let mut plant = Plant::with_effects(&model, &standard, &[], vec![residue]).unwrap();
+    let settings = LoopSettings::nominal(&model, &chi, &plan.motions[0], 5000.0, 1);
+    let run = simulate(&mut plant, &plan.motions[0], &settings, &mut |_| {}).unwrap();
+    assert!(run.tracking_error.iter().all(|&e| e < 0.02), "{:?}", run.tracking_error);
+    assert!(run.limited.iter().all(|&k| k == 0), "{:?}", run.limited);
 }
