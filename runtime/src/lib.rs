@@ -3,6 +3,7 @@
 
 pub mod estimation;
 pub mod model;
+pub mod paper;
 pub mod recording;
 pub mod report;
 pub mod signal;

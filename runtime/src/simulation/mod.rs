@@ -30,6 +30,6 @@ pub use residue::Residue;
 pub use sensors::SensorSettings;
 
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
