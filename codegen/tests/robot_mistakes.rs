@@ -308,6 +308,20 @@ frames:
 }
 
 #[test]
+fn a_wrong_row_does_not_hide_what_is_wrong_below_the_table() {
+    let text = "name: arm
+frames:
+  - {j: 1, sigma: 0, alpha: none, d: 0, theta: q1, r: 0}
+drive: {gear: [0], coupled_friction: [1, 4]}
+limits: {speed: 1, position: [1, 2]}
+nominal: {parameters: {Fvm1: 1, Fvm2: 1}}
+";
+    let places: Vec<String> =
+        mistakes(text).iter().map(|m| m.splitn(3, ':').take(2).collect::<Vec<_>>().join(":")).collect();
+    assert_eq!(places, ["3:29", "4:16", "4:42", "5:10", "6:33"]);
+}
+
+#[test]
 fn nesting_and_size_have_bounds() {
     let deep = format!("name: {}{}", "[".repeat(5000), "]".repeat(5000));
     assert!(mistakes(&deep)[0].contains("recursion limit"));

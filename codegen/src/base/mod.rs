@@ -11,46 +11,12 @@ mod attainable;
 mod friction;
 mod placement;
 mod regroup;
-mod standard;
 
-pub use standard::standard_parameters;
+pub use crate::robot::{ParameterKind, StandardParameter};
 
 use crate::exact::Form;
-use crate::robot::Robot;
+use crate::robot::{Robot, standard_parameters};
 use regroup::Regrouping;
-
-/// What a standard parameter is, in the order of (3).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[allow(missing_docs)]
-pub enum ParameterKind {
-    XX,
-    XY,
-    XZ,
-    YY,
-    YZ,
-    ZZ,
-    MX,
-    MY,
-    MZ,
-    M,
-    Ia,
-    Fv,
-    Fc,
-    Off,
-    Fvm,
-    Fcm,
-}
-
-/// A standard parameter of a robot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StandardParameter {
-    /// `ZZ1`, `Ia3`, `Fvm6`: kind and number j of the frame.
-    pub name: String,
-    /// What it is.
-    pub kind: ParameterKind,
-    /// Index of its frame in `Robot::frames`.
-    pub frame: usize,
-}
 
 /// A base parameter: the standard parameter whose column is kept, and what was regrouped into it.
 #[derive(Debug, Clone, PartialEq)]

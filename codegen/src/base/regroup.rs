@@ -4,7 +4,7 @@ use super::attainable::{Attainable, OFFSET, SPEEDS};
 use super::placement::{Inertia, Placement, angles_of};
 use super::{ParameterKind, StandardParameter};
 use crate::exact::{Form, Number, decimal};
-use crate::robot::{JointKind, Robot};
+use crate::robot::{INERTIAL, JointKind, Robot};
 use std::collections::BTreeMap;
 
 /// Preference of a revolute link's parameters, by index in XX .. M: the last ones are regrouped first, so that in the
@@ -175,7 +175,7 @@ fn keep_one(
     direction: &[Number],
 ) {
     let wanted = match pivot {
-        0..OFFSET => super::standard::INERTIAL[pivot],
+        0..OFFSET => INERTIAL[pivot],
         OFFSET => ParameterKind::Off,
         _ => ParameterKind::Ia,
     };

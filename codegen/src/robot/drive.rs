@@ -9,21 +9,22 @@ use num_traits::Zero;
 
 const KEYS: [&str; 2] = ["gear", "coupled_friction"];
 
-/// Reads `drive`.
+/// Reads `drive`. What is wrong is reported and left as it is without the key.
 pub(super) fn read_drive(
     reader: &mut Reader,
     node: &Node,
     frames: &[Frame],
     constants: &[(String, f64)],
-) -> Option<Drive> {
+) -> Drive {
     let joints: Vec<usize> = frames.iter().filter(|f| f.kind != JointKind::Fixed).map(|f| f.j).collect();
-    let fields = reader.fields(node, "drive", &KEYS)?;
     let mut drive = Drive::direct(joints.len());
-    if let Some(gear) = fields.get("gear") {
-        drive.gear = read_gear(reader, gear, &joints, constants)?;
+    let Some(fields) = reader.fields(node, "drive", &KEYS) else { return drive };
+    if let Some(gear) = fields.get("gear").and_then(|gear| read_gear(reader, gear, &joints, constants)) {
+        drive.gear = gear;
     }
     if let Some(coupled) = fields.get("coupled_friction") {
-        for item in reader.list(coupled, "coupled_friction as a list of joint numbers")? {
+        let items = reader.list(coupled, "coupled_friction as a list of joint numbers");
+        for item in items.unwrap_or_default() {
             let Some(j) = reader.integer(item, "the number j of a joint") else { continue };
             match joints.iter().position(|&k| k == j) {
                 None => reader.report(
@@ -38,7 +39,7 @@ pub(super) fn read_drive(
         }
         drive.coupled_friction.sort_unstable();
     }
-    Some(drive)
+    drive
 }
 
 fn read_gear(

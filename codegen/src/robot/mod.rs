@@ -1,4 +1,30 @@
 //! A robot as its YAML says: the modified-DH table in symbols.
+//!
+//! ```yaml
+//! name: arm                         # a Rust identifier
+//! description: one line             # optional
+//! gravity: [0, 0, -9.81]            # m/s2, in frame 0; this where it is not given
+//! constants: {d3: 0.225}            # optional; a constant may use those above it
+//! frames:                           # angles in rad, lengths in m
+//!   - {j: 1, sigma: 0, alpha: 0,     d: 0,  theta: q1,        r: 0}
+//!   - {j: 2, sigma: 0, alpha: -pi/2, d: 0,  theta: q2 - pi/2, r: 0}
+//!   - {j: 3, parent: 1, sigma: 1, gamma: pi/4, b: 0.1, alpha: 0, d: d3, theta: 0, r: q3}
+//! drive:                            # optional
+//!   gear: [32, 32, 400]             # one ratio a joint, or a matrix: motor speed = gear * joint speed
+//!   coupled_friction: [2]           # motors with friction at motor speed (Fvm2, Fcm2)
+//! limits:                           # optional, each of them; x stands for [-x, x], one value for every joint
+//!   position: [pi, [-1, 2], 0.2]
+//!   velocity: 3
+//!   acceleration: 50
+//!   torque: [100, 80, 200]
+//! nominal:                          # optional, each of them
+//!   parameters: {ZZ1: 0.35, Fv1: 7.9}              # standard parameters by name; others are 0
+//!   controller: {kp: [900, 700, 5000], kd: 20, ki: 0}  # joint side
+//!   noise: {position: 1e-6, torque: 0.3}           # one sigma, joint side
+//! ```
+//!
+//! Wherever a number stands there may be an expression of numbers, `pi` and constants with + - * / and parentheses.
+//! theta of a revolute joint and r of a prismatic one are `q<j>` plus such an expression, in any order.
 
 mod diagnostic;
 mod document;
@@ -8,11 +34,14 @@ mod formula;
 mod parse;
 mod reader;
 mod simulation_values;
+mod standard;
 mod table;
 
 pub use diagnostic::Diagnostic;
 pub use expression::Expression;
 pub use parse::parse;
+pub(crate) use standard::INERTIAL;
+pub use standard::{ParameterKind, StandardParameter, standard_parameters};
 
 /// A robot read from its YAML, checked.
 #[derive(Debug, Clone, PartialEq)]

@@ -50,26 +50,15 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<Robot> {
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let drive = match fields.get("drive") {
         Some(node) => read_drive(reader, node, &frames, &constants),
-        None => Some(Drive::direct(joints)),
+        None => Drive::direct(joints),
     };
     let limits = match fields.get("limits") {
         Some(node) => read_limits(reader, node, joints, &constants),
         None => Limits::default(),
     };
-    let nominal = match (fields.get("nominal"), &drive) {
-        (Some(node), Some(drive)) => read_nominal(reader, node, &frames, drive, &constants),
-        _ => None,
-    };
-    Some(Robot {
-        name: name?,
-        description,
-        gravity: gravity?,
-        constants,
-        frames,
-        drive: drive?,
-        limits,
-        nominal,
-    })
+    let nominal =
+        fields.get("nominal").and_then(|node| read_nominal(reader, node, &frames, &drive, &constants));
+    Some(Robot { name: name?, description, gravity: gravity?, constants, frames, drive, limits, nominal })
 }
 
 fn read_constants(reader: &mut Reader, node: &Node) -> Vec<(String, f64)> {

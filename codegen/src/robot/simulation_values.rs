@@ -1,11 +1,9 @@
 //! Limits, and the nominal values for simulation.
 
-use super::document::{Node, Value};
+use super::diagnostic::nearest;
+use super::document::{Node, Value, shortened};
 use super::reader::Reader;
-use super::{Drive, Frame, JointKind, Limits, Nominal};
-use crate::base::standard_parameters;
-use crate::robot::diagnostic::nearest;
-use crate::robot::document::shortened;
+use super::{Drive, Frame, JointKind, Limits, Nominal, standard_parameters};
 
 /// Reads `limits`: per joint a number x, which stands for [-x, x], or [low, high]; one number stands for every joint.
 pub(super) fn read_limits(

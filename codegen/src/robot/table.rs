@@ -1,6 +1,7 @@
 //! The rows of the modified-DH table.
 
 use super::document::{Node, Place, Value};
+use super::formula::Formula;
 use super::reader::Reader;
 use super::{Expression, Frame, JointKind};
 
@@ -8,7 +9,8 @@ const KEYS: [&str; 9] = ["j", "parent", "sigma", "gamma", "b", "alpha", "d", "th
 /// Most rows that a table may have.
 const MAX_FRAMES: usize = 64;
 
-/// Reads `frames`. `None` where a row is so wrong that nothing that counts joints can be checked.
+/// Reads `frames`. An entry that is wrong is reported and taken as 0, so that what counts joints can be checked too;
+/// `None` where the joints cannot be counted.
 pub(super) fn read_frames(
     reader: &mut Reader,
     node: &Node,
@@ -63,68 +65,53 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
             }
         }
     });
-    let parent = match fields.get("parent") {
-        Some(node) => reader.integer(node, "parent as the number of a frame (0 is the base)"),
-        None => Some(j - 1),
-    };
+    let parent = fields.get("parent");
+    let parent_place = parent.map_or(node.place, |node| node.place);
+    let parent =
+        parent.and_then(|node| reader.integer(node, "parent as the number of a frame (0 is the base)"));
     let mut constant = |key: &str, needed: bool| {
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) };
-        match node {
-            Some(node) => reader.constant(node, key, constants),
-            None => (!needed).then_some(Expression::ZERO),
-        }
+        node.and_then(|node| reader.constant(node, key, constants)).unwrap_or(Expression::ZERO)
     };
-    let gamma = constant("gamma", false);
-    let b = constant("b", false);
-    let alpha = constant("alpha", true);
-    let d = constant("d", true);
-    let mut moving = |key: &str, moves: Option<bool>| {
+    let (gamma, b) = (constant("gamma", false), constant("b", false));
+    let (alpha, d) = (constant("alpha", true), constant("d", true));
+    let mut moving = |key: &str, moves: JointKind| {
         let node = reader.required(&fields, key)?;
         let formula = reader.formula(node, key, constants)?;
-        let signs: Vec<(usize, i32)> = formula.variables.iter().map(|&(k, sign, _)| (k, sign)).collect();
-        let sigma = match kind {
-            Some(JointKind::Revolute) => "0 (revolute)",
-            Some(JointKind::Prismatic) => "1 (prismatic)",
-            _ => "2 (fixed)",
-        };
-        match (moves, signs.as_slice()) {
-            (None, _) | (Some(false), []) => {}
-            (Some(true), &[(k, 1)]) if k == j => {}
-            (Some(true), []) => {
-                reader.report(
-                    node.place,
-                    format!("{key} of frame {j} does not match sigma {sigma}: expected q{j} plus a constant"),
-                );
-            }
-            (Some(true), _) => {
-                reader.report(node.place, format!("{key} of frame {j}: expected q{j} once, plus a constant"));
-            }
-            (Some(false), &[(k, _), ..]) => {
-                reader.report(
-                    node.place,
-                    format!(
-                        "{key} of frame {j} does not match sigma {sigma}: expected a constant, found q{k}"
-                    ),
-                );
-            }
+        if let Some(kind) = kind
+            && let Err(message) = check_variable(&formula, key, j, kind, kind == moves)
+        {
+            reader.report(node.place, message);
         }
-        Some(formula.constant.unwrap_or(Expression::ZERO))
+        formula.constant
     };
-    let theta = moving("theta", kind.map(|k| k == JointKind::Revolute));
-    let r = moving("r", kind.map(|k| k == JointKind::Prismatic));
-    let frame = Frame {
-        j,
-        parent: parent?,
-        kind: kind?,
-        gamma: gamma?,
-        b: b?,
-        alpha: alpha?,
-        d: d?,
-        theta: theta?,
-        r: r?,
-    };
-    let parent_place = fields.get("parent").map_or(node.place, |node| node.place);
+    let theta = moving("theta", JointKind::Revolute).unwrap_or(Expression::ZERO);
+    let r = moving("r", JointKind::Prismatic).unwrap_or(Expression::ZERO);
+    let frame = Frame { j, parent: parent.unwrap_or(j - 1), kind: kind?, gamma, b, alpha, d, theta, r };
     Some(Row { frame, parent_place })
+}
+
+/// The joint variable stands once where the joint moves (`expected`), and nowhere else.
+fn check_variable(
+    formula: &Formula,
+    key: &str,
+    j: usize,
+    kind: JointKind,
+    expected: bool,
+) -> Result<(), String> {
+    let sigma = match kind {
+        JointKind::Revolute => "0 (revolute)",
+        JointKind::Prismatic => "1 (prismatic)",
+        JointKind::Fixed => "2 (fixed)",
+    };
+    let mismatch = format!("{key} of frame {j} does not match sigma {sigma}");
+    match (expected, formula.variables.as_slice()) {
+        (false, []) => Ok(()),
+        (false, [(k, ..), ..]) => Err(format!("{mismatch}: expected a constant, found q{k}")),
+        (true, []) => Err(format!("{mismatch}: expected q{j} plus a constant")),
+        (true, [(k, 1, _)]) if *k == j => Ok(()),
+        (true, _) => Err(format!("{key} of frame {j}: expected q{j} once, plus a constant")),
+    }
 }
 
 /// Every parent must be a frame that comes earlier.

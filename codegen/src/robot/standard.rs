@@ -1,11 +1,43 @@
 //! The standard parameters (3) of a robot, in the order of chi_st.
 
-use super::{ParameterKind, StandardParameter};
-use crate::robot::{Drive, Frame, JointKind};
+use super::{Drive, Frame, JointKind};
 use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M, MX, MY, MZ, Off, XX, XY, XZ, YY, YZ, ZZ};
 
+/// What a standard parameter is, in the order of (3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum ParameterKind {
+    XX,
+    XY,
+    XZ,
+    YY,
+    YZ,
+    ZZ,
+    MX,
+    MY,
+    MZ,
+    M,
+    Ia,
+    Fv,
+    Fc,
+    Off,
+    Fvm,
+    Fcm,
+}
+
+/// A standard parameter of a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StandardParameter {
+    /// `ZZ1`, `Ia3`, `Fvm6`: kind and number j of the frame.
+    pub name: String,
+    /// What it is.
+    pub kind: ParameterKind,
+    /// Index of its frame in `Robot::frames`.
+    pub frame: usize,
+}
+
 /// The ten inertial parameters of a link, in order.
-pub(super) const INERTIAL: [ParameterKind; 10] = [XX, XY, XZ, YY, YZ, ZZ, MX, MY, MZ, M];
+pub(crate) const INERTIAL: [ParameterKind; 10] = [XX, XY, XZ, YY, YZ, ZZ, MX, MY, MZ, M];
 
 /// The standard parameters of a table: for each frame XX XY XZ YY YZ ZZ MX MY MZ M; where it is a joint Ia Fv Fc off
 /// follow, then Fvm Fcm where its motor has coupled friction.
