@@ -18,7 +18,7 @@ pub struct Reach {
 
 impl Reach {
     /// Twice the range of the position limits about its middle, three times the velocity limit, ten times the
-    /// torque limit; where the robot states none: 100 rad or 100 m, 40 rad/s or 20 m/s, 1e5 N.m or N.
+    /// torque limit; where the robot states none: 100 rad or 100 m, 30 rad/s or 20 m/s, 1e5 N.m or N.
     pub fn of(robot: &Robot) -> Self {
         let kinds: Vec<JointKind> =
             robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect();
@@ -33,7 +33,7 @@ impl Reach {
             _ => [-100.0, 100.0],
         };
         let velocity = |(j, kind): (usize, &JointKind)| {
-            let unknown = if *kind == JointKind::Prismatic { 20.0 } else { 40.0 };
+            let unknown = if *kind == JointKind::Prismatic { 20.0 } else { 30.0 };
             magnitude(&robot.limits.velocity, j).map_or(unknown, |v| 3.0 * v)
         };
         Self {
@@ -137,7 +137,8 @@ pub(super) fn screen(piece: &Piece, reach: &Reach, speed_limits: bool) -> Verdic
     let kept: Vec<usize> = (0..rows).filter(|&row| good[row]).collect();
     let step = typical_step(&piece.time, &kept);
     let jump = |a: usize, b: usize| -> Option<String> {
-        let dt = (piece.time[b] - piece.time[a]).max(step);
+        // A stamp may be late or early by some rows' time, so that a short step may be a longer one.
+        let dt = (piece.time[b] - piece.time[a]).max(step) + (5.0 * step).min(0.010);
         piece.position.iter().enumerate().find_map(|(j, q)| {
             let speed = (q[b] - q[a]).abs() / dt;
             let bound = reach.velocity[j];

@@ -61,6 +61,22 @@ fn spikes_within_reach_are_left_out_as_jumps() {
 }
 
 #[test]
+fn jittery_stamps_of_a_fast_motion_are_no_jumps() {
+    // 2 rad/s sampled at 1 kHz, stamps late by up to 8 ms, and a speed limit of 2.2 rad/s.
+    let mut piece = motion(4000);
+    piece.position[0] = (0..4000).map(|k| 2e-3 * k as f64 - 4.0).collect();
+    for block in piece.time.chunks_exact_mut(100) {
+        let end = block[9];
+        for (k, t) in block[..9].iter_mut().enumerate() {
+            *t = end - 1e-4 * (9 - k) as f64;
+        }
+    }
+    let slow = Reach { velocity: vec![6.6, 30.0], ..reach(2) };
+    let verdict = screen(&piece, &slow, true);
+    assert!(verdict.faults.is_empty() && verdict.cuts.is_empty(), "{:?} {:?}", verdict.faults, verdict.cuts);
+}
+
+#[test]
 fn a_lasting_jump_cuts_the_motion_in_two() {
     let mut piece = motion(500);
     for row in 250..500 {

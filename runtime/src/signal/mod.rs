@@ -21,7 +21,7 @@ pub use error::SignalError;
 pub use lag::{Lag, lag_between};
 pub use motion::Motion;
 pub use order::{OrderPeak, OrderSpectrum, order_spectrum};
-pub use prepare::{Preparation, VelocitySource, prepare};
+pub use prepare::{Preparation, VelocitySource, prepare, prepare_all};
 pub use resample::UniformGrid;
 pub use standstill::Standstill;
 pub use welch::{Spectrum, welch};

@@ -25,8 +25,11 @@ pub struct Preparation {
 /// Where dq comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VelocitySource {
-    /// Central differences of the filtered positions, as in the paper.
+    /// For each joint the recorded velocity if there is one that agrees with the positions (scale within 2 %, no
+    /// lag beyond a tenth of a sample or 0.5 ms) and is less noisy than their differences; else the positions.
     #[default]
+    Automatic,
+    /// Central differences of the filtered positions, as in the paper.
     Positions,
     /// The recorded velocity, filtered with the same filter, where there is one; else the positions.
     Recorded,
@@ -34,7 +37,7 @@ pub enum VelocitySource {
 
 impl Default for Preparation {
     fn default() -> Self {
-        Self { cutoff: None, order: 4, rate: None, velocity: VelocitySource::Positions, stencil: None }
+        Self { cutoff: None, order: 4, rate: None, velocity: VelocitySource::Automatic, stencil: None }
     }
 }
 
@@ -87,11 +90,26 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
         out
     };
     let q = trajectory.position.iter().map(filtered).collect::<Result<Vec<_>, _>>()?;
-    let dq = match (&trajectory.velocity, settings.velocity) {
-        (Some(velocity), VelocitySource::Recorded) => {
-            velocity.iter().map(filtered).collect::<Result<Vec<_>, _>>()?
-        }
-        _ => q.iter().map(derivative).collect(),
+    let differences = |j: usize| derivative(&q[j]);
+    let dq = match &trajectory.velocity {
+        Some(velocity) if settings.velocity != VelocitySource::Positions => velocity
+            .iter()
+            .enumerate()
+            .map(|(j, recorded)| {
+                let recorded = grid.resample(recorded);
+                let mut filtered = Vec::new();
+                filter.zero_phase_into(&recorded, padding, &mut filtered)?;
+                if settings.velocity == VelocitySource::Recorded {
+                    return Ok(filtered);
+                }
+                let raw = derivative(&grid.resample(&trajectory.position[j]));
+                let ours = differences(j);
+                let inside = spoiled..grid.len - spoiled;
+                let agrees = agree(&filtered[inside.clone()], &ours[inside], rate);
+                Ok(if agrees && roughness(&recorded) < roughness(&raw) { filtered } else { ours })
+            })
+            .collect::<Result<Vec<_>, SignalError>>()?,
+        _ => (0..q.len()).map(differences).collect(),
     };
     let ddq = dq.iter().map(derivative).collect();
     Ok(Motion {
@@ -105,6 +123,49 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
         fixed: trajectory.fixed.clone(),
         spoiled,
     })
+}
+
+/// Prepares the trajectories of a recording. Those that are too short to be filtered, as pieces between two gaps may
+/// be, are left out and named; it is an error only if none remains.
+pub fn prepare_all(
+    trajectories: &[Trajectory],
+    settings: &Preparation,
+) -> Result<(Vec<Motion>, Vec<SignalError>), SignalError> {
+    let (mut motions, mut too_short) = (Vec::new(), Vec::new());
+    for trajectory in trajectories {
+        match prepare(trajectory, settings) {
+            Ok(motion) => motions.push(motion),
+            Err(error @ SignalError::TooShort { .. }) => too_short.push(error),
+            Err(error) => return Err(error),
+        }
+    }
+    match (motions.is_empty(), too_short.first()) {
+        (true, Some(first)) => Err(first.clone()),
+        _ => Ok((motions, too_short)),
+    }
+}
+
+/// Whether `recorded` is `ours` up to noise: least squares of recorded = scale * ours - lag * d(ours)/dt.
+fn agree(recorded: &[f64], ours: &[f64], rate: f64) -> bool {
+    let mut slope = vec![0.0; ours.len()];
+    central_difference(ours, rate, Stencil::Three, &mut slope);
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let (dd, ss, ds) = (dot(ours, ours), dot(&slope, &slope), dot(ours, &slope));
+    let (rd, rs, rr) = (dot(recorded, ours), dot(recorded, &slope), dot(recorded, recorded));
+    let determinant = dd * ss - ds * ds;
+    if determinant <= 1e-9 * dd * ss {
+        return false;
+    }
+    let scale = (rd * ss - rs * ds) / determinant;
+    let lag = -(rs * dd - rd * ds) / determinant;
+    let rest = rr - scale * rd + lag * rs;
+    (scale - 1.0).abs() <= 0.02 && lag.abs() <= (0.1 / rate).max(0.5e-3) && rest <= 0.01 * rr
+}
+
+/// Mean square of the third differences: what a signal has of noise, for a motion has next to none of it.
+fn roughness(signal: &[f64]) -> f64 {
+    let third = |w: &[f64]| (w[3] - w[0]) - 3.0 * (w[2] - w[1]);
+    signal.windows(4).map(|w| third(w).powi(2)).sum::<f64>() / signal.len().max(1) as f64
 }
 
 fn check(trajectory: &Trajectory) -> Result<(), SignalError> {

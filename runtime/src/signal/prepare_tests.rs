@@ -1,4 +1,4 @@
-use super::{Preparation, VelocitySource, prepare};
+use super::{Preparation, VelocitySource, prepare, prepare_all};
 use crate::recording::Trajectory;
 use crate::signal::oracle::{oracle, worst};
 use crate::signal::{Stencil, central_difference};
@@ -84,4 +84,39 @@ fn what_cannot_be_prepared_is_told() {
     assert!(prepare(&uneven, &settings).is_err());
     let cutoff = Preparation { cutoff: Some(400.0), ..settings };
     assert!(prepare(&sine(500.0, 2000, 0.0), &cutoff).is_err());
+}
+
+/// Positions rounded to 1e-4 rad at 100 Hz, velocities to 1e-4 rad/s: `dq` of the preparation against `wanted`.
+fn chosen(velocity: impl Fn(f64) -> f64) -> (f64, f64) {
+    let mut t = sine(100.0, 3000, 0.0);
+    let round = |x: f64| (x * 1e4).round() / 1e4;
+    t.position[0].iter_mut().for_each(|q| *q = round(*q));
+    let recorded: Vec<f64> = t.time.iter().map(|&t| round(velocity(t))).collect();
+    t.velocity = Some(vec![recorded]);
+    let of = |velocity| {
+        let settings = Preparation { velocity, cutoff: Some(20.0), ..Preparation::default() };
+        prepare(&t, &settings).expect("a valid motion").dq.remove(0)
+    };
+    let automatic = of(VelocitySource::Automatic);
+    let distance = |other: Vec<f64>| worst(&automatic, &other);
+    (distance(of(VelocitySource::Positions)), distance(of(VelocitySource::Recorded)))
+}
+
+#[test]
+fn a_recorded_velocity_is_used_where_it_agrees_with_the_positions_and_is_quieter() {
+    let true_one = |t: f64| 6.0 * (6.0 * t).cos();
+    assert_eq!(chosen(true_one).1, 0.0);
+    // Wrong scale, late by 20 ms, noisy.
+    assert_eq!(chosen(|t| 1.1 * true_one(t)).0, 0.0);
+    assert_eq!(chosen(|t| true_one(t - 0.02)).0, 0.0);
+    assert_eq!(chosen(|t| true_one(t) + 0.2 * (1e5 * t).sin()).0, 0.0);
+}
+
+#[test]
+fn pieces_too_short_to_filter_are_left_out_and_named() {
+    let (long, short) = (sine(500.0, 2000, 0.0), sine(500.0, 40, 0.0));
+    let settings = Preparation::default();
+    let (motions, too_short) = prepare_all(&[short.clone(), long], &settings).expect("one remains");
+    assert_eq!((motions.len(), too_short.len()), (1, 1));
+    assert!(prepare_all(&[short], &settings).is_err());
 }
