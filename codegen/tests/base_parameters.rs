@@ -76,10 +76,16 @@ fn check(robot: &Robot, random: &mut Pcg64) -> Result<(), String> {
 }
 
 #[test]
-fn the_base_of_every_robot_has_the_numeric_rank_and_the_same_torques() {
+fn the_base_of_every_robot_has_the_numeric_rank_and_the_same_torques_under_any_gravity() {
     let mut random = Pcg64::seed_from_u64(7);
     for name in ROBOTS {
-        check(&robot(name), &mut random).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mut robot = robot(name);
+        for gravity in
+            [robot.gravity, [0.0; 3], [9.81, 0.0, 0.0], [0.0, 9.81, 0.0], [0.0, 0.0, 9.81], [1.0, 2.0, 3.0]]
+        {
+            robot.gravity = gravity;
+            check(&robot, &mut random).unwrap_or_else(|e| panic!("{name} in {gravity:?}: {e}"));
+        }
     }
 }
 
