@@ -19,7 +19,7 @@ use crate::recorded::{Recorded, RecordingOptions, left_out_words, observe_failur
 pub(super) struct Arguments {
     #[command(flatten)]
     recording: RecordingOptions,
-    /// idim-ols, idim-wls, pim-ols or pim-wls
+    /// idim-ols, idim-wls, pim-ols, pim-wls; robust idim-irls, pim-irls; total least squares idim-tls, pim-tls
     #[arg(long, default_value = "idim-wls")]
     method: Method,
     /// The power model from dh in closed form instead of differentiating h as in the paper
@@ -80,9 +80,8 @@ fn identify(recorded: &Recorded, arguments: &Arguments) -> Result<(Identified, E
     let estimate = estimate(
         &observation,
         &EstimateSettings {
-            weighted: arguments.method.is_weighted(),
             r_sigma: Some(arguments.r_sigma),
-            ..EstimateSettings::default()
+            ..EstimateSettings::for_method(arguments.method)
         },
     );
     let determined = estimate.parameters.iter().filter(|p| p.sigma.is_some()).count();

@@ -3,8 +3,10 @@
 use super::blocks::block_sigmas;
 use super::essential::eliminate;
 use super::observe::{Equations, Observation};
-use super::outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Warning};
+use super::outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning};
+use super::robust::reweight;
 use super::solve::{Solution, back_substitute};
+use super::total::total_least_squares;
 use super::weights::{Weights, equal, from_own_fits, iterate, residual_norm, solve_active, stack};
 
 /// How parameters are estimated from an observation.
@@ -12,6 +14,8 @@ use super::weights::{Weights, equal, from_own_fits, iterate, residual_norm, solv
 pub struct EstimateSettings {
     /// Whether equations are weighted by their errors, per joint and trajectory.
     pub weighted: bool,
+    /// How the equations are solved.
+    pub solver: Solver,
     /// The paper's r_sigma for the essential parameters (10 to 30); `None`: they are not looked for.
     pub r_sigma: Option<f64>,
     /// Condition number of the scaled W above which a warning names the parameters concerned.
@@ -22,30 +26,65 @@ pub struct EstimateSettings {
 
 impl Default for EstimateSettings {
     fn default() -> Self {
-        EstimateSettings { weighted: true, r_sigma: Some(20.0), worst_condition: 1000.0, block_sigmas: true }
+        EstimateSettings {
+            weighted: true,
+            solver: Solver::LeastSquares,
+            r_sigma: Some(20.0),
+            worst_condition: 1000.0,
+            block_sigmas: true,
+        }
     }
 }
 
-/// Least squares on an observation (15), weighted or not, with standard deviations (16) to (19).
+impl EstimateSettings {
+    /// The defaults for a method.
+    pub fn for_method(method: Method) -> EstimateSettings {
+        EstimateSettings {
+            weighted: method.is_weighted(),
+            solver: method.solver(),
+            ..EstimateSettings::default()
+        }
+    }
+}
+
+/// Estimates the parameters of an observation (15), weighted or not, with standard deviations (16) to (19).
 ///
-/// What the data do not determine is named in the warnings and set to zero, never inverted.
+/// What the data do not determine is named in the warnings and set to zero, never inverted. The standard deviations
+/// of a total least-squares estimate are those of least squares with its residual, to first order.
 pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estimate {
     let mut warnings = Vec::new();
     // Which columns are independent does not depend on the weights.
     let first = if settings.weighted { from_own_fits(observation) } else { equal(observation) };
-    let active = stack(observation, &first.sigma).solve().kept;
-    let weights = if settings.weighted { settle(observation, &active, first, &mut warnings) } else { first };
-    let stacked = stack(observation, &weights.sigma);
-    let solution = stacked.select(&active).solve();
-    let everything = stacked.solve();
+    let everything = stack(observation, &first.sigma).solve();
+    let active = everything.kept.clone();
+    let robust = (settings.solver == Solver::Robust).then(|| reweight(observation, &active));
+    if let Some(robust) = robust.as_ref().filter(|r| !r.converged) {
+        warnings.push(Warning::NotConverged { iterations: robust.iterations });
+    }
+    // What is solved; errors are always those of the observation as it is.
+    let counted = robust.as_ref().map_or(observation, |r| &r.observation);
+    let first = if robust.is_some() { from_own_fits(counted) } else { first };
+    let weights = if settings.weighted { settle(counted, &active, first, &mut warnings) } else { first };
+    let stacked = stack(counted, &weights.sigma).select(&active);
+    let mut solution = stacked.solve();
+    if settings.solver == Solver::Total {
+        let exact: Vec<bool> = active.iter().map(|&l| observation.exact[l]).collect();
+        match total_least_squares(&stacked, &exact) {
+            Some(chi) => {
+                solution.residual_norm = stacked.residual_norm(&chi);
+                solution.chi = chi;
+            }
+            None => warnings.push(Warning::NoTotalSolution),
+        }
+    }
 
     let chi = spread(&solution.chi, &active, observation.unknowns.len());
     let noise = solution.residual_norm.powi(2) / (solution.degrees_of_freedom.max(1)) as f64;
     let by_blocks =
-        if settings.block_sigmas { block_sigmas(observation, &active, &weights.sigma, &chi) } else { None };
+        if settings.block_sigmas { block_sigmas(counted, &active, &weights.sigma, &chi) } else { None };
     let parameters =
         described(observation, &active, &solution.chi, &solution.variance, noise, by_blocks.as_deref());
-    describe_dependence(observation, &everything, &active, &mut warnings);
+    describe_dependence(observation, &everything, &mut warnings);
     if solution.condition > settings.worst_condition {
         warnings.push(Warning::BadlyConditioned {
             condition: solution.condition,
@@ -59,11 +98,10 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
             warnings.push(Warning::NotExplained { equation, relative_error });
         }
     }
-    let essential = settings
-        .r_sigma
-        .map(|r_sigma| simplified(observation, &active, &weights, r_sigma, settings.weighted));
+    let essential =
+        settings.r_sigma.map(|r_sigma| simplified(counted, &active, &weights, r_sigma, settings.weighted));
     Estimate {
-        method: method_of(observation, settings.weighted),
+        method: method_of(observation, settings),
         parameters,
         errors,
         relative_error: relative_error(observation, &chi),
@@ -72,17 +110,23 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
         degrees_of_freedom: solution.degrees_of_freedom,
         condition: solution.condition,
         iterations: weights.iterations,
+        low_blocks: robust.map_or_else(Vec::new, |r| r.low),
         warnings,
         essential,
     }
 }
 
-fn method_of(observation: &Observation, weighted: bool) -> Method {
-    match (observation.equations, weighted) {
-        (Equations::Torque, false) => Method::IdimOls,
-        (Equations::Torque, true) => Method::IdimWls,
-        (Equations::Power { .. }, false) => Method::PimOls,
-        (Equations::Power { .. }, true) => Method::PimWls,
+fn method_of(observation: &Observation, settings: &EstimateSettings) -> Method {
+    let power = observation.equations != Equations::Torque;
+    match (settings.solver, settings.weighted, power) {
+        (Solver::Robust, _, false) => Method::IdimIrls,
+        (Solver::Robust, _, true) => Method::PimIrls,
+        (Solver::Total, _, false) => Method::IdimTls,
+        (Solver::Total, _, true) => Method::PimTls,
+        (_, false, false) => Method::IdimOls,
+        (_, true, false) => Method::IdimWls,
+        (_, false, true) => Method::PimOls,
+        (_, true, true) => Method::PimWls,
     }
 }
 
@@ -145,20 +189,13 @@ fn described(
     parameters
 }
 
-fn describe_dependence(
-    observation: &Observation,
-    everything: &Solution,
-    active: &[usize],
-    warnings: &mut Vec<Warning>,
-) {
+fn describe_dependence(observation: &Observation, everything: &Solution, warnings: &mut Vec<Warning>) {
     for group in &everything.dependent {
         let Some((&parameter, others)) = group.split_first() else { continue };
-        if !active.contains(&parameter) {
-            warnings.push(Warning::NotDetermined {
-                parameter: observation.unknowns[parameter].clone(),
-                from: others.iter().map(|&l| observation.unknowns[l].clone()).collect(),
-            });
-        }
+        warnings.push(Warning::NotDetermined {
+            parameter: observation.unknowns[parameter].clone(),
+            from: others.iter().map(|&l| observation.unknowns[l].clone()).collect(),
+        });
     }
 }
 

@@ -57,6 +57,7 @@ fn observation(unknowns: &[&str], dense: &[Dense], blocks: usize) -> Observation
         equations: Equations::Torque,
         unknowns: unknowns.iter().map(|s| s.to_string()).collect(),
         base: unknowns.len(),
+        exact: vec![false; unknowns.len()],
         trajectories: (0..trajectories).map(|t| format!("t{t}")).collect(),
         rates: vec![100.0; trajectories],
         bands: vec![50.0; trajectories],
@@ -298,4 +299,36 @@ fn perfect_data_have_finite_weights_and_the_exact_parameters() {
         assert!((p.value - expected).abs() < 1e-11);
     }
     assert!(estimate.relative_error < 1e-12);
+}
+
+#[test]
+fn a_spoiled_block_of_time_counts_less_and_does_not_move_the_robust_estimate() {
+    let mut dense = made(11, 400, [[0.1, 0.1]; 2], 0.0);
+    dense.truncate(1);
+    // Somebody leans on the joint for one block in ten.
+    for i in 120..160 {
+        dense[0].y[i] += 20.0;
+    }
+    let seen = observation(&NAMES, &dense, 10);
+    let distance = |e: &Estimate| -> f64 {
+        e.parameters.iter().zip(TRUE).map(|(p, x)| (p.value - x).powi(2)).sum::<f64>().sqrt()
+    };
+    let ordinary = estimate(&seen, &plain());
+    let robust = estimate(
+        &seen,
+        &EstimateSettings { r_sigma: None, ..EstimateSettings::for_method(Method::IdimIrls) },
+    );
+    assert_eq!(robust.method, Method::IdimIrls);
+    assert!(distance(&robust) < 0.2 * distance(&ordinary), "{} {}", distance(&robust), distance(&ordinary));
+    let low: Vec<_> = robust.low_blocks.iter().map(|b| (b.trajectory, b.equation, b.time)).collect();
+    assert_eq!(low, [(0, 0, [3.0, 4.0])]);
+}
+
+#[test]
+fn methods_are_found_by_the_name_they_print() {
+    for method in Method::ALL {
+        assert_eq!(method.name().parse(), Ok(method));
+        assert_eq!(serde_json::to_string(&method).unwrap(), format!("\"{}\"", method.name()));
+    }
+    assert!("idim".parse::<Method>().unwrap_err().contains("idim-wls"));
 }

@@ -7,14 +7,20 @@ mod estimate;
 mod factor;
 mod householder;
 mod identified;
+mod instrumental;
 pub mod observe;
 mod outcome;
+mod robust;
 mod solve;
+mod total;
 mod weights;
 
 pub use bandwidth::{Bandwidth, choose_bandwidth};
 pub use estimate::{EstimateSettings, estimate, per_equation, relative_error};
 pub use factor::{BLOCK_ROWS, Factor};
 pub use identified::{EquationRows, EssentialParameters, Identified, NamedParameter, Observed};
-pub use outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Warning};
+pub use instrumental::{InstrumentalEstimate, Instruments, instrumental_variables};
+pub use outcome::{
+    BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,
+};
 pub use solve::{RANK_TOLERANCE, Solution};

@@ -14,11 +14,28 @@ pub enum Method {
     PimOls,
     /// Power model, one weight per trajectory (21).
     PimWls,
+    /// Inverse dynamic model, weighted, blocks of time that do not fit count less.
+    IdimIrls,
+    /// Inverse dynamic model, weighted, with errors in the columns as well.
+    IdimTls,
+    /// Power model, weighted, blocks of time that do not fit count less.
+    PimIrls,
+    /// Power model, weighted, with errors in the columns as well.
+    PimTls,
 }
 
 impl Method {
     /// Every method, in the order in which they are listed to a person.
-    pub const ALL: [Method; 4] = [Method::IdimOls, Method::IdimWls, Method::PimOls, Method::PimWls];
+    pub const ALL: [Method; 8] = [
+        Method::IdimOls,
+        Method::IdimWls,
+        Method::PimOls,
+        Method::PimWls,
+        Method::IdimIrls,
+        Method::IdimTls,
+        Method::PimIrls,
+        Method::PimTls,
+    ];
 
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -27,18 +44,43 @@ impl Method {
             Method::IdimWls => "idim-wls",
             Method::PimOls => "pim-ols",
             Method::PimWls => "pim-wls",
+            Method::IdimIrls => "idim-irls",
+            Method::IdimTls => "idim-tls",
+            Method::PimIrls => "pim-irls",
+            Method::PimTls => "pim-tls",
         }
     }
 
     /// Whether the power model is identified.
     pub fn is_power(self) -> bool {
-        matches!(self, Method::PimOls | Method::PimWls)
+        matches!(self, Method::PimOls | Method::PimWls | Method::PimIrls | Method::PimTls)
     }
 
     /// Whether equations are weighted.
     pub fn is_weighted(self) -> bool {
-        matches!(self, Method::IdimWls | Method::PimWls)
+        !matches!(self, Method::IdimOls | Method::PimOls)
     }
+
+    /// How the weighted equations are solved.
+    pub fn solver(self) -> Solver {
+        match self {
+            Method::IdimIrls | Method::PimIrls => Solver::Robust,
+            Method::IdimTls | Method::PimTls => Solver::Total,
+            _ => Solver::LeastSquares,
+        }
+    }
+}
+
+/// How the equations are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Solver {
+    /// Least squares (15).
+    #[default]
+    LeastSquares,
+    /// Blocks of time that do not fit count less: Huber's M-estimator.
+    Robust,
+    /// Errors in the columns as well as in Y.
+    Total,
 }
 
 impl std::str::FromStr for Method {
@@ -85,6 +127,19 @@ pub struct EquationError {
     pub rows: usize,
 }
 
+/// A block of time that counts less than half in a robust estimate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BlockWeight {
+    /// Index of the motion.
+    pub trajectory: usize,
+    /// Joint (0-based), or 0 for the power model.
+    pub equation: usize,
+    /// First and last row, s.
+    pub time: [f64; 2],
+    /// What it counts, 1 for a block that fits.
+    pub weight: f64,
+}
+
 /// What a person should know about an estimate before believing it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
@@ -117,6 +172,8 @@ pub enum Warning {
         /// Its relative error.
         relative_error: f64,
     },
+    /// Total least squares has no solution here; that of least squares is given.
+    NoTotalSolution,
     /// The weights had not settled.
     NotConverged {
         /// Iterations made.
@@ -153,6 +210,9 @@ impl std::fmt::Display for Warning {
                 equation + 1,
                 100.0 * relative_error
             ),
+            Warning::NoTotalSolution => {
+                write!(f, "total least squares has no solution here: the values are those of least squares")
+            }
             Warning::NotConverged { iterations } => {
                 write!(f, "the weights had not settled after {iterations} iterations")
             }
@@ -192,6 +252,8 @@ pub struct Estimate {
     pub condition: f64,
     /// Iterations of the weights.
     pub iterations: usize,
+    /// Blocks of time that count less than half, where the estimate is robust.
+    pub low_blocks: Vec<BlockWeight>,
     /// What to know before believing it.
     pub warnings: Vec<Warning>,
     /// The simplified model, where it was asked for.

@@ -14,7 +14,7 @@ pub use rows::Rows;
 pub use select::{LeftOut, Standstill};
 
 use super::Factor;
-use crate::model::Model;
+use crate::model::{Model, ParameterKind};
 use crate::signal::{Decimator, KeptRows, Motion, SignalError};
 
 /// What is observed.
@@ -178,6 +178,8 @@ pub struct Observation {
     pub unknowns: Vec<String>,
     /// How many of the unknowns are base parameters.
     pub base: usize,
+    /// Which unknowns have columns without measuring errors: constants, and the sign of the speed.
+    pub exact: Vec<bool>,
     /// Name of each motion.
     pub trajectories: Vec<String>,
     /// Rows a second, for each motion, Hz.
@@ -245,8 +247,15 @@ pub fn observe(
     if let (Some(extra), Equations::Torque) = (extra, equations) {
         unknowns.extend(extra.names().iter().cloned());
     }
+    let exact = |kind| {
+        matches!(kind, ParameterKind::Off | ParameterKind::Fc | ParameterKind::Fcm)
+            && equations == Equations::Torque
+    };
+    let mut exact: Vec<bool> = robot.base.iter().map(|p| exact(robot.standard[p.standard].kind)).collect();
+    exact.resize(unknowns.len(), false);
     Ok(Observation {
         equations,
+        exact,
         base: robot.base.len(),
         unknowns,
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),

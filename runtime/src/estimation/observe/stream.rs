@@ -10,6 +10,8 @@ use crate::signal::{Decimator, KeptRows};
 
 /// Samples that are evaluated at a time.
 const BLOCK: usize = 64;
+/// From one column to the next: at a power of two all columns would fall on the same lines of the cache.
+const STRIDE: usize = BLOCK + 8;
 
 /// Calls `keep(row, values)` for each of the kept rows `rows` in ascending order; `values` has one number per
 /// column of the source.
@@ -34,14 +36,14 @@ pub(super) fn decimate<S: Source + ?Sized>(
     };
     let open = (taps.len() + BLOCK) / grid.step + 2;
     let mut sums = vec![0.0; open * columns];
-    let mut values = vec![0.0; columns * BLOCK];
+    let mut values = vec![0.0; columns * STRIDE];
     let mut scratch = Vec::new();
     let end = window(rows.end - 1).end;
     let mut first_open = rows.start;
     let mut at = window(rows.start).start;
     while at < end {
         let block = at..(at + BLOCK).min(end);
-        source.fill(block.clone(), BLOCK, &mut values, &mut scratch);
+        source.fill(block.clone(), STRIDE, &mut values, &mut scratch);
         let mut finished = 0;
         for row in first_open..rows.end {
             let window = window(row);
@@ -69,10 +71,10 @@ pub(super) fn decimate<S: Source + ?Sized>(
 /// Adds the products of the taps with each column's samples from `offset` on.
 fn accumulate(taps: &[f64], values: &[f64], offset: usize, sums: &mut [f64]) {
     let whole = taps.len() / 4 * 4;
-    let mut groups = values.chunks_exact(4 * BLOCK);
+    let mut groups = values.chunks_exact(4 * STRIDE);
     let mut outs = sums.chunks_exact_mut(4);
     for (group, out) in groups.by_ref().zip(outs.by_ref()) {
-        let x: [&[f64]; 4] = std::array::from_fn(|c| &group[c * BLOCK + offset..][..taps.len()]);
+        let x: [&[f64]; 4] = std::array::from_fn(|c| &group[c * STRIDE + offset..][..taps.len()]);
         let mut lanes = [f64x4::ZERO; 4];
         for i in (0..whole).step_by(4) {
             let h = load(&taps[i..i + 4]);
@@ -84,7 +86,7 @@ fn accumulate(taps: &[f64], values: &[f64], offset: usize, sums: &mut [f64]) {
             *out += lane.reduce_add() + plain(&taps[whole..], &x[whole..]);
         }
     }
-    for (column, out) in groups.remainder().chunks_exact(BLOCK).zip(outs.into_remainder()) {
+    for (column, out) in groups.remainder().chunks_exact(STRIDE).zip(outs.into_remainder()) {
         let x = &column[offset..][..taps.len()];
         let mut lane = f64x4::ZERO;
         for i in (0..whole).step_by(4) {

@@ -1,0 +1,179 @@
+//! Instrumental variables: parameters that noise in the measured states does not bias.
+
+use std::ops::Range;
+
+use super::observe::{Equations, ExtraColumns, Observation};
+use super::weights::stack;
+use crate::model::{Model, States};
+use crate::signal::Motion;
+use nalgebra::DMatrix;
+
+/// Instruments for the inverse dynamic model: its columns along simulated, noise-free motions (Janot, Vandanjon and
+/// Gautier 2014). Handed to the observation of the measured motions as extra columns.
+pub struct Instruments<'a> {
+    model: &'a dyn Model,
+    simulated: &'a [Motion],
+    names: Vec<String>,
+    columns: Vec<Vec<usize>>,
+    entries: usize,
+}
+
+impl<'a> Instruments<'a> {
+    /// `simulated` has one motion for each measured one, on the same grid.
+    pub fn new(model: &'a dyn Model, simulated: &'a [Motion]) -> Instruments<'a> {
+        let pattern = model.pattern();
+        let columns = pattern.rows.windows(2).map(|w| pattern.columns[w[0]..w[1]].to_vec()).collect();
+        let names = model.robot().base.iter().map(|p| format!("instrument of {}", p.name)).collect();
+        Instruments { model, simulated, names, columns, entries: pattern.columns.len() }
+    }
+}
+
+impl ExtraColumns for Instruments<'_> {
+    fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    fn columns(&self, joint: usize) -> &[usize] {
+        &self.columns[joint]
+    }
+
+    fn fill(
+        &self,
+        trajectory: usize,
+        _: &Motion,
+        range: Range<usize>,
+        joint: usize,
+        stride: usize,
+        out: &mut [f64],
+    ) {
+        let motion = &self.simulated[trajectory];
+        let [q, dq, ddq] = [&motion.q, &motion.dq, &motion.ddq]
+            .map(|x| x.iter().map(|x| &x[range.clone()]).collect::<Vec<&[f64]>>());
+        let mut entries = vec![0.0; self.entries * stride];
+        self.model.idm_block(States { q: &q, dq: &dq, ddq: &ddq }, stride, &mut entries);
+        let rows = &self.model.pattern().rows;
+        out.copy_from_slice(&entries[rows[joint] * stride..rows[joint + 1] * stride]);
+    }
+}
+
+/// Parameters with their standard deviations by instrumental variables.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InstrumentalEstimate {
+    /// The base parameters.
+    pub chi: Vec<f64>,
+    /// Their standard deviations, for errors that are independent from row to row.
+    pub sigma: Vec<f64>,
+}
+
+/// Solves ZT W chi = ZT Y for an observation whose extra columns are [`Instruments`], with one sigma per group of the
+/// observation (as of a weighted estimate's errors; all ones for no weights).
+///
+/// No product of matrices is made: with the triangle of [Z W Y], ZT W = RzzT Rzw and ZT Y = RzzT rzy, so that
+/// Rzw chi = rzy. `None`: the instruments do not determine the parameters, or the observation has none.
+pub fn instrumental_variables(observation: &Observation, sigma: &[f64]) -> Option<InstrumentalEstimate> {
+    let k = observation.base;
+    if observation.equations != Equations::Torque || observation.unknowns.len() != 2 * k {
+        return None;
+    }
+    let order: Vec<usize> = (k..2 * k).chain(0..k).collect();
+    let factor = stack(observation, sigma).select(&order);
+    let cross = DMatrix::from_fn(k, k, |i, l| factor.r(i, k + l));
+    let y = DMatrix::from_fn(k, 1, |i, _| factor.r(i, 2 * k));
+    let scale: Vec<f64> = cross.column_iter().map(|c| c.norm()).collect();
+    if scale.contains(&0.0) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(k, k, |i, l| cross[(i, l)] / scale[l]);
+    let lu = scaled.lu();
+    let solved = lu.solve(&y)?;
+    let inverse = lu.try_inverse()?;
+    let chi: Vec<f64> = (0..k).map(|l| solved[l] / scale[l]).collect();
+    // The residual of the equations themselves: the instruments' columns take no part in it.
+    let all: Vec<f64> = std::iter::repeat_n(0.0, k).chain(chi.iter().copied()).collect();
+    let freedom = factor.rows().saturating_sub(k).max(1) as f64;
+    let noise = factor.residual_norm(&all) / freedom.sqrt();
+    let sigma = (0..k).map(|l| noise * inverse.row(l).norm() / scale[l]).collect();
+    Some(InstrumentalEstimate { chi, sigma })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimation::observe::{ObserveSettings, Standstill, observe};
+    use crate::estimation::{EstimateSettings, estimate};
+    use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+    use std::borrow::Cow;
+
+    const TRUE: [f64; 3] = [2.0, 0.7, 1.5];
+
+    /// One vertical axis: an inertia, viscous and Coulomb friction.
+    fn model() -> RecursiveModel {
+        let frame = Frame {
+            parent: None,
+            kind: JointKind::Revolute,
+            gamma: 0.0,
+            b: 0.0,
+            alpha: 0.0,
+            d: 0.0,
+            theta: 0.0,
+            r: 0.0,
+        };
+        let drive = Drive { gear: Cow::Owned(vec![1.0]), coupled_friction: Cow::Owned(vec![]) };
+        let mut robot =
+            Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![frame], drive, Limits::default());
+        let kept = ["ZZ1", "Fv1", "Fc1"];
+        robot.base = robot.base.iter().filter(|p| kept.contains(&p.name.as_ref())).cloned().collect();
+        RecursiveModel::new(robot).expect("a valid table")
+    }
+
+    #[test]
+    fn noise_in_the_states_biases_least_squares_but_not_instrumental_variables() {
+        let (rate, n) = (200.0, 60_000);
+        let mut rng = Pcg64::seed_from_u64(8);
+        let signal = |order: i32| -> Vec<f64> {
+            let wave = |t: f64, w: f64| {
+                w.powi(order) * (w * t + f64::from(order) * std::f64::consts::FRAC_PI_2).sin()
+            };
+            (0..n).map(|t| wave(t as f64 / rate, 3.0) + 0.4 * wave(t as f64 / rate, 7.3)).collect()
+        };
+        let (q, dq, ddq) = (signal(0), signal(1), signal(2));
+        let torque: Vec<f64> = (0..n)
+            .map(|t| {
+                let direction = if dq[t] > 0.0 { 1.0 } else { -1.0 };
+                TRUE[0] * ddq[t] + TRUE[1] * dq[t] + TRUE[2] * direction + rng.random_range(-1.0..1.0)
+            })
+            .collect();
+        let clean = Motion {
+            name: "axis".into(),
+            rate,
+            start: 0.0,
+            q: vec![q],
+            dq: vec![dq],
+            ddq: vec![ddq],
+            torque: vec![torque],
+            fixed: vec![],
+            spoiled: 0,
+        };
+        let mut measured = clean.clone();
+        for a in &mut measured.ddq[0] {
+            *a += rng.random_range(-40.0..40.0);
+        }
+        let model = model();
+        let simulated = [clean];
+        let instruments = Instruments::new(&model, &simulated);
+        let settings = ObserveSettings { standstill: Standstill::Keep, ..ObserveSettings::default() };
+        let see = |extra: Option<&dyn ExtraColumns>| {
+            observe(&model, std::slice::from_ref(&measured), Equations::Torque, extra, &settings, None)
+                .expect("rows")
+        };
+        let biased = estimate(&see(None), &EstimateSettings::default()).chi();
+        assert!(biased[0] < 0.8 * TRUE[0], "{biased:?}");
+        let unbiased = instrumental_variables(&see(Some(&instruments)), &[1.0]).expect("determined");
+        for ((x, s), expected) in unbiased.chi.iter().zip(&unbiased.sigma).zip(TRUE) {
+            assert!((x - expected).abs() < 3.0 * s, "{unbiased:?}");
+        }
+        assert!(unbiased.sigma[0] < 0.01 * TRUE[0]);
+    }
+}
