@@ -346,8 +346,17 @@ fn windows_line_ends_and_a_byte_order_mark_do_no_harm() {
 
 #[test]
 fn expressions_print_as_they_are_written() {
-    for text in ["d2 - pi/2", "2*(d2 + 1)", "-d2/(2*pi)", "d2 - (1 - zero)", "-0.6", "-(d2 + 1)", "d2/(pi/2)"]
-    {
+    for text in [
+        "d2 - pi/2",
+        "2*(d2 + 1)",
+        "-d2/(2*pi)",
+        "d2 - (1 - zero)",
+        "-0.6",
+        "-(d2 + 1)",
+        "d2/(pi/2)",
+        "1e-12",
+        "1.5e300",
+    ] {
         let robot = read(&arm_with_row(&format!("j: 2, sigma: 0, alpha: 0, d: {text}, theta: q2, r: 0")));
         assert_eq!(robot.frames[1].d.to_string(), text);
     }

@@ -212,7 +212,11 @@ impl fmt::Display for Number {
             return if b == 1 { Ok(()) } else { write!(f, "/{b}") };
         }
         let decimal = format!("{}", self.real);
-        if decimal.len() <= 11 { f.write_str(&decimal) } else { write!(f, "{:.9}", self.real) }
+        match decimal.len() {
+            ..=11 => f.write_str(&decimal),
+            _ if (1e-3..1e6).contains(&self.real.abs()) => write!(f, "{:.9}", self.real),
+            _ => write!(f, "{:.9e}", self.real),
+        }
     }
 }
 
@@ -268,6 +272,7 @@ mod tests {
             (-Number::root_2(), "-sqrt(2)"),
             (Number::root_2() * Number::root_3() * third, "sqrt(6)/3"),
             (number(0.123456789123), "0.123456789"),
+            (number(1.23456789123e-20), "1.234567891e-20"),
         ];
         for (x, text) in texts {
             assert_eq!(x.to_string(), text);

@@ -63,7 +63,8 @@ impl Expression {
             b.write(f, right)
         };
         match self {
-            Expression::Number(x) => write!(f, "{x}"),
+            Expression::Number(x) if *x == 0.0 || (1e-6..1e9).contains(&x.abs()) => write!(f, "{x}"),
+            Expression::Number(x) => write!(f, "{x:e}"),
             Expression::Pi => f.write_str("pi"),
             Expression::Constant(name, _) => f.write_str(name),
             Expression::Neg(a) => {
