@@ -1,6 +1,8 @@
 //! All of dynid that runs on recordings; knows no robot by name.
 #![deny(missing_docs)]
 
+pub mod diagnosis;
+pub mod effects;
 pub mod estimation;
 pub mod model;
 pub mod paper;

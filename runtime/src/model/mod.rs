@@ -1,6 +1,7 @@
 //! A robot's dynamics as linear forms in its parameters: the trait that generated and recursive models share.
 
 mod block;
+mod dual;
 mod lanes;
 mod number;
 mod recursive;
@@ -8,6 +9,7 @@ mod robot;
 mod standard;
 
 pub use block::{array, array_mut, evaluate_block};
+pub use dual::Dual;
 pub use lanes::{LANES, Lanes};
 pub use number::Number;
 pub use recursive::{

@@ -1,0 +1,281 @@
+//! Everything that columns are made from: the model, the motions, and the current standard parameters.
+
+use super::DiagnosisError;
+use super::signals::{ModelTorques, Signals, joint_kinds};
+use crate::effects::{
+    At, CoupledTransmission, EffectKind, Form, Place, Scale, Transmission, body_columns, deflection, derivable,
+    derivative,
+};
+use crate::model::{JointKind, Link, Model, RecursiveModel};
+use crate::signal::{Butterworth, Stencil, central_difference};
+use std::sync::OnceLock;
+
+/// One column in one motion at the full rate: the joints that it acts on, with their torques.
+pub(super) type Series = Vec<(usize, Vec<f64>)>;
+
+/// What links ask for through compliant transmissions, from positions below the band of the ringing itself.
+struct Links {
+    /// Rigid torque, `[j][t]`.
+    load: Vec<Vec<f64>>,
+    ddq: Vec<Vec<f64>>,
+    /// Mass matrix, `[i * n + j][t]`.
+    mass: Vec<Vec<f64>>,
+}
+
+/// Cut-off of the motion that drives compliant links, Hz.
+const DRIVING_BAND: f64 = 15.0;
+
+pub(super) struct Context<'a> {
+    pub model: &'a dyn Model,
+    engine: RecursiveModel,
+    tables: Vec<Link<f64>>,
+    pub signals: &'a [Signals],
+    pub torques: Vec<ModelTorques>,
+    pub scales: Vec<Scale>,
+    pub chi: Vec<f64>,
+    links: Vec<OnceLock<Links>>,
+    /// Transmissions that are known in physical units, per joint.
+    pub transmissions: Vec<(usize, Transmission)>,
+}
+
+impl<'a> Context<'a> {
+    pub fn new(
+        model: &'a dyn Model,
+        signals: &'a [Signals],
+        scales: Vec<Scale>,
+        chi: Vec<f64>,
+    ) -> Result<Self, DiagnosisError> {
+        let robot = model.robot();
+        let torques = signals.iter().map(|s| ModelTorques::new(model, &chi, s)).collect();
+        Ok(Self {
+            model,
+            engine: derivable(robot)?,
+            tables: robot.frames.iter().map(Link::constant).collect(),
+            signals,
+            torques,
+            scales,
+            chi,
+            links: signals.iter().map(|_| OnceLock::new()).collect(),
+            transmissions: Vec::new(),
+        })
+    }
+
+    /// Takes other standard parameters: loads and model torques follow.
+    pub fn update(&mut self, chi: Vec<f64>) {
+        self.torques = self.signals.iter().map(|s| ModelTorques::new(self.model, &chi, s)).collect();
+        self.links = self.signals.iter().map(|_| OnceLock::new()).collect();
+        self.chi = chi;
+    }
+
+    pub fn tables(&self) -> &[Link<f64>] {
+        &self.tables
+    }
+
+    /// The columns of an effect in one motion, one per amplitude.
+    pub fn series(&self, signal: usize, effect: EffectKind, place: Place, shape: &[f64]) -> Vec<Series> {
+        match (effect.form(), place) {
+            (Form::Joint(law), Place::Joint(j)) => {
+                let s = &self.signals[signal];
+                let torques = &self.torques[signal];
+                let scale = &self.scales[j];
+                let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
+                let mut out = vec![0.0; columns.len()];
+                let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));
+                for t in 0..s.len() {
+                    memory = law.advance(shape, memory, s.q[j][t] - before);
+                    before = s.q[j][t];
+                    let dq = s.dq[j][t];
+                    let at = At {
+                        time: s.time(t),
+                        q: s.q[j][t],
+                        dq,
+                        sign: if dq > 0.0 { 1.0 } else { -1.0 },
+                        load: torques.rigid[j][t],
+                        torque: torques.total[j][t],
+                        friction: torques.friction[j][t],
+                    };
+                    law.law(scale, shape, &at, memory, &mut out);
+                    for (column, &value) in columns.iter_mut().zip(&out) {
+                        column[t] = value;
+                    }
+                }
+                columns.into_iter().map(|c| vec![(j, c)]).collect()
+            }
+            (Form::Sensitivity(law), Place::Variant(v)) => {
+                let variants = law.variants(self.model.robot());
+                let wanted = if law.together() { &variants[..] } else { &variants[v..=v] };
+                let s = &self.signals[signal];
+                wanted
+                    .iter()
+                    .map(|variant| {
+                        let mut out = vec![Vec::new(); s.q.len()];
+                        derivative(
+                            &self.engine,
+                            self.model.robot().gravity,
+                            &self.chi,
+                            law,
+                            variant,
+                            [&s.q, &s.dq, &s.ddq, &s.jerk],
+                            &mut out,
+                        );
+                        out.into_iter().enumerate().collect()
+                    })
+                    .collect()
+            }
+            (Form::Body(_), Place::Link(frame)) => self.body(signal, frame),
+            (Form::Compliance(_), Place::Joint(j)) => vec![self.compliant(signal, j, shape)],
+            (Form::Coupled, Place::Pair(a, b)) => {
+                let s = &self.signals[signal];
+                let law = CoupledTransmission { ratio: shape[0] };
+                let mut columns = vec![[vec![0.0; s.len()], vec![0.0; s.len()]]; 3];
+                for t in 0..s.len() {
+                    let values = law.columns([s.dq[a][t], s.dq[b][t]], [s.ddq[a][t], s.ddq[b][t]]);
+                    for (column, value) in columns.iter_mut().zip(values) {
+                        column[0][t] = value[0];
+                        column[1][t] = value[1];
+                    }
+                }
+                columns.into_iter().map(|[x, y]| vec![(a, x), (b, y)]).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    fn body(&self, signal: usize, frame: usize) -> Vec<Series> {
+        let s = &self.signals[signal];
+        let n = s.q.len();
+        let mut full = vec![vec![vec![0.0; s.len()]; n]; 10];
+        let mut at: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; n]);
+        let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        for t in 0..s.len() {
+            for j in 0..n {
+                (q[j], dq[j], ddq[j]) = (s.q[j][t], s.dq[j][t], s.ddq[j][t]);
+            }
+            body_columns(self.model.robot(), &self.tables, frame, [&q, &dq, &ddq], &mut at);
+            for (column, values) in full.iter_mut().zip(&at) {
+                for j in 0..n {
+                    column[j][t] = values[j];
+                }
+            }
+        }
+        full.into_iter().map(|column| column.into_iter().enumerate().collect()).collect()
+    }
+
+    /// The transmission that a scale-free shape means on a joint in these motions.
+    pub fn transmission(&self, j: usize, shape: &[f64]) -> Transmission {
+        if let Some((_, known)) = self.transmissions.iter().find(|(k, _)| *k == j) {
+            return *known;
+        }
+        let n = self.model.robot().joints();
+        let mut inertia: Vec<f64> = (0..self.signals.len())
+            .flat_map(|k| self.links(k).mass[j * n + j].iter().step_by(7).copied().collect::<Vec<_>>())
+            .collect();
+        inertia.sort_by(f64::total_cmp);
+        let least = inertia.first().copied().unwrap_or(1.0).max(1e-6);
+        let median = inertia.get(inertia.len() / 2).copied().unwrap_or(1.0).max(least);
+        Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].prismatic)
+    }
+
+    fn compliant(&self, signal: usize, j: usize, shape: &[f64]) -> Series {
+        let n = self.model.robot().joints();
+        let t = self.transmission(j, shape);
+        let links = self.links(signal);
+        let own = &links.mass[j * n + j];
+        let inertia: Vec<f64> = own.iter().map(|m| (m - t.rotor).max(1e-3 * m.abs()).max(1e-9)).collect();
+        let load: Vec<f64> = links.load[j].iter().zip(&links.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
+        let mut felt = vec![0.0; load.len()];
+        deflection(&load, &inertia, self.signals[signal].rate, &t, &mut felt);
+        (0..n)
+            .map(|i| {
+                if i == j {
+                    return (j, felt.clone());
+                }
+                let other = &links.mass[i * n + j];
+                (i, felt.iter().zip(other).zip(&inertia).map(|((f, m), own)| f * m / own).collect())
+            })
+            .collect()
+    }
+
+    fn links(&self, signal: usize) -> &Links {
+        self.links[signal].get_or_init(|| {
+            let s = &self.signals[signal];
+            let n = s.q.len();
+            let filter = Butterworth::low_pass(4, DRIVING_BAND.min(s.rate / 5.0), s.rate).ok();
+            let q: Vec<Vec<f64>> = s
+                .q
+                .iter()
+                .map(|x| filter.as_ref().and_then(|f| f.zero_phase(x).ok()).unwrap_or_else(|| x.clone()))
+                .collect();
+            let derivative = |x: &Vec<f64>| {
+                let mut out = vec![0.0; x.len()];
+                central_difference(x, s.rate, Stencil::Seven, &mut out);
+                out
+            };
+            let dq: Vec<Vec<f64>> = q.iter().map(derivative).collect();
+            let ddq: Vec<Vec<f64>> = dq.iter().map(derivative).collect();
+            let mut links =
+                Links { load: vec![vec![0.0; s.len()]; n], ddq, mass: vec![vec![0.0; s.len()]; n * n] };
+            let (mut a, mut b, mut mass, mut bias) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
+            for t in 0..s.len() {
+                for j in 0..n {
+                    (a[j], b[j]) = (q[j][t], dq[j][t]);
+                }
+                self.model.mass_and_bias(&self.chi, &a, &b, &mut mass, &mut bias);
+                for i in 0..n {
+                    links.load[i][t] =
+                        bias[i] + (0..n).map(|k| mass[i * n + k] * links.ddq[k][t]).sum::<f64>();
+                    for k in 0..n {
+                        links.mass[i * n + k][t] = mass[i * n + k];
+                    }
+                }
+            }
+            links
+        })
+    }
+}
+
+/// Scales of every joint over motions, for given standard parameters.
+pub(super) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec<Scale> {
+    let robot = model.robot();
+    let n = robot.joints();
+    let kinds = joint_kinds(robot);
+    let speeds = top_speeds(signals, n);
+    let duration = signals.iter().map(|s| s.time(s.len().max(1) - 1)).fold(0.0, f64::max);
+    let mut torque = vec![0.0_f64; n];
+    for s in signals {
+        for (j, series) in ModelTorques::new(model, chi, s).total.iter().enumerate() {
+            torque[j] = series.iter().fold(torque[j], |a, b| a.max(b.abs()));
+        }
+    }
+    (0..n)
+        .map(|j| {
+            let positions = signals.iter().flat_map(|s| s.q[j].iter());
+            let (low, high) =
+                positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
+            Scale {
+                speed: speeds[j].max(1e-9),
+                range: (high - low).max(1e-9),
+                torque: torque[j].max(1e-9),
+                duration,
+                gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),
+                prismatic: kinds[j] == JointKind::Prismatic,
+            }
+        })
+        .collect()
+}
+
+/// Speed that 98 % of the samples of a joint do not pass, in the fastest motion.
+pub(super) fn top_speeds(signals: &[Signals], joints: usize) -> Vec<f64> {
+    (0..joints)
+        .map(|j| {
+            signals
+                .iter()
+                .map(|s| {
+                    let mut v: Vec<f64> = s.dq[j].iter().map(|x| x.abs()).collect();
+                    v.sort_by(f64::total_cmp);
+                    v.get(v.len() * 98 / 100).copied().unwrap_or(0.0)
+                })
+                .fold(0.0, f64::max)
+        })
+        .collect()
+}

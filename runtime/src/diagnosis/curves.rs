@@ -1,0 +1,267 @@
+//! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
+
+use super::candidate::{Trial, columns, pace};
+use super::design::{Design, RowAt};
+use super::explain::Bare;
+use super::fit::Fit;
+use super::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
+use super::search::{Accepted, Search};
+use super::joint_number;
+use super::signals::Signals;
+use crate::effects::EffectKind;
+
+/// Bins of a curve.
+const BINS: usize = 40;
+
+/// A variable of a row: its name with the unit, and its value.
+type Variable<'a> = (&'a str, Box<dyn Fn(&RowAt) -> f64 + 'a>);
+
+fn variable<'a>(search: &'a Search<'_, '_>, joint: usize, term: &'a Accepted) -> Variable<'a> {
+    let context = &*search.context;
+    let unit = context.scales[joint].position_unit();
+    let prismatic = unit == "m";
+    let signals = context.signals;
+    let torques = &context.torques;
+    match term.effect {
+        EffectKind::LoadDependentFriction => (
+            if prismatic { "load, N" } else { "load torque, N.m" },
+            Box::new(move |r| torques[r.signal].rigid[joint][r.centre]),
+        ),
+        EffectKind::FrictionDrift => ("time, s", Box::new(move |r| signals[r.signal].time(r.centre))),
+        EffectKind::PreslidingHysteresis => (
+            "distance since reversal",
+            Box::new(move |r| since_reversal(&signals[r.signal], joint, r.centre)),
+        ),
+        EffectKind::TorqueRipple => {
+            let order = term.shape[0];
+            (
+                "angle within one wave, rad",
+                Box::new(move |r| {
+                    (order * signals[r.signal].q[joint][r.centre]).rem_euclid(2.0 * std::f64::consts::PI)
+                }),
+            )
+        }
+        EffectKind::TorqueConstantError | EffectKind::TorqueSaturation | EffectKind::FrictionLevelChange => {
+            ("model torque", Box::new(move |r| torques[r.signal].total[joint][r.centre]))
+        }
+        EffectKind::JointElasticity => {
+            ("acceleration", Box::new(move |r| signals[r.signal].ddq[joint][r.centre]))
+        }
+        EffectKind::Backlash => ("load torque", Box::new(move |r| torques[r.signal].rigid[joint][r.centre])),
+        EffectKind::Stribeck
+        | EffectKind::NonlinearViscous
+        | EffectKind::AsymmetricFriction
+        | EffectKind::CoupledTransmission => (
+            if prismatic { "joint speed, m/s" } else { "joint speed, rad/s" },
+            Box::new(move |r| signals[r.signal].dq[joint][r.centre]),
+        ),
+        _ => (
+            if prismatic { "joint position, m" } else { "joint position, rad" },
+            Box::new(move |r| signals[r.signal].q[joint][r.centre]),
+        ),
+    }
+}
+
+fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
+    let sign = s.dq[joint][t].signum();
+    let mut k = t;
+    while k > 0 && s.dq[joint][k - 1] * sign > 0.0 {
+        k -= 1;
+    }
+    (s.q[joint][t] - s.q[joint][k]).abs()
+}
+
+/// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
+pub(super) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Option<Curve> {
+    let joint = *term.own.first()?;
+    let side = search.side(pace(term.effect));
+    let design = &side.design;
+    let trial = Trial {
+        shape: term.shape.clone(),
+        columns: columns(search.context, design, term.effect, term.place, &term.shape, search.change),
+        products: Vec::new(),
+    };
+    let dense = trial.dense(design);
+    let amplitude: Vec<f64> = match term.fixed {
+        Some(a) => vec![a],
+        None => side.term_columns[k].clone().map(|c| side.fit.chi[c]).collect(),
+    };
+    let residual = side.fit.residual(design);
+    let (name, value) = variable(search, joint, term);
+    let rows: Vec<(f64, f64, f64)> = design
+        .of_joint(joint)
+        .filter(|&r| search.context.signals[design.rows[r].signal].fresh)
+        .map(|r| {
+            let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
+            (value(&design.rows[r]), residual[r] + law, law)
+        })
+        .collect();
+    let mut curve = binned(rows);
+    curve.variable = name.into();
+    curve.unit = search.context.scales[joint].torque_unit().into();
+    Some(curve)
+}
+
+/// Means over bins with equally many rows; (variable, residual, law).
+fn binned(mut rows: Vec<(f64, f64, f64)>) -> Curve {
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut curve = Curve::default();
+    let size = rows.len().div_ceil(BINS).max(1);
+    for bin in rows.chunks(size) {
+        let n = bin.len() as f64;
+        let mean = |f: fn(&(f64, f64, f64)) -> f64| bin.iter().map(f).sum::<f64>() / n;
+        let (x, r, l) = (mean(|b| b.0), mean(|b| b.1), mean(|b| b.2));
+        let spread = bin.iter().map(|b| (b.1 - r).powi(2)).sum::<f64>() / n;
+        curve.x.push(x);
+        curve.residual.push(r);
+        curve.law.push(l);
+        curve.error.push((spread / n).sqrt());
+    }
+    curve
+}
+
+/// Share of the variance of `residual` that bins over a variable explain, beyond what bins explain by chance.
+fn explained(values: Vec<f64>, residual: &[f64]) -> f64 {
+    let n = residual.len() as f64;
+    let total: f64 = residual.iter().map(|r| r * r).sum();
+    if n < 2.0 * BINS as f64 || total == 0.0 {
+        return 0.0;
+    }
+    let rows = values.into_iter().zip(residual).map(|(x, r)| (x, *r, 0.0)).collect();
+    let curve = binned(rows);
+    let size = n / curve.x.len() as f64;
+    let between: f64 = curve.residual.iter().map(|r| r * r * size).sum();
+    between / total - curve.x.len() as f64 / n
+}
+
+/// Where the standard model fails, joint by joint.
+pub(super) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held: &[f64]) -> Vec<Mismatch> {
+    let design = &search.slow.design;
+    let context = &*search.context;
+    let robot = context.model.robot();
+    let mut list = Vec::new();
+    let mut shares = Vec::new();
+    for j in 0..design.joints {
+        let floor = noise_floor(design, &search.slow.fit, j);
+        let rows = design.count(j, |g| design.segments[g].fresh);
+        shares.push((held[j] / (floor * floor).max(1e-300) - rows as f64).max(0.0));
+    }
+    let all: f64 = shares.iter().sum::<f64>().max(1e-300);
+    for j in 0..design.joints {
+        let rows: Vec<usize> = design.of_joint(j).collect();
+        let residual: Vec<f64> = rows.iter().map(|&r| bare.residual_slow[r]).collect();
+        let over = |f: &dyn Fn(&Signals, &RowAt) -> f64| -> f64 {
+            let values = rows.iter().map(|&r| f(&context.signals[design.rows[r].signal], &design.rows[r])).collect();
+            explained(values, &residual)
+        };
+        let candidates = [
+            ("changes with the speed", over(&|s, r| s.dq[j][r.centre])),
+            ("changes with the position", over(&|s, r| s.q[j][r.centre])),
+            ("changes with the acceleration", over(&|s, r| s.ddq[j][r.centre])),
+            ("changes with time", over(&|s, r| s.time(r.centre))),
+            (
+                "has the sign of the speed and grows with the load torque",
+                over(&|s, r| {
+                    context.torques[r.signal].rigid[j][r.centre] * s.dq[j][r.centre].signum()
+                }),
+            ),
+        ];
+        let best = candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        let share = shares[j] / all;
+        let where_ = match best {
+            Some((words, e)) if *e > 0.1 && share > 0.02 => {
+                format!("while moving; {words} ({:.0} % of it)", 100.0 * e.min(1.0))
+            }
+            _ if share > 0.02 => "while moving; no single variable orders it".into(),
+            _ => "nothing beyond the noise".into(),
+        };
+        list.push(Mismatch { joint: joint_number(robot, j), share, where_ });
+    }
+    list.sort_by(|a, b| b.share.total_cmp(&a.share));
+    list
+}
+
+/// Standard deviation of what changes from row to row: noise, whatever slow effects remain. Rows of a Hann window
+/// half a window apart correlate by 1/6, so that r - (before + after) / 2 has 7/6 of the variance.
+fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
+    let residual = fit.residual(design);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for range in &design.ranges[joint] {
+        for r in range.clone().skip(1) {
+            if r + 1 >= range.end {
+                break;
+            }
+            let (a, b, c) = (design.rows[r - 1], design.rows[r], design.rows[r + 1]);
+            if b.centre - a.centre == c.centre - b.centre && b.centre - a.centre <= 2 * design.spacing(b.signal) {
+                sum += (residual[r] - 0.5 * (residual[r - 1] + residual[r + 1])).powi(2);
+                count += 1.0;
+            }
+        }
+    }
+    let rms = |x: f64, n: f64| if n > 0.0 { (x / n).sqrt() } else { 0.0 };
+    let range = design.of_joint(joint);
+    let n = range.len() as f64;
+    let whole = rms(residual[range].iter().map(|r| r * r).sum(), n);
+    if count < 10.0 { whole } else { rms(sum, count) / (7.0_f64 / 6.0).sqrt() }.min(whole).max(1e-12)
+}
+
+/// What nothing explains.
+pub(super) fn unexplained(search: &Search<'_, '_>) -> Unexplained {
+    let design = &search.slow.design;
+    let residual = search.slow.fit.residual(design);
+    let mut out = Unexplained::default();
+    let (mut open, mut all) = (0.0, 0.0);
+    for j in 0..design.joints {
+        let floor = noise_floor(design, &search.slow.fit, j);
+        let squares: f64 = design.of_joint(j).map(|r| residual[r] * residual[r]).sum();
+        let noise = floor * floor * design.of_joint(j).len() as f64;
+        let share = (1.0 - noise / squares.max(1e-300)).max(0.0);
+        out.per_joint.push(share);
+        open += share * squares / (floor * floor).max(1e-300);
+        all += squares / (floor * floor).max(1e-300);
+        let rows = design
+            .of_joint(j)
+            .map(|r| (search.context.signals[design.rows[r].signal].dq[j][design.rows[r].centre], residual[r], 0.0))
+            .collect();
+        let mut curve = binned(rows);
+        curve.variable = format!("joint speed, {}", search.context.scales[j].speed_unit());
+        curve.unit = search.context.scales[j].torque_unit().into();
+        out.curves.push(curve);
+    }
+    out.share = open / f64::max(all, 1e-300);
+    out
+}
+
+/// Torques of the joints that have findings, in the first new motion; the first joint where there are none.
+pub(super) fn series(search: &Search<'_, '_>, before: &[f64], terms: &[Accepted]) -> Vec<TorqueSeries> {
+    let design = &search.fast.design;
+    let context = &*search.context;
+    let Some(signal) = context.signals.iter().position(|s| s.fresh) else { return Vec::new() };
+    let mut joints: Vec<usize> = terms.iter().flat_map(|t| t.own.iter().copied()).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    if joints.is_empty() {
+        joints.push(0);
+    }
+    let residual = search.fast.fit.residual(design);
+    joints
+        .into_iter()
+        .map(|j| {
+            let mut s = TorqueSeries {
+                motion: context.signals[signal].name.clone(),
+                joint: joint_number(context.model.robot(), j),
+                ..TorqueSeries::default()
+            };
+            for (range, _) in design.of_signal(j, signal) {
+                for r in range {
+                    let measured = design.smooth(signal, &context.signals[signal].torque[j], design.rows[r].centre);
+                    s.time.push(context.signals[signal].time(design.rows[r].centre));
+                    s.measured.push(measured);
+                    s.before.push(before[r]);
+                    s.after.push(measured - residual[r]);
+                }
+            }
+            s
+        })
+        .collect()
+}

@@ -1,0 +1,565 @@
+//! From accepted terms to findings: numbers with their uncertainty, held-out errors, curves, sentences.
+
+use super::candidate::{Trial, columns, pace};
+use super::contact_search::Contacts;
+use super::context::Context;
+use super::curves;
+use super::design::Design;
+use super::fit::{Fit, fit_weighted};
+use super::judge::single_motion;
+use super::outcome::*;
+use super::predict::errors;
+use super::search::{Accepted, Search, Side};
+use super::settings::Settings;
+use super::{DiagnosisError, NAMED_DELAY, joint_number, unit_term, words};
+use crate::effects::{EffectKind, EffectTerm, Form, Lump, Parameter, Place};
+use crate::model::Model;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// Skew of the torques behind the positions in a design, s.
+pub(super) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
+    let delay = columns(context, &design, EffectKind::TimeDelay, Place::Variant(0), &[], false);
+    let trial = Trial { shape: vec![], columns: delay, products: Vec::new() };
+    for column in trial.dense(&design) {
+        design.push(column);
+    }
+    design.refresh();
+    let mut sigma = vec![1.0; design.joints];
+    let fit = fit_weighted(&design, &mut sigma, |_| true);
+    fit.chi[design.columns.len() - 1]
+}
+
+/// Squares of the held-out residual and of the torque, per joint, and per held-back stretch.
+pub(super) struct HeldBack {
+    left: Vec<f64>,
+    whole: Vec<f64>,
+    by_segment: Vec<(usize, f64, f64)>,
+}
+
+impl HeldBack {
+    fn errors(&self) -> Errors {
+        errors(&self.left, &self.whole)
+    }
+
+    fn error_on(&self, joints: &[usize]) -> f64 {
+        let pick = |x: &[f64]| joints.iter().map(|&j| x[j]).sum::<f64>();
+        (pick(&self.left) / pick(&self.whole).max(1e-300)).sqrt()
+    }
+}
+
+/// Share of a single motion that is fitted; the rest comes later in time and is predicted.
+const FITTED_SHARE: f64 = 0.6;
+
+/// Predicts held-back motion with the columns of a design: every motion once from the others; a single motion
+/// forward in time; with a baseline, where `from_baseline` is set, from the baseline alone.
+pub(super) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> HeldBack {
+    let n = design.joints;
+    let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
+    let splits: Vec<(Vec<bool>, Vec<usize>)> = if from_baseline {
+        vec![(design.segments.iter().map(|s| !s.fresh).collect(), fresh.clone())]
+    } else if single_motion(design) && fresh.len() > 1 {
+        let cut = ((fresh.len() as f64 * FITTED_SHARE).round() as usize).clamp(1, fresh.len() - 1);
+        let train = (0..design.segments.len()).map(|g| !fresh[cut..].contains(&g)).collect();
+        vec![(train, fresh[cut..].to_vec())]
+    } else {
+        fresh.iter().map(|&held| ((0..design.segments.len()).map(|g| g != held).collect(), vec![held])).collect()
+    };
+    let mut out = HeldBack { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
+    let p = design.columns.len();
+    for (train, test) in splits {
+        let fit = Fit::new(design, sigma, |g: usize| train[g]);
+        for g in test {
+            let (mut left, mut whole) = (0.0, 0.0);
+            for j in 0..n {
+                let squares = fit.squares(design, j, g);
+                // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
+                let torque = design.gram[j][g][p * (p + 1) + p];
+                out.left[j] += squares;
+                out.whole[j] += torque;
+                left += squares;
+                whole += torque;
+            }
+            out.by_segment.push((g, left, whole));
+        }
+    }
+    out
+}
+
+/// The standard model before anything was added.
+pub(super) struct Bare {
+    pub in_sample: Errors,
+    pub held: HeldBack,
+    pub estimated: Estimated,
+    pub residual_slow: Vec<f64>,
+    held_slow: HeldBack,
+    /// Fitted torque of the fast rows.
+    fitted_fast: Vec<f64>,
+    /// With the windows of contacts, slow rows.
+    held_with_windows: Errors,
+}
+
+impl Bare {
+    pub fn new(search: &Search<'_, '_>, aligned: &Design) -> Self {
+        let (slow, fast) = (&search.slow, &search.fast);
+        let mut sigma = slow.sigma.clone();
+        let _ = fit_weighted(aligned, &mut sigma, |_| true);
+        let residual = fast.fit.residual(&fast.design);
+        Self {
+            in_sample: in_sample(fast),
+            held: hold_back(&fast.design, &fast.sigma, search.change),
+            estimated: estimated(slow),
+            residual_slow: slow.fit.residual(&slow.design),
+            held_slow: hold_back(&slow.design, &slow.sigma, search.change),
+            fitted_fast: fast.design.y.iter().zip(&residual).map(|(y, r)| y - r).collect(),
+            held_with_windows: hold_back(aligned, &sigma, search.change).errors(),
+        }
+    }
+}
+
+fn in_sample(side: &Side) -> Errors {
+    let d = &side.design;
+    let p = d.columns.len();
+    let (mut left, mut whole) = (vec![0.0; d.joints], vec![0.0; d.joints]);
+    for j in 0..d.joints {
+        for g in (0..d.segments.len()).filter(|&g| d.segments[g].fresh) {
+            left[j] += side.fit.squares(d, j, g);
+            whole[j] += d.gram[j][g][p * (p + 1) + p];
+        }
+    }
+    errors(&left, &whole)
+}
+
+fn estimated(side: &Side) -> Estimated {
+    let p = side.design.parameters;
+    let variances = side.fit.variances();
+    Estimated {
+        chi: side.fit.chi.iter().take(p).copied().collect(),
+        sigma: variances.iter().take(p).map(|v| v.max(0.0).sqrt()).collect(),
+    }
+}
+
+/// Puts everything into words and numbers.
+pub(super) fn explain(
+    model: &dyn Model,
+    mut search: Search<'_, '_>,
+    bare: &Bare,
+    contacts: Option<&Contacts>,
+    delay: f64,
+    settings: &Settings,
+) -> Result<Diagnosis, DiagnosisError> {
+    let robot = model.robot();
+    let terms = search.terms.clone();
+    let held_all = hold_back(&search.fast.design, &search.fast.sigma, false);
+    let mut findings = Vec::new();
+    let mut cannot_tell = Vec::new();
+    for k in 0..terms.len() {
+        let finding = finding(model, &mut search, &terms, k);
+        for rival in &terms[k].rivals {
+            let top = terms[k].rivals.iter().map(|r| r.total).fold(0.0, f64::max);
+            if rival.total >= top && rival.share > 0.985 * finding.share && rival.place == terms[k].place {
+                cannot_tell.push(CannotTell {
+                    between: vec![finding.effect.clone(), rival.effect.id().into()],
+                    joints: finding.joints.clone(),
+                    experiment: terms[k].effect.words().experiment.into(),
+                });
+            }
+        }
+        findings.push(finding);
+    }
+    if let Some(contacts) = contacts {
+        findings.insert(0, contact_finding(contacts));
+    }
+    let skew = delay + search.slow.fit.chi[search.slow.design.parameters];
+    let rate = search.context.signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
+    if (skew * rate).abs() >= NAMED_DELAY.0 && skew.abs() >= NAMED_DELAY.1 {
+        findings.extend(delay_finding(&mut search, skew, settings));
+    }
+
+    let (before_error, after_held) = (bare.held.errors(), held_all.errors());
+    let mut held_out = HeldOut {
+        how: how(&search),
+        before: before_error.relative_error,
+        after: after_held.relative_error,
+        per_joint_before: before_error.per_joint,
+        per_joint_after: after_held.per_joint,
+        by_motion: by_motion(&search, &bare.held, &held_all),
+    };
+    if contacts.is_some() {
+        held_out.before = bare.held_with_windows.relative_error;
+        held_out.per_joint_before.clone_from(&bare.held_with_windows.per_joint);
+    }
+    let after = estimated(&search.slow);
+    let mut diagnosis = Diagnosis {
+        robot: robot.name.to_string(),
+        before: bare.in_sample.clone(),
+        after: in_sample(&search.fast),
+        held_out,
+        mismatch: curves::mismatch(&search, bare, &bare.held_slow.left),
+        verdict: Vec::new(),
+        cannot_tell,
+        unexplained: curves::unexplained(&search),
+        shifts: shifts(model, &bare.estimated, &after),
+        standard: bare.estimated.clone(),
+        model: after,
+        delay: skew,
+        spectra: search
+            .spectra
+            .iter()
+            .filter(|s| {
+                findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&s.joint))
+            })
+            .cloned()
+            .collect(),
+        series: curves::series(&search, &bare.fitted_fast, &terms),
+        rows: search.slow.design.rows.len() + search.fast.design.rows.len(),
+        tried: search.tried,
+        findings,
+    };
+    diagnosis.verdict = words::verdict(&diagnosis);
+    Ok(diagnosis)
+}
+
+fn how(search: &Search<'_, '_>) -> String {
+    if search.change {
+        "every new motion predicted from the baseline and the other new motions".into()
+    } else if single_motion(&search.slow.design) {
+        "forward in time".into()
+    } else {
+        "every motion predicted from the others".into()
+    }
+}
+
+fn by_motion(search: &Search<'_, '_>, before: &HeldBack, after: &HeldBack) -> Vec<(String, f64, f64)> {
+    let name = |g: usize| search.context.signals[search.fast.design.segments[g].signal].name.clone();
+    let mut list: Vec<(String, [f64; 4])> = Vec::new();
+    for ((g, l0, w0), (_, l1, w1)) in before.by_segment.iter().zip(&after.by_segment) {
+        let name = name(*g);
+        match list.iter_mut().find(|(n, _)| *n == name) {
+            Some((_, s)) => {
+                for (s, x) in s.iter_mut().zip([l0, w0, l1, w1]) {
+                    *s += x;
+                }
+            }
+            None => list.push((name, [*l0, *w0, *l1, *w1])),
+        }
+    }
+    list.into_iter().map(|(n, s)| (n, (s[0] / s[1]).sqrt(), (s[2] / s[3]).sqrt())).collect()
+}
+
+fn shifts(model: &dyn Model, before: &Estimated, after: &Estimated) -> Vec<ParameterShift> {
+    model
+        .robot()
+        .base
+        .iter()
+        .enumerate()
+        .filter(|&(k, _)| {
+            let spread = before.sigma[k].hypot(after.sigma[k]);
+            (before.chi[k] - after.chi[k]).abs() > 3.0 * spread
+        })
+        .map(|(k, b)| ParameterShift {
+            name: b.name.to_string(),
+            unit: b.unit.to_string(),
+            before: before.chi[k],
+            sigma_before: before.sigma[k],
+            after: after.chi[k],
+            sigma_after: after.sigma[k],
+        })
+        .collect()
+}
+
+/// Numbers j of the joints that an effect at a place is named on.
+fn named_on(model: &dyn Model, effect: EffectKind, place: Place) -> Vec<usize> {
+    let robot = model.robot();
+    match (place, effect.form()) {
+        (Place::Joint(j), _) => vec![joint_number(robot, j)],
+        (Place::Pair(a, b), _) => vec![joint_number(robot, a), joint_number(robot, b)],
+        (Place::Variant(v), Form::Sensitivity(law)) if !law.together() => {
+            law.variants(robot).get(v).and_then(|x| x.joint).map(|j| joint_number(robot, j)).into_iter().collect()
+        }
+        (Place::Link(frame), _) if effect == EffectKind::AddedMass => vec![frame + 1],
+        _ => Vec::new(),
+    }
+}
+
+fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k: usize) -> Finding {
+    let robot = model.robot();
+    let accepted = &terms[k];
+    let which = pace(accepted.effect);
+    let joints = named_on(model, accepted.effect, accepted.place);
+    let side = search.side(which);
+    let range = side.term_columns[k].clone();
+    let mut amplitude: Vec<f64> = range.clone().map(|c| side.fit.chi[c]).collect();
+    let with = hold_back(&side.design, &side.sigma, false);
+    let curve = curves::of_term(search, accepted, k);
+    let (mut sigma, shape_sigma) = uncertainty(search, terms, k, &amplitude);
+    let parameters = parameters(search, accepted, &mut amplitude, &mut sigma, &shape_sigma, model);
+    let scale = match accepted.place {
+        Place::Joint(j) => Some(search.context.scales[j].into()),
+        _ => None,
+    };
+    // Without this term, everything else refitted.
+    search.terms.remove(k);
+    search.settle();
+    let side = search.side(which);
+    let without = hold_back(&side.design, &side.sigma, false);
+    search.terms.insert(k, accepted.clone());
+    search.settle();
+    let (before, after) = (without.error_on(&accepted.own), with.error_on(&accepted.own));
+    let share = 1.0 - (after / before).powi(2);
+    let tail = Normal::standard().sf(accepted.significance);
+    let confidence = (1.0 - tail * search.tried as f64).clamp(0.5, 0.9999);
+    let alternatives = accepted
+        .rivals
+        .iter()
+        .map(|r| Alternative {
+            effect: r.effect.id().into(),
+            joints: named_on(model, r.effect, r.place),
+            why_not: format!(
+                "explains {:.0} % of what held-back motion leaves open, against {:.0} %",
+                100.0 * r.share.clamp(0.0, 1.0),
+                100.0 * share.clamp(0.0, 1.0)
+            ),
+            share: r.share,
+        })
+        .collect();
+    let term = EffectTerm {
+        joints: joints.clone(),
+        amplitude,
+        sigma,
+        scale,
+        ..unit_term(accepted.effect, accepted.place, accepted.shape.clone())
+    };
+    let mut finding = Finding {
+        effect: accepted.effect.id().into(),
+        joints,
+        confidence,
+        parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
+        held_out_before: before,
+        held_out_after: after,
+        share,
+        alternatives,
+        sentence: String::new(),
+        curve,
+        term,
+        contacts: Vec::new(),
+    };
+    finding.sentence = words::sentence(robot, accepted.effect, &finding);
+    finding
+}
+
+/// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
+/// derivative of the columns (variable projection, Golub and Pereyra 1973).
+fn uncertainty(
+    search: &Search<'_, '_>,
+    terms: &[Accepted],
+    k: usize,
+    amplitude: &[f64],
+) -> (Vec<f64>, Vec<f64>) {
+    let term = &terms[k];
+    let side = search.side(pace(term.effect));
+    let mut design = side.design.clone();
+    let dense = |shape: &[f64]| {
+        let c = columns(search.context, &side.design, term.effect, term.place, shape, search.change);
+        Trial { shape: shape.to_vec(), columns: c, products: Vec::new() }.dense(&side.design)
+    };
+    let start = design.columns.len();
+    let mut varied = Vec::new();
+    for (i, &value) in term.shape.iter().enumerate() {
+        let step = 0.02 * value.abs().max(1e-6);
+        let moved = |s: f64| {
+            let mut shape = term.shape.clone();
+            shape[i] += s * step;
+            dense(&shape)
+        };
+        let (plus, minus) = (moved(1.0), moved(-1.0));
+        let weights: Vec<f64> = if term.fixed.is_some() { vec![1.0] } else { amplitude.to_vec() };
+        let mut slope = vec![0.0; design.rows.len()];
+        for ((p, m), a) in plus.iter().zip(&minus).zip(&weights) {
+            for ((s, p), m) in slope.iter_mut().zip(p).zip(m) {
+                *s += a * (p - m) / (2.0 * step);
+            }
+        }
+        if slope.iter().any(|x| *x != 0.0) {
+            design.push(slope);
+            varied.push(i);
+        }
+    }
+    design.refresh();
+    let fit = Fit::new(&design, &side.sigma, |_| true);
+    let variances = fit.variances();
+    let sd = |c: usize| variances[c].max(0.0).sqrt();
+    let amplitudes = side.term_columns[k].clone().map(sd).collect();
+    let mut shapes = vec![0.0; term.shape.len()];
+    for (at, &i) in varied.iter().enumerate() {
+        shapes[i] = sd(start + at).min(10.0 * term.shape[i].abs());
+    }
+    (amplitudes, shapes)
+}
+
+/// The quantities a person knows, with the uncertainty of shapes propagated to first order.
+fn parameters(
+    search: &Search<'_, '_>,
+    term: &Accepted,
+    amplitude: &mut Vec<f64>,
+    sigma: &mut Vec<f64>,
+    shape_sigma: &[f64],
+    model: &dyn Model,
+) -> Vec<Parameter> {
+    let robot = model.robot();
+    let context = &*search.context;
+    match (term.effect.form(), term.place) {
+        (Form::Joint(law), Place::Joint(j)) => {
+            let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, amplitude, sigma);
+            propagate(of, &term.shape, shape_sigma)
+        }
+        (Form::Compliance(law), Place::Joint(j)) => {
+            let of = |shape: &[f64]| {
+                law.describe(&context.transmission(j, shape))
+                    .into_iter()
+                    .map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
+                    .collect()
+            };
+            let t = context.transmission(j, &term.shape);
+            *amplitude = vec![t.stiffness, t.damping, t.rotor, t.play];
+            *sigma = vec![0.0; 4];
+            propagate(of, &term.shape, shape_sigma)
+        }
+        (Form::Sensitivity(law), Place::Variant(v)) => {
+            let variants = law.variants(robot);
+            let wanted = if law.together() { &variants[..] } else { &variants[v..=v] };
+            wanted
+                .iter()
+                .zip(amplitude.iter().zip(sigma.iter()))
+                .map(|(x, (a, s))| Parameter::new(x.name, *a, *s, x.unit))
+                .collect()
+        }
+        (Form::Body(_), _) => {
+            let slack = 3.0 * sigma.iter().take(6).fold(0.0_f64, |a, b| a.max(*b));
+            let lump = Lump::from_parameters(amplitude, slack);
+            let s = |k: usize| sigma.get(k).copied().unwrap_or(0.0);
+            let m = lump.mass.abs().max(1e-9);
+            vec![
+                Parameter::new("mass", lump.mass, s(9), "kg"),
+                Parameter::new("x", lump.centre[0], s(6) / m, "m"),
+                Parameter::new("y", lump.centre[1], s(7) / m, "m"),
+                Parameter::new("z", lump.centre[2], s(8) / m, "m"),
+                Parameter::new("I1", lump.principal[0], s(0), "kg.m2"),
+                Parameter::new("I2", lump.principal[1], s(3), "kg.m2"),
+                Parameter::new("I3", lump.principal[2], s(5), "kg.m2"),
+                Parameter::new("physically_consistent", f64::from(lump.consistent), 0.0, "1"),
+            ]
+        }
+        (Form::Coupled, _) => {
+            let names = [("viscous", "N.m.s/rad"), ("coulomb", "N.m"), ("inertia", "kg.m2")];
+            let mut list: Vec<Parameter> = names
+                .iter()
+                .zip(amplitude.iter().zip(sigma.iter()))
+                .map(|((name, unit), (a, s))| Parameter::new(name, *a, *s, unit))
+                .collect();
+            list.push(Parameter::new("ratio", term.shape[0], shape_sigma[0], "1"));
+            list
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn propagate(of: impl Fn(&[f64]) -> Vec<Parameter>, shape: &[f64], shape_sigma: &[f64]) -> Vec<Parameter> {
+    let mut list = of(shape);
+    for (i, &s) in shape_sigma.iter().enumerate() {
+        if s == 0.0 {
+            continue;
+        }
+        let step = 1e-4 * shape[i].abs().max(1e-9);
+        let mut moved = shape.to_vec();
+        moved[i] += step;
+        for (p, q) in list.iter_mut().zip(of(&moved)) {
+            p.sigma = p.sigma.hypot((q.value - p.value) / step * s);
+        }
+    }
+    list
+}
+
+fn contact_finding(contacts: &Contacts) -> Finding {
+    let largest = contacts
+        .wrenches
+        .iter()
+        .max_by(|a, b| norm(a.force).total_cmp(&norm(b.force)));
+    let mut parameters = std::collections::BTreeMap::new();
+    let value = |value: f64, unit: &str| ParameterValue { value, sigma: 0.0, unit: unit.into() };
+    parameters.insert("windows".into(), value(contacts.wrenches.len() as f64, "1"));
+    if let Some(w) = largest {
+        parameters.insert("largest_force".into(), value(norm(w.force), "N"));
+        parameters.insert("link".into(), value(w.link as f64, "1"));
+    }
+    let (before, after) =
+        ((contacts.before / contacts.torque).sqrt(), (contacts.after / contacts.torque).sqrt());
+    let mut finding = Finding {
+        effect: EffectKind::Contact.id().into(),
+        joints: Vec::new(),
+        confidence: 0.9999,
+        parameters,
+        held_out_before: before,
+        held_out_after: after,
+        share: 1.0 - contacts.after / contacts.before,
+        alternatives: Vec::new(),
+        sentence: String::new(),
+        curve: None,
+        term: EffectTerm {
+            wrenches: contacts.wrenches.clone(),
+            ..unit_term(EffectKind::Contact, Place::Robot, Vec::new())
+        },
+        contacts: contacts.wrenches.clone(),
+    };
+    finding.sentence = words::contact(&finding);
+    finding
+}
+
+fn norm(f: [f64; 3]) -> f64 {
+    f.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The delay as a finding, where it explains enough.
+fn delay_finding(search: &mut Search<'_, '_>, skew: f64, settings: &Settings) -> Option<Finding> {
+    let side = &search.slow;
+    let p = side.design.parameters;
+    let with = hold_back(&side.design, &side.sigma, false);
+    // The torque's own rate of change, as much of it as the skew moved.
+    let column = side.design.columns[p].clone();
+    let mut without = side.design.clone();
+    without.columns.remove(p);
+    let taken = skew - side.fit.chi[p];
+    without.y = side.design.y.iter().zip(&column).map(|(y, c)| y + taken * c).collect();
+    without.refresh();
+    let unaware = hold_back(&without, &side.sigma, false);
+    let all: Vec<usize> = (0..side.design.joints).collect();
+    let weigh = |h: &HeldBack| -> f64 {
+        h.left.iter().zip(&side.sigma).map(|(l, s)| l / (s * s)).sum()
+    };
+    let share = 1.0 - weigh(&with) / weigh(&unaware);
+    if share < settings.least_share {
+        return None;
+    }
+    let variance = side.fit.variances()[p].max(0.0);
+    let mut finding = Finding {
+        effect: EffectKind::TimeDelay.id().into(),
+        joints: Vec::new(),
+        confidence: 0.9999,
+        parameters: [("delay".to_string(), ParameterValue { value: skew, sigma: variance.sqrt(), unit: "s".into() })]
+            .into_iter()
+            .collect(),
+        held_out_before: unaware.error_on(&all),
+        held_out_after: with.error_on(&all),
+        share,
+        alternatives: Vec::new(),
+        sentence: String::new(),
+        curve: None,
+        term: EffectTerm {
+            amplitude: vec![skew],
+            sigma: vec![variance.sqrt()],
+            ..unit_term(EffectKind::TimeDelay, Place::Variant(0), Vec::new())
+        },
+        contacts: Vec::new(),
+    };
+    finding.sentence = words::sentence(search.context.model.robot(), EffectKind::TimeDelay, &finding);
+    Some(finding)
+}

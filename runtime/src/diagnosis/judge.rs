@@ -1,0 +1,288 @@
+//! How good a candidate is on motion that it was not fitted to.
+
+use super::candidate::{Candidate, Trial};
+use super::design::Design;
+use super::fit::Fit;
+use nalgebra::{DMatrix, DVector};
+
+/// Motion that is fitted and motion that is predicted.
+pub(super) struct Fold {
+    pub train: Vec<bool>,
+    pub test: Vec<bool>,
+    pub fit: Fit,
+}
+
+/// The verdict on a candidate.
+#[derive(Debug, Clone)]
+pub(super) struct Verdict {
+    /// Index of the best shape over all motion.
+    pub trial: usize,
+    /// In sample, in units of the noise variance.
+    pub gain: f64,
+    /// Held out, in units of the noise variance, one value per fold.
+    pub held_out: Vec<f64>,
+    /// Held-out gain as a share of the held-out squares of its own joints.
+    pub share: f64,
+}
+
+impl Verdict {
+    /// Held-out gain of all folds.
+    pub fn total(&self) -> f64 {
+        self.held_out.iter().sum()
+    }
+}
+
+/// How the recording is split: every motion once held back, or, for a single motion, every stretch of it.
+pub(super) fn folds(design: &Design, sigma: &[f64]) -> Vec<Fold> {
+    let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
+    fresh
+        .iter()
+        .map(|&held| {
+            let test: Vec<bool> = (0..design.segments.len()).map(|g| g == held).collect();
+            let train: Vec<bool> = test.iter().map(|t| !t).collect();
+            let fit = Fit::new(design, sigma, |g| train[g]);
+            Fold { train, test, fit }
+        })
+        .collect()
+}
+
+/// The candidate's part that the columns of the design cannot make: its squares and its product with the residual.
+struct Own {
+    x: DMatrix<f64>,
+    s: DMatrix<f64>,
+    b: DVector<f64>,
+}
+
+/// Least part of a column that is its own: below it, the design makes the column itself.
+const OWN_PART: f64 = 2e-4;
+
+fn own_part(design: &Design, fit: &Fit, sigma: &[f64], trial: &Trial, train: &[bool]) -> Option<Own> {
+    let (p, k) = (design.columns.len(), trial.columns.len());
+    let (mut z, mut c, mut y) = (DMatrix::zeros(p, k), DMatrix::zeros(k, k), DVector::zeros(k));
+    for (products, s) in trial.products.iter().zip(sigma) {
+        let w = 1.0 / (s * s);
+        for (g, product) in products.iter().enumerate() {
+            if train[g] {
+                z += w * &product.with;
+                c += w * &product.own;
+                for a in 0..k {
+                    y[a] += w * product.y[a];
+                }
+            }
+        }
+    }
+    let mut x = DMatrix::zeros(p, k);
+    for a in 0..k {
+        x.set_column(a, &fit.solve(&z.column(a).into_owned()));
+    }
+    let s = &c - z.transpose() * &x;
+    let b = y - z.transpose() * &fit.chi;
+    let alive = (0..k).filter(|&a| c[(a, a)] > 0.0).count();
+    let determined = (0..k).filter(|&a| c[(a, a)] > 0.0 && s[(a, a)] > OWN_PART * c[(a, a)]).count();
+    // A body has ten columns of which the standard model makes some: the others still count.
+    (alive > 0 && determined > 0 && (k >= 10 || determined == k)).then_some(Own { x, s, b })
+}
+
+impl Own {
+    /// Amplitudes and in-sample gain.
+    fn solve(&self, fixed: Option<f64>) -> Option<(DVector<f64>, f64)> {
+        if let Some(value) = fixed {
+            let a = DVector::from_element(self.b.len(), value);
+            let gain = 2.0 * a.dot(&self.b) - a.dot(&(&self.s * &a));
+            return Some((a, gain));
+        }
+        let k = self.b.len();
+        let scale = DVector::from_fn(k, |i, _| {
+            if self.s[(i, i)] > 0.0 { 1.0 / self.s[(i, i)].sqrt() } else { 0.0 }
+        });
+        let m = DMatrix::from_fn(k, k, |i, j| {
+            self.s[(i, j)] * scale[i] * scale[j] + if i == j { 1e-7 } else { 0.0 }
+        });
+        let a = m.cholesky()?.solve(&self.b.component_mul(&scale)).component_mul(&scale);
+        let gain = 2.0 * a.dot(&self.b) - a.dot(&(&self.s * &a));
+        Some((a, gain))
+    }
+}
+
+/// Judges a candidate: the best shape is chosen anew on each fold's own training motion.
+pub(super) fn judge(
+    design: &Design,
+    whole: &Fit,
+    folds: &[Fold],
+    sigma: &[f64],
+    candidate: &Candidate,
+) -> Option<Verdict> {
+    let everything = vec![true; design.segments.len()];
+    let best = |fit: &Fit, train: &[bool]| {
+        let mut best: Option<(f64, usize, DVector<f64>, Own)> = None;
+        for (k, trial) in candidate.trials.iter().enumerate() {
+            let Some(own) = own_part(design, fit, sigma, trial, train) else { continue };
+            let Some((a, gain)) = own.solve(candidate.fixed) else { continue };
+            if best.as_ref().is_none_or(|b| gain > b.0) {
+                best = Some((gain, k, a, own));
+            }
+        }
+        best
+    };
+    let (gain, trial, _, whole_own) = best(whole, &everything)?;
+    if gain <= 0.0 {
+        return None;
+    }
+    let single = single_motion(design);
+    let mut held_out = Vec::new();
+    let (mut own_gain, mut before) = (0.0, 0.0);
+    for fold in folds {
+        // Where only one motion is there, refitting all standard parameters to a part of it would drown every
+        // candidate in their extrapolation: the candidate's own part is then taken over the whole motion, and only
+        // its amplitude is fitted to the rest.
+        let (k, a, x) = if single {
+            let own = rest_of_motion(design, whole, sigma, &candidate.trials[trial], &whole_own, &fold.train);
+            let (a, _) = own.solve(candidate.fixed)?;
+            (trial, a, whole_own.x.clone())
+        } else {
+            let (_, k, a, own) = best(&fold.fit, &fold.train)?;
+            (k, a, own.x)
+        };
+        let fit = if single { whole } else { &fold.fit };
+        let d = -(&x * &a);
+        let mut sum = 0.0;
+        for (j, &s) in sigma.iter().enumerate() {
+            let w = 1.0 / (s * s);
+            for (g, _) in fold.test.iter().enumerate().filter(|(_, t)| **t) {
+                let change = w * change(design, fit, &candidate.trials[k], &a, &d, j, g);
+                sum += change;
+                if candidate.own.contains(&j) {
+                    own_gain += change;
+                    before += w * fit.squares(design, j, g);
+                }
+            }
+        }
+        held_out.push(sum);
+    }
+    let share = held_out.iter().sum::<f64>().min(own_gain) / before.max(1e-300);
+    Some(Verdict { trial, gain, held_out, share })
+}
+
+/// Whether all fresh segments are stretches of one motion.
+pub(super) fn single_motion(design: &Design) -> bool {
+    let mut fresh = design.segments.iter().filter(|s| s.fresh).map(|s| s.signal);
+    let first = fresh.next();
+    first.is_some() && fresh.all(|s| Some(s) == first)
+}
+
+/// Inner products of the candidate's own part (over all motion) on the training segments only.
+fn rest_of_motion(design: &Design, whole: &Fit, sigma: &[f64], trial: &Trial, own: &Own, train: &[bool]) -> Own {
+    let (p, k) = (design.columns.len(), trial.columns.len());
+    let (mut s, mut b) = (DMatrix::zeros(k, k), DVector::zeros(k));
+    for (j, sd) in sigma.iter().enumerate() {
+        let w = 1.0 / (sd * sd);
+        for g in (0..design.segments.len()).filter(|&g| train[g]) {
+            let gram = &design.gram[j][g];
+            let m = DMatrix::from_fn(p, p, |i, l| gram[i * (p + 1) + l]);
+            let gy = DVector::from_fn(p, |i, _| gram[i * (p + 1) + p]);
+            let mx = &m * &own.x;
+            let residual = gy - &m * &whole.chi;
+            s += w * (own.x.transpose() * &mx);
+            b -= w * (own.x.transpose() * &residual);
+            if let Some(product) = trial.products.get(j).and_then(|g_| g_.get(g)) {
+                let cross = product.with.transpose() * &own.x;
+                s += w * (&product.own - &cross - cross.transpose());
+                b += w * (DVector::from_column_slice(&product.y) - product.with.transpose() * &whole.chi);
+            }
+        }
+    }
+    Own { x: own.x.clone(), s, b }
+}
+
+/// Squares that are gone on one group when the candidate gets amplitude `a` and the parameters move by `d`.
+fn change(
+    design: &Design,
+    fit: &Fit,
+    trial: &Trial,
+    a: &DVector<f64>,
+    d: &DVector<f64>,
+    joint: usize,
+    segment: usize,
+) -> f64 {
+    let p = design.columns.len();
+    let g = &design.gram[joint][segment];
+    let (mut linear, mut square) = (0.0, 0.0);
+    for i in 0..p {
+        if d[i] == 0.0 {
+            continue;
+        }
+        let row = &g[i * (p + 1)..(i + 1) * (p + 1)];
+        let mut fitted = 0.0;
+        let mut moved = 0.0;
+        for k in 0..p {
+            fitted += row[k] * fit.chi[k];
+            moved += row[k] * d[k];
+        }
+        linear += d[i] * (row[p] - fitted);
+        square += d[i] * moved;
+    }
+    if let Some(product) = trial.products.get(joint).and_then(|s| s.get(segment)) {
+        for k in 0..a.len() {
+            let column = product.with.column(k);
+            linear += a[k] * (product.y[k] - column.dot(&fit.chi));
+            square += 2.0 * a[k] * column.dot(d);
+            for l in 0..a.len() {
+                square += a[k] * a[l] * product.own[(k, l)];
+            }
+        }
+    }
+    2.0 * linear - square
+}
+
+/// Significance of the held-out gain in standard errors over blocks of motion, whatever depends on what in a block.
+///
+/// Gains of blocks are heavy-tailed, so their signed square roots are compared with zero.
+pub(super) fn significance(
+    design: &Design,
+    whole: &Fit,
+    folds: &[Fold],
+    sigma: &[f64],
+    candidate: &Candidate,
+    verdict: &Verdict,
+) -> f64 {
+    let trial = &candidate.trials[verdict.trial];
+    let dense = trial.dense(design);
+    let single = single_motion(design);
+    let everything = vec![true; design.segments.len()];
+    let mut per_block = std::collections::BTreeMap::<usize, f64>::new();
+    for fold in folds {
+        let fit = if single { whole } else { &fold.fit };
+        let train = if single { &everything } else { &fold.train };
+        let Some(own) = own_part(design, fit, sigma, trial, train) else { return 0.0 };
+        let fitted =
+            if single { rest_of_motion(design, whole, sigma, trial, &own, &fold.train) } else { own };
+        let Some((a, _)) = fitted.solve(candidate.fixed) else { return 0.0 };
+        let d = -(&fitted.x * &a);
+        for (j, &s) in sigma.iter().enumerate() {
+            for g in (0..design.segments.len()).filter(|&g| fold.test[g]) {
+                for r in design.ranges[j][g].clone() {
+                    let mut residual = design.y[r];
+                    let mut move_ = 0.0;
+                    for (k, column) in design.columns.iter().enumerate() {
+                        residual -= column[r] * fit.chi[k];
+                        move_ += column[r] * d[k];
+                    }
+                    for (k, column) in dense.iter().enumerate() {
+                        move_ += column[r] * a[k];
+                    }
+                    let after = residual - move_;
+                    *per_block.entry(design.rows[r].block).or_default() +=
+                        (residual * residual - after * after) / (s * s);
+                }
+            }
+        }
+    }
+    let roots: Vec<f64> = per_block.values().map(|d| d.signum() * d.abs().sqrt()).collect();
+    let n = roots.len() as f64;
+    if n < 4.0 {
+        return 0.0;
+    }
+    let mean = roots.iter().sum::<f64>() / n;
+    let variance = roots.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+    mean / (variance / n).sqrt().max(1e-12)
+}

@@ -1,0 +1,209 @@
+//! Diagnosis: locate the mismatch between a model and a recording, name the physics that was left out, add it, and
+//! show on motion that was held back that the fit got better.
+//!
+//! 1. Windows in which something outside pushed the robot are found and set aside.
+//! 2. Rows at two paces: smoothed as slow as the motion (friction, load, springs, bodies), and faster (ripple,
+//!    elasticity, backlash).
+//! 3. Every effect of the catalogue, at every place and with a grid of shapes, is tried together with all standard
+//!    parameters, and judged on motion that was held back; the best that holds becomes part of the model; then again.
+//! 4. What was accepted is reconsidered, pruned and explained.
+
+mod candidate;
+mod contact_search;
+mod context;
+mod curves;
+mod design;
+mod explain;
+mod fit;
+mod judge;
+mod outcome;
+mod predict;
+mod search;
+mod settings;
+mod signals;
+mod spectrum;
+mod words;
+
+pub use outcome::{
+    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
+    ParameterShift, ParameterValue, TorqueSeries, Unexplained,
+};
+pub use predict::{predict_errors, term_torques};
+pub use settings::{DiagnosisError, Progress, Settings, Silent};
+
+use crate::effects::{EffectKind, EffectTerm, Place};
+use crate::model::Model;
+use crate::recording::Trajectory;
+use context::{Context, scales, top_speeds};
+use design::{Design, Plan};
+use search::Search;
+use signals::{Signals, directions};
+
+/// Stretches that a single motion is split into.
+const STRETCHES: usize = 8;
+/// A delay is named from this many samples and seconds; a smaller one is part of sampling and silently taken out.
+const NAMED_DELAY: (f64, f64) = (0.75, 1e-3);
+
+/// Diagnoses a recording; `baseline` are motions of the same robot before it changed, empty where there are none.
+///
+/// With a baseline only what changed is looked for. Errors where the data cannot support an answer.
+pub fn diagnose(
+    model: &dyn Model,
+    trajectories: &[Trajectory],
+    baseline: &[Trajectory],
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Result<Diagnosis, DiagnosisError> {
+    examine(model, trajectories, baseline, None, settings, progress)
+}
+
+/// Fits known effects, on a joint (0-based) where one is given, instead of looking for any: their shapes and
+/// amplitudes come from the recording. What [`diagnose`] would ideally find.
+pub fn fit_known(
+    model: &dyn Model,
+    trajectories: &[Trajectory],
+    baseline: &[Trajectory],
+    known: &[(EffectKind, Option<usize>)],
+    settings: &Settings,
+) -> Result<Diagnosis, DiagnosisError> {
+    examine(model, trajectories, baseline, Some(known), settings, &Silent)
+}
+
+fn examine(
+    model: &dyn Model,
+    trajectories: &[Trajectory],
+    baseline: &[Trajectory],
+    known: Option<&[(EffectKind, Option<usize>)]>,
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Result<Diagnosis, DiagnosisError> {
+    if trajectories.is_empty() {
+        return Err(DiagnosisError::NoMotion);
+    }
+    progress.at(0.0, "signals");
+    let n = model.robot().joints();
+    let forms = directions(model.robot());
+    let change = !baseline.is_empty();
+    let mut delay = 0.0;
+    let mut signals = prepare_all(baseline, trajectories, delay)?;
+    let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
+    let chunks = if trajectories.len() == 1 && !change { STRETCHES } else { 1 };
+    let nothing = vec![Vec::new(); signals.len()];
+    let plan = |half: f64, excluded| Plan {
+        half,
+        slowest: &slowest,
+        directions: &forms,
+        chunks,
+        block: settings.block,
+        excluded,
+    };
+    let open = Design::new(model, &signals, &plan(settings.slow_window, &nothing));
+    check(model, &open)?;
+    let mut sigma = vec![1.0; n];
+    let first = fit::fit_weighted(&open, &mut sigma, |_| true);
+    let chi: Vec<f64> = first.chi.iter().take(open.parameters).copied().collect();
+    check_fit(model, &open, &first, &sigma)?;
+
+    // A skew of more than a sample is taken out of the signals themselves.
+    for _ in 0..2 {
+        let found = {
+            let context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
+            let design = Design::new(model, &signals, &plan(settings.slow_window, &nothing));
+            explain::delay_of(&context, design)
+        };
+        let rate = signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
+        if found.abs() * rate < 0.75 {
+            break;
+        }
+        delay += found;
+        signals = prepare_all(baseline, trajectories, delay)?;
+    }
+    progress.at(0.05, "contacts");
+    let mut context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
+    let aligned = Design::new(model, &signals, &plan(settings.slow_window, &nothing));
+    let contacts = contact_search::find(&context, &aligned, &signals);
+    let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
+    let slow = Design::new(model, &signals, &plan(settings.slow_window, excluded));
+    let fast = Design::new(model, &signals, &plan(settings.fast_window, excluded));
+    if contacts.is_some() {
+        let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);
+        let chi: Vec<f64> = fit.chi.iter().take(slow.parameters).copied().collect();
+        context.update(chi);
+    }
+    progress.at(0.1, "candidates");
+    let mut search = Search::new(&mut context, slow, fast, slowest.clone(), change, settings, progress)?;
+    let bare = explain::Bare::new(&search, &aligned);
+    match known {
+        Some(known) => search.force(known),
+        None => search.run(settings, progress),
+    }
+    progress.at(0.92, "explanations");
+    let diagnosis = explain::explain(model, search, &bare, contacts.as_ref(), delay, settings)?;
+    progress.at(1.0, "done");
+    Ok(diagnosis)
+}
+
+/// Baseline first, then the recording that is diagnosed.
+fn prepare_all(
+    baseline: &[Trajectory],
+    trajectories: &[Trajectory],
+    delay: f64,
+) -> Result<Vec<Signals>, DiagnosisError> {
+    let old = baseline.iter().map(|t| Signals::new(t, false, delay));
+    old.chain(trajectories.iter().map(|t| Signals::new(t, true, delay))).collect()
+}
+
+/// Refuses motions that leave a joint without rows.
+fn check(model: &dyn Model, design: &Design) -> Result<(), DiagnosisError> {
+    let robot = model.robot();
+    for j in 0..design.joints {
+        let rows = design.count(j, |g| design.segments[g].fresh);
+        let needed = 40;
+        if rows < needed {
+            return Err(DiagnosisError::TooLittleMotion { joint: joint_number(robot, j), rows, needed });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses motions that do not determine the standard model, and recordings that it has nothing to do with.
+fn check_fit(model: &dyn Model, design: &Design, fit: &fit::Fit, sigma: &[f64]) -> Result<(), DiagnosisError> {
+    let free: Vec<usize> = fit.undetermined(1e-4);
+    let parameters = design.parameters;
+    if free.len() * 4 > parameters {
+        let names: Vec<String> =
+            free.iter().filter(|&&k| k < parameters).map(|&k| model.robot().base[k].name.to_string()).collect();
+        return Err(DiagnosisError::NotExciting { free: free.len(), parameters, names: names.join(", ") });
+    }
+    let mut left = 0.0;
+    let mut all = 0.0;
+    for (j, s) in sigma.iter().enumerate() {
+        let rows = design.of_joint(j);
+        left += s * s * rows.len() as f64;
+        all += design.y[rows].iter().map(|y| y * y).sum::<f64>();
+    }
+    let explained = 100.0 * (1.0 - left / all.max(1e-300));
+    if explained < 40.0 {
+        return Err(DiagnosisError::AnotherRobot { explained });
+    }
+    Ok(())
+}
+
+/// Number j of the frame of a joint.
+pub(crate) fn joint_number(robot: &crate::model::Robot, joint: usize) -> usize {
+    1 + robot.joint_of_frame().iter().position(|f| *f == Some(joint)).unwrap_or(joint)
+}
+
+/// A term with unit amplitudes: what an effect at a place with a shape is.
+fn unit_term(effect: EffectKind, place: Place, shape: Vec<f64>) -> EffectTerm {
+    EffectTerm {
+        effect,
+        place,
+        joints: Vec::new(),
+        shape,
+        amplitude: Vec::new(),
+        sigma: Vec::new(),
+        scale: None,
+        wrenches: Vec::new(),
+    }
+}

@@ -1,0 +1,243 @@
+//! What a diagnosis found, as data: the JSON of the contract and what a report draws.
+
+use crate::effects::{EffectTerm, Parameter, Wrench};
+use serde::{Deserialize, Serialize};
+
+/// Relative errors |Y - W chi| / |Y|.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Errors {
+    /// All joints together.
+    pub relative_error: f64,
+    /// Joint by joint.
+    pub per_joint: Vec<f64>,
+}
+
+/// Relative errors on motion that was held back.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct HeldOut {
+    /// How motion was held back.
+    pub how: String,
+    /// Standard model.
+    pub before: f64,
+    /// With the findings.
+    pub after: f64,
+    /// Standard model, joint by joint.
+    pub per_joint_before: Vec<f64>,
+    /// With the findings, joint by joint.
+    pub per_joint_after: Vec<f64>,
+    /// The same for each motion or stretch that was held back: its name, before, after.
+    pub by_motion: Vec<(String, f64, f64)>,
+}
+
+/// Where the standard model fails.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mismatch {
+    /// Number j of the joint.
+    pub joint: usize,
+    /// Share of all unexplained torque beyond the noise floor, in units of each joint's noise.
+    pub share: f64,
+    /// In words.
+    #[serde(rename = "where")]
+    pub where_: String,
+}
+
+/// A rejected explanation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Alternative {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of its joints.
+    pub joints: Vec<usize>,
+    /// Why it was not chosen.
+    pub why_not: String,
+    /// Share of the held-out squares that it would have explained.
+    pub share: f64,
+}
+
+/// The residual against the variable that reveals an effect, with the fitted law over it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Curve {
+    /// Variable, with its unit.
+    pub variable: String,
+    /// Torque unit.
+    pub unit: String,
+    /// Middle of each bin.
+    pub x: Vec<f64>,
+    /// Mean of the residual that the effect has to explain.
+    pub residual: Vec<f64>,
+    /// Standard error of that mean.
+    pub error: Vec<f64>,
+    /// Mean of the fitted law.
+    pub law: Vec<f64>,
+}
+
+/// Amplitude over order of a joint's residual: periods per radian (or metre) times 2 pi.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct OrderSpectrum {
+    /// Number j of the joint.
+    pub joint: usize,
+    /// Order: angle of the wave per angle of the joint.
+    pub order: Vec<f64>,
+    /// Order per motor turn is order divided by this.
+    pub gear: f64,
+    /// Amplitude, N.m or N.
+    pub amplitude: Vec<f64>,
+}
+
+/// Torques of one joint in one motion.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TorqueSeries {
+    /// Motion.
+    pub motion: String,
+    /// Number j of the joint.
+    pub joint: usize,
+    /// s.
+    pub time: Vec<f64>,
+    /// Measured.
+    pub measured: Vec<f64>,
+    /// Standard model, refitted without the findings.
+    pub before: Vec<f64>,
+    /// With the findings.
+    pub after: Vec<f64>,
+}
+
+/// A base parameter before and after the findings became part of the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParameterShift {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// Standard model alone.
+    pub before: f64,
+    /// Its standard deviation.
+    pub sigma_before: f64,
+    /// With the findings.
+    pub after: f64,
+    /// Its standard deviation.
+    pub sigma_after: f64,
+}
+
+/// An effect that was found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of the joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// One minus the probability that held-out motion improves so much by chance, all tries counted.
+    pub confidence: f64,
+    /// Its quantities by name.
+    pub parameters: std::collections::BTreeMap<String, ParameterValue>,
+    /// Held-out relative error of its joints without it (everything else in the model).
+    pub held_out_before: f64,
+    /// With it.
+    pub held_out_after: f64,
+    /// Share of the held-out squares of its joints that it explains.
+    pub share: f64,
+    /// Other explanations.
+    pub alternatives: Vec<Alternative>,
+    /// For a person.
+    pub sentence: String,
+    /// What the report draws.
+    pub curve: Option<Curve>,
+    /// Its term in the model.
+    pub term: EffectTerm,
+    /// Where it is a contact.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<Wrench>,
+}
+
+/// A value in the JSON.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParameterValue {
+    /// Value, SI.
+    pub value: f64,
+    /// Standard deviation; 0 where not known.
+    pub sigma: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+impl From<&Parameter> for ParameterValue {
+    fn from(p: &Parameter) -> Self {
+        Self { value: p.value, sigma: p.sigma, unit: p.unit.clone() }
+    }
+}
+
+/// Effects that this motion cannot tell apart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CannotTell {
+    /// Effects.
+    pub between: Vec<String>,
+    /// Numbers j of the joints.
+    pub joints: Vec<usize>,
+    /// The motion that would tell.
+    pub experiment: String,
+}
+
+/// What nothing explains.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Unexplained {
+    /// Share of the remaining held-out squares that is not noise, over all joints.
+    pub share: f64,
+    /// The same joint by joint.
+    pub per_joint: Vec<f64>,
+    /// Remaining residual of each joint over its speed.
+    pub curves: Vec<Curve>,
+}
+
+/// A standard parameter set: base parameters with their standard deviations.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Estimated {
+    /// chi.
+    pub chi: Vec<f64>,
+    /// Standard deviations.
+    pub sigma: Vec<f64>,
+}
+
+/// The outcome of a diagnosis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Diagnosis {
+    /// Robot.
+    pub robot: String,
+    /// Standard model, in sample.
+    pub before: Errors,
+    /// With the findings, in sample.
+    pub after: Errors,
+    /// On motion that was held back.
+    pub held_out: HeldOut,
+    /// Joint by joint, largest share first.
+    pub mismatch: Vec<Mismatch>,
+    /// What was found.
+    pub findings: Vec<Finding>,
+    /// What this motion cannot tell.
+    pub cannot_tell: Vec<CannotTell>,
+    /// What nothing explains.
+    pub unexplained: Unexplained,
+    /// The verdict in plain sentences.
+    pub verdict: Vec<String>,
+    /// Parameters that the findings moved by more than three standard deviations.
+    pub shifts: Vec<ParameterShift>,
+    /// Parameters of the standard model alone.
+    pub standard: Estimated,
+    /// Parameters with the findings in the model: what is saved, together with the terms of the findings.
+    pub model: Estimated,
+    /// Skew between torque and position that was taken out, s.
+    pub delay: f64,
+    /// Order spectra of the residuals of joints with ripple.
+    pub spectra: Vec<OrderSpectrum>,
+    /// Torques before and after on the joints of the findings.
+    pub series: Vec<TorqueSeries>,
+    /// Rows used.
+    pub rows: usize,
+    /// Things tried: effects at places, with all of their shapes.
+    pub tried: usize,
+}
+
+impl Diagnosis {
+    /// The accepted terms.
+    pub fn terms(&self) -> Vec<EffectTerm> {
+        self.findings.iter().map(|f| f.term.clone()).collect()
+    }
+}

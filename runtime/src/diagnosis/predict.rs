@@ -1,0 +1,120 @@
+//! Accepted effects as part of a model: their torques on any motion, and the errors of a model with them.
+
+use super::DiagnosisError;
+use super::context::{Context, scales};
+use super::design::{Design, Plan};
+use super::outcome::{Errors, Estimated};
+use super::settings::Settings;
+use super::signals::{ModelTorques, Signals, directions};
+use crate::effects::{EffectTerm, Form, Place, Transmission};
+use crate::model::Model;
+use crate::recording::Trajectory;
+use crate::signal::Motion;
+
+/// Torques of terms on a motion, to be added to those of the standard model: `[j][t]`, N.m or N.
+///
+/// `chi` are the base parameters that were identified together with the terms. Contacts belong to the recording they
+/// were seen in and add nothing.
+pub fn term_torques(
+    model: &dyn Model,
+    chi: &[f64],
+    terms: &[EffectTerm],
+    motion: &Motion,
+) -> Result<Vec<Vec<f64>>, DiagnosisError> {
+    let signals = [Signals::of_motion(motion)];
+    let mut all = torques_on(model, chi, terms, &signals)?;
+    Ok(all.pop().unwrap_or_default())
+}
+
+/// The same for several motions: `[motion][j][t]`.
+fn torques_on(
+    model: &dyn Model,
+    chi: &[f64],
+    terms: &[EffectTerm],
+    signals: &[Signals],
+) -> Result<Vec<Vec<Vec<f64>>>, DiagnosisError> {
+    let n = model.robot().joints();
+    let mut out: Vec<Vec<Vec<f64>>> = signals.iter().map(|s| vec![vec![0.0; s.len()]; n]).collect();
+    if terms.is_empty() {
+        return Ok(out);
+    }
+    let mut context = Context::new(model, signals, scales(model, signals, chi), chi.to_vec())?;
+    for term in terms {
+        if let (Place::Joint(j), Some(scale)) = (term.place, term.scale) {
+            if j < n {
+                context.scales[j] = scale.into();
+            }
+        }
+        let mut amplitude = term.amplitude.clone();
+        if let (Form::Compliance(_), Place::Joint(j), &[k, d, rotor, play]) =
+            (term.effect.form(), term.place, term.amplitude.as_slice())
+        {
+            let prismatic = context.scales[j].prismatic;
+            let known =
+                Transmission { stiffness: k, damping: d, rotor, play, frequency: term.shape[0], prismatic };
+            context.transmissions = vec![(j, known)];
+            amplitude = vec![1.0];
+        }
+        for (k, torque) in out.iter_mut().enumerate() {
+            for (column, a) in context.series(k, term.effect, term.place, &term.shape).iter().zip(&amplitude) {
+                for (j, values) in column {
+                    torque[*j].iter_mut().zip(values).for_each(|(t, v)| *t += a * v);
+                }
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Relative errors of a model with terms on other recordings: rows where joints move, smoothed with the fast window
+/// (25 Hz with the default settings). `delay` is the skew of the torques that is known, s.
+pub fn predict_errors(
+    model: &dyn Model,
+    parameters: &Estimated,
+    terms: &[EffectTerm],
+    delay: f64,
+    trajectories: &[Trajectory],
+    slowest: &[f64],
+    settings: &Settings,
+) -> Result<Errors, DiagnosisError> {
+    let signals: Vec<Signals> =
+        trajectories.iter().map(|t| Signals::new(t, true, delay)).collect::<Result<_, _>>()?;
+    let forms = directions(model.robot());
+    let nothing = vec![Vec::new(); signals.len()];
+    let plan = Plan {
+        half: settings.fast_window,
+        slowest,
+        directions: &forms,
+        chunks: 1,
+        block: settings.block,
+        excluded: &nothing,
+    };
+    let design = Design::new(model, &signals, &plan);
+    let added = torques_on(model, &parameters.chi, terms, &signals)?;
+    let n = design.joints;
+    let (mut left, mut whole) = (vec![0.0; n], vec![0.0; n]);
+    for (k, s) in signals.iter().enumerate() {
+        let standard = ModelTorques::new(model, &parameters.chi, s);
+        for j in 0..n {
+            let series: Vec<f64> = (0..s.len())
+                .map(|t| s.torque[j][t] - standard.total[j][t] - added[k][j][t])
+                .collect();
+            for (range, _) in design.of_signal(j, k) {
+                for r in range {
+                    left[j] += design.smooth(k, &series, design.rows[r].centre).powi(2);
+                    whole[j] += design.y[r].powi(2);
+                }
+            }
+        }
+    }
+    Ok(errors(&left, &whole))
+}
+
+/// Relative errors from squares per joint.
+pub(super) fn errors(left: &[f64], whole: &[f64]) -> Errors {
+    let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
+    Errors {
+        relative_error: ratio(left.iter().sum(), whole.iter().sum()),
+        per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
+    }
+}

@@ -1,0 +1,452 @@
+//! Forward selection of effects with refinement of their shapes, and backward pruning.
+//!
+//! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held back.
+
+use super::DiagnosisError;
+use super::candidate::{Candidate, Pace, Trial, build, columns, make, pace, proposals};
+use super::context::Context;
+use super::design::Design;
+use super::fit::{Fit, fit_weighted};
+use super::judge::{Fold, Verdict, folds, judge, significance, single_motion};
+use super::outcome::OrderSpectrum;
+use super::settings::{Progress, Settings};
+use super::spectrum::{order_spectrum, peaks};
+use crate::effects::{EffectKind, Form, Place};
+
+/// An accepted effect.
+#[derive(Debug, Clone)]
+pub(super) struct Accepted {
+    pub effect: EffectKind,
+    pub place: Place,
+    pub own: Vec<usize>,
+    pub shape: Vec<f64>,
+    pub fixed: Option<f64>,
+    pub significance: f64,
+    pub rivals: Vec<Rival>,
+}
+
+/// Another explanation of what an accepted effect explains.
+#[derive(Debug, Clone)]
+pub(super) struct Rival {
+    pub effect: EffectKind,
+    pub place: Place,
+    pub share: f64,
+    pub total: f64,
+}
+
+/// The rows at one pace with everything that is fitted on them.
+pub(super) struct Side {
+    pub design: Design,
+    pub sigma: Vec<f64>,
+    pub fit: Fit,
+    pub folds: Vec<Fold>,
+    candidates: Vec<Candidate>,
+    /// y without any term of fixed amplitude.
+    measured: Vec<f64>,
+    /// Columns that are always there: base parameters and nuisances.
+    fixed_columns: usize,
+    /// Columns of each term; empty where its amplitude is fixed.
+    pub term_columns: Vec<std::ops::Range<usize>>,
+}
+
+impl Side {
+    fn refit(&mut self) {
+        self.design.refresh();
+        self.fit = fit_weighted(&self.design, &mut self.sigma, |_| true);
+        self.folds = folds(&self.design, &self.sigma);
+    }
+
+    /// Puts exactly these terms into the design.
+    pub fn set_terms(&mut self, context: &Context<'_>, terms: &[Accepted], change: bool) {
+        self.design.columns.truncate(self.fixed_columns);
+        self.design.y.clone_from(&self.measured);
+        self.term_columns.clear();
+        for term in terms {
+            let start = self.design.columns.len();
+            let columns = columns(context, &self.design, term.effect, term.place, &term.shape, change);
+            let trial = Trial { shape: term.shape.clone(), columns, products: Vec::new() };
+            for column in trial.dense(&self.design) {
+                match term.fixed {
+                    Some(a) => self.design.y.iter_mut().zip(&column).for_each(|(y, c)| *y -= a * c),
+                    None => self.design.push(column),
+                }
+            }
+            self.term_columns.push(start..self.design.columns.len());
+        }
+        self.refit();
+    }
+}
+
+/// The search's state and outcome.
+pub(super) struct Search<'c, 'a> {
+    pub context: &'c mut Context<'a>,
+    pub slow: Side,
+    pub fast: Side,
+    pub terms: Vec<Accepted>,
+    pub spectra: Vec<OrderSpectrum>,
+    pub tried: usize,
+    pub change: bool,
+    slowest: Vec<f64>,
+}
+
+/// Effects whose columns follow the standard parameters.
+fn follows_parameters(effect: EffectKind) -> bool {
+    matches!(
+        effect,
+        EffectKind::LoadDependentFriction
+            | EffectKind::TorqueConstantError
+            | EffectKind::TorqueSaturation
+            | EffectKind::FrictionLevelChange
+    )
+}
+
+/// What passed a round: the side it is on, the candidate's index, and its verdict.
+struct Winner {
+    pace: Pace,
+    index: usize,
+    verdict: Verdict,
+    significance: f64,
+    rivals: Vec<Rival>,
+}
+
+impl<'c, 'a> Search<'c, 'a> {
+    pub fn new(
+        context: &'c mut Context<'a>,
+        slow: Design,
+        fast: Design,
+        slowest: Vec<f64>,
+        change: bool,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Self, DiagnosisError> {
+        let make_side = |mut design: Design, context: &Context<'_>| {
+            let delay = columns(context, &design, EffectKind::TimeDelay, Place::Variant(0), &[], false);
+            let trial = Trial { shape: vec![], columns: delay, products: Vec::new() };
+            for column in trial.dense(&design) {
+                design.push(column);
+            }
+            design.refresh();
+            let mut sigma = vec![1.0; design.joints];
+            let fit = fit_weighted(&design, &mut sigma, |_| true);
+            let folds = folds(&design, &sigma);
+            let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
+            Side { design, sigma, fit, folds, candidates: Vec::new(), measured, fixed_columns, term_columns: vec![] }
+        };
+        let slow = make_side(slow, context);
+        let fast = make_side(fast, context);
+        let mut search =
+            Self { context, slow, fast, terms: Vec::new(), spectra: Vec::new(), tried: 0, change, slowest };
+        search.propose(settings, progress);
+        Ok(search)
+    }
+
+    /// Builds all candidates.
+    fn propose(&mut self, settings: &Settings, progress: &dyn Progress) {
+        progress.at(0.15, "order spectra");
+        self.spectra = self.order_spectra();
+        let orders: Vec<Vec<f64>> = self.spectra.iter().map(|s| peaks(s, 2)).collect();
+        let slow = proposals(self.context, Pace::Slow, self.change, &orders);
+        let fast = proposals(self.context, Pace::Fast, self.change, &orders);
+        self.tried = slow.iter().chain(&fast).map(|p| p.2.len()).sum();
+        let (context, change, threads) = (&*self.context, self.change, settings.threads);
+        self.slow.candidates = build(context, &self.slow.design, &slow, change, threads, &|done| {
+            progress.at(0.2 + 0.15 * done, "slow effects");
+        });
+        self.fast.candidates = build(context, &self.fast.design, &fast, change, threads, &|done| {
+            progress.at(0.35 + 0.25 * done, "fast effects");
+        });
+    }
+
+    fn order_spectra(&self) -> Vec<OrderSpectrum> {
+        let context = &*self.context;
+        let joint_of_frame = context.model.robot().joint_of_frame();
+        let number = |j: usize| 1 + joint_of_frame.iter().position(|f| *f == Some(j)).unwrap_or(j);
+        std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..self.slow.design.joints)
+                .map(|j| {
+                    let scale = context.scales[j];
+                    let slowest = self.slowest[j];
+                    scope.spawn(move || {
+                        let residual: Vec<Vec<f64>> = context
+                            .signals
+                            .iter()
+                            .zip(&context.torques)
+                            .map(|(s, m)| s.torque[j].iter().zip(&m.total[j]).map(|(y, t)| y - t).collect())
+                            .collect();
+                        order_spectrum(
+                            j,
+                            number(j),
+                            context.signals,
+                            &residual,
+                            scale.gear,
+                            scale.range,
+                            slowest * 3.0,
+                        )
+                    })
+                })
+                .collect();
+            workers.into_iter().filter_map(|w| w.join().ok()).collect()
+        })
+    }
+
+    /// Adds effects as long as one improves held-back motion.
+    pub fn run(&mut self, settings: &Settings, progress: &dyn Progress) {
+        while self.terms.len() < settings.most_effects {
+            let done = self.terms.len() as f64 / settings.most_effects as f64;
+            progress.at(0.6 + 0.25 * done, "held-out tests");
+            let Some(winner) = self.best(settings, None) else { break };
+            let accepted = self.accept(&winner);
+            self.terms.push(accepted);
+            self.settle();
+            self.reconsider(settings);
+        }
+        progress.at(0.87, "pruning");
+        self.prune(settings);
+    }
+
+    /// Takes the given effects as known, on a joint where one is given: only shapes and amplitudes are fitted.
+    pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) {
+        for &(effect, joint) in known {
+            let which = pace(effect);
+            let side = self.side(which);
+            let best = side
+                .candidates
+                .iter()
+                .enumerate()
+                .filter(|(_, c)| c.effect == effect && joint.is_none_or(|j| c.own.contains(&j)))
+                .filter_map(|(k, c)| {
+                    judge(&side.design, &side.fit, &side.folds, &side.sigma, c).map(|v| (k, v))
+                })
+                .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+            if let Some((index, verdict)) = best {
+                let winner = Winner { pace: which, index, verdict, significance: 0.0, rivals: vec![] };
+                let term = self.accept(&winner);
+                self.terms.push(term);
+                self.settle();
+            }
+        }
+    }
+
+    /// Puts the terms into both designs, and lets loads follow the standard parameters.
+    pub fn settle(&mut self) {
+        for _ in 0..2 {
+            self.slow.set_terms(self.context, &self.terms, self.change);
+            let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
+            self.context.update(chi);
+        }
+        self.slow.set_terms(self.context, &self.terms, self.change);
+        self.fast.set_terms(self.context, &self.terms, self.change);
+        for side in [&mut self.slow, &mut self.fast] {
+            for candidate in &mut side.candidates {
+                for trial in &mut candidate.trials {
+                    if follows_parameters(candidate.effect) {
+                        trial.columns = columns(
+                            self.context,
+                            &side.design,
+                            candidate.effect,
+                            candidate.place,
+                            &trial.shape,
+                            self.change,
+                        );
+                    }
+                    trial.refresh(&side.design);
+                }
+            }
+        }
+    }
+
+    pub fn side(&self, pace: Pace) -> &Side {
+        if pace == Pace::Slow { &self.slow } else { &self.fast }
+    }
+
+    /// The best candidate that holds, among those on `joint` where one is given.
+    fn best(&self, settings: &Settings, joint: Option<usize>) -> Option<Winner> {
+        let mut ranked: Vec<(Pace, usize, Verdict)> = Vec::new();
+        for which in [Pace::Slow, Pace::Fast] {
+            let side = self.side(which);
+            for (index, candidate) in side.candidates.iter().enumerate() {
+                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.known(candidate) {
+                    continue;
+                }
+                if let Some(v) = judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate) {
+                    ranked.push((which, index, v));
+                }
+            }
+        }
+        ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
+        let mut checked = 0;
+        for (k, (which, index, verdict)) in ranked.iter().enumerate() {
+            let side = self.side(*which);
+            let candidate = &side.candidates[*index];
+            if !self.holds(side, verdict, settings) {
+                continue;
+            }
+            checked += 1;
+            if checked > 12 {
+                break;
+            }
+            let z = significance(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict);
+            if z < settings.least_significance {
+                continue;
+            }
+            let rivals = ranked
+                .iter()
+                .enumerate()
+                .filter(|(i, (p, c, _))| {
+                    *i != k && self.side(*p).candidates[*c].own.iter().any(|j| candidate.own.contains(j))
+                })
+                .take(5)
+                .map(|(_, (p, c, v))| {
+                    let rival = &self.side(*p).candidates[*c];
+                    Rival { effect: rival.effect, place: rival.place, share: v.share, total: v.total() }
+                })
+                .collect();
+            return Some(Winner {
+                pace: *which,
+                index: *index,
+                verdict: verdict.clone(),
+                significance: z,
+                rivals,
+            });
+        }
+        None
+    }
+
+    fn known(&self, candidate: &Candidate) -> bool {
+        self.terms.iter().any(|t| {
+            t.place == candidate.place && t.effect == candidate.effect && t.effect != EffectKind::TorqueRipple
+        })
+    }
+
+    fn holds(&self, side: &Side, verdict: &Verdict, settings: &Settings) -> bool {
+        let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
+        let folds = verdict.held_out.len();
+        // Of many stretches of one motion a few may be untouched by an effect.
+        let needed = if single_motion(&side.design) { folds - folds / 4 } else { folds - folds / 6 };
+        verdict.share >= settings.least_share && positive >= needed
+    }
+
+    /// Refines the shape of the winner on all motion.
+    fn accept(&self, winner: &Winner) -> Accepted {
+        let side = self.side(winner.pace);
+        let candidate = &side.candidates[winner.index];
+        let shape = self.refined(side, candidate, &candidate.trials[winner.verdict.trial].shape);
+        Accepted {
+            effect: candidate.effect,
+            place: candidate.place,
+            own: candidate.own.clone(),
+            shape,
+            fixed: candidate.fixed,
+            significance: winner.significance,
+            rivals: winner.rivals.clone(),
+        }
+    }
+
+    fn refined(&self, side: &Side, candidate: &Candidate, start: &[f64]) -> Vec<f64> {
+        let gain = |shape: &[f64]| -> f64 {
+            let one = make(
+                self.context,
+                &side.design,
+                candidate.effect,
+                candidate.place,
+                &[shape.to_vec()],
+                self.change,
+            );
+            judge(&side.design, &side.fit, &[], &side.sigma, &one).map_or(f64::NEG_INFINITY, |v| v.gain)
+        };
+        let steps: Vec<Step> = match candidate.effect.form() {
+            Form::Joint(_) if candidate.effect == EffectKind::TorqueRipple => {
+                let Place::Joint(j) = candidate.place else { return start.to_vec() };
+                vec![Step::Add(std::f64::consts::PI / self.context.scales[j].range)]
+            }
+            Form::Joint(law) => law.refinement().iter().map(|&f| Step::Times(f)).collect(),
+            Form::Compliance(_) => {
+                vec![Step::Times(1.2), Step::Times(1.9), Step::Add(0.2), Step::Times(1.4)]
+            }
+            Form::Coupled => vec![Step::Times(1.4)],
+            _ => Vec::new(),
+        };
+        let mut shape = start.to_vec();
+        let mut value = gain(&shape);
+        for round in 0..5 {
+            for (k, step) in steps.iter().enumerate().take(shape.len()) {
+                for direction in [1.0, -1.0] {
+                    let mut next = shape.clone();
+                    let size = direction * 0.5_f64.powi(round);
+                    match step {
+                        Step::Times(f) => next[k] *= f.powf(size),
+                        Step::Add(d) => next[k] = (next[k] + d * size).max(0.0),
+                    }
+                    if next[k] == shape[k] {
+                        continue;
+                    }
+                    let tried = gain(&next);
+                    if tried > value {
+                        (shape, value) = (next, tried);
+                        break;
+                    }
+                }
+            }
+        }
+        shape
+    }
+
+    /// With a new effect in the model an earlier one may turn out to have been its imitator: each is taken out, and
+    /// the best explanation of its joints is put in its place.
+    fn reconsider(&mut self, settings: &Settings) {
+        if self.terms.len() < 2 {
+            return;
+        }
+        for k in 0..self.terms.len() - 1 {
+            let old = self.terms.remove(k);
+            self.settle();
+            let joint = (old.own.len() < self.slow.design.joints).then(|| old.own[0]);
+            let replacement = self.best(settings, joint).map(|w| self.accept(&w));
+            let keep = match replacement {
+                Some(new) if new.effect == old.effect && new.place == old.place => {
+                    Some(Accepted { shape: new.shape, rivals: new.rivals, ..old })
+                }
+                other => other,
+            };
+            if let Some(term) = keep {
+                self.terms.insert(k, term);
+                self.settle();
+            } else {
+                // What no longer holds is left out; the terms after it move up.
+                return self.reconsider(settings);
+            }
+        }
+    }
+
+    /// Takes out what no longer earns its place beside the others.
+    fn prune(&mut self, settings: &Settings) {
+        let mut k = 0;
+        while k < self.terms.len() && self.terms.len() > 1 {
+            let term = self.terms.remove(k);
+            self.settle();
+            let side = self.side(pace(term.effect));
+            let candidate = make(
+                self.context,
+                &side.design,
+                term.effect,
+                term.place,
+                std::slice::from_ref(&term.shape),
+                self.change,
+            );
+            let worth = judge(&side.design, &side.fit, &side.folds, &side.sigma, &candidate)
+                .is_some_and(|v| v.share >= 0.6 * settings.least_share && v.total() > 0.0);
+            if worth {
+                self.terms.insert(k, term);
+                k += 1;
+            }
+            self.settle();
+        }
+    }
+}
+
+/// How a shape parameter is varied.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    Times(f64),
+    Add(f64),
+}

@@ -1,0 +1,97 @@
+//! What a diagnosis can be told, and what it tells while it works.
+
+/// Settings of a diagnosis. None of them knows a robot: speeds and travels count relative to the joint's own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Half-width of the smoothing for effects that are as slow as the motion, s.
+    pub slow_window: f64,
+    /// Half-width of the smoothing for effects faster than the motion (ripple, elasticity, backlash), s.
+    pub fast_window: f64,
+    /// Rows where a joint is slower than this fraction of its top speed are left out: sign(v) is noise there.
+    pub standstill: f64,
+    /// Least share of a joint's unexplained held-out energy that an effect must explain to be named.
+    pub least_share: f64,
+    /// Least significance of the held-out gain, in standard errors over blocks of motion.
+    pub least_significance: f64,
+    /// Most effects that are named.
+    pub most_effects: usize,
+    /// Length of a block of motion in which residuals may depend on each other, s.
+    pub block: f64,
+    /// Threads.
+    pub threads: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            slow_window: 0.045,
+            fast_window: 0.020,
+            standstill: 0.01,
+            least_share: 0.12,
+            least_significance: 3.0,
+            most_effects: 8,
+            block: 0.5,
+            threads: 2,
+        }
+    }
+}
+
+/// Told how far a diagnosis is.
+pub trait Progress: Sync {
+    /// `done` in 0..=1 of the whole, and what is being done.
+    fn at(&self, done: f64, what: &str);
+}
+
+/// Tells nobody.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn at(&self, _: f64, _: &str) {}
+}
+
+/// Why the data cannot support a diagnosis.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DiagnosisError {
+    /// A signal could not be prepared.
+    #[error(transparent)]
+    Signal(#[from] crate::signal::SignalError),
+    /// The recursive model could not be built.
+    #[error(transparent)]
+    Model(#[from] crate::model::RecursiveModelError),
+    /// No motion at all.
+    #[error("the recording has no motion")]
+    NoMotion,
+    /// Too few usable rows on a joint.
+    #[error(
+        "joint {joint}: only {rows} usable rows of motion, {needed} are needed; it stands still or the recording is too short"
+    )]
+    TooLittleMotion {
+        /// Number j of the joint.
+        joint: usize,
+        /// Rows found.
+        rows: usize,
+        /// Rows needed.
+        needed: usize,
+    },
+    /// The standard model's own parameters are not determined.
+    #[error(
+        "the motion does not excite the standard model: {free} of its {parameters} parameters are not determined ({names}); use a motion that moves all joints at different speeds"
+    )]
+    NotExciting {
+        /// Parameters not determined.
+        free: usize,
+        /// All parameters.
+        parameters: usize,
+        /// Their names.
+        names: String,
+    },
+    /// The standard model does not describe the recording at all.
+    #[error(
+        "the standard model explains only {explained:.0} % of the torque: is this the right robot, with the right units and joint order?"
+    )]
+    AnotherRobot {
+        /// Per cent.
+        explained: f64,
+    },
+}

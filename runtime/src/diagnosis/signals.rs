@@ -1,0 +1,203 @@
+//! Motions at the full rate, ready for laws and models.
+
+use super::DiagnosisError;
+use crate::model::{JointKind, Model, ParameterKind, Robot, States};
+use crate::recording::Trajectory;
+use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
+
+/// One motion: positions filtered and differentiated three times, torques through the same filter. `[j][t]`.
+pub(super) struct Signals {
+    pub name: String,
+    /// Whether it belongs to the recording that is diagnosed; otherwise to the baseline.
+    pub fresh: bool,
+    pub rate: f64,
+    pub start: f64,
+    pub q: Vec<Vec<f64>>,
+    pub dq: Vec<Vec<f64>>,
+    pub ddq: Vec<Vec<f64>>,
+    pub jerk: Vec<Vec<f64>>,
+    pub torque: Vec<Vec<f64>>,
+    /// Samples at each end that filters have spoiled.
+    pub spoiled: usize,
+}
+
+/// Highest cut-off of the position filter, Hz.
+const CUTOFF: f64 = 60.0;
+
+impl Signals {
+    pub fn new(trajectory: &Trajectory, fresh: bool, delay: f64) -> Result<Self, DiagnosisError> {
+        let stamps = trajectory.time.len().max(2) - 1;
+        let span = trajectory.time.last().unwrap_or(&0.0) - trajectory.time.first().unwrap_or(&0.0);
+        let rate = if span > 0.0 { stamps as f64 / span } else { 1.0 };
+        let settings = Preparation { cutoff: Some((rate / 5.0).min(CUTOFF)), ..Preparation::default() };
+        let motion = prepare(trajectory, &settings)?;
+        let rate = motion.rate;
+        let filter = Butterworth::low_pass(settings.order, (rate / 5.0).min(CUTOFF), rate)?;
+        let jerk = motion
+            .ddq
+            .iter()
+            .map(|x| {
+                let mut out = vec![0.0; x.len()];
+                central_difference(x, rate, Stencil::Seven, &mut out);
+                out
+            })
+            .collect();
+        let torque = motion
+            .torque
+            .iter()
+            .map(|x| Ok(filter.zero_phase(&shifted(x, delay * rate))?))
+            .collect::<Result<Vec<_>, DiagnosisError>>()?;
+        Ok(Self {
+            name: motion.name,
+            fresh,
+            rate,
+            start: motion.start,
+            q: motion.q,
+            dq: motion.dq,
+            ddq: motion.ddq,
+            jerk,
+            torque,
+            spoiled: motion.spoiled,
+        })
+    }
+
+    /// A motion as it is: for the torques of terms.
+    pub fn of_motion(motion: &Motion) -> Self {
+        let jerk = motion
+            .ddq
+            .iter()
+            .map(|x| {
+                let mut out = vec![0.0; x.len()];
+                central_difference(x, motion.rate, Stencil::Seven, &mut out);
+                out
+            })
+            .collect();
+        Self {
+            name: motion.name.clone(),
+            fresh: true,
+            rate: motion.rate,
+            start: motion.start,
+            q: motion.q.clone(),
+            dq: motion.dq.clone(),
+            ddq: motion.ddq.clone(),
+            jerk,
+            torque: motion.torque.clone(),
+            spoiled: motion.spoiled,
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.q.first().map_or(0, Vec::len)
+    }
+
+    pub fn time(&self, t: usize) -> f64 {
+        self.start + t as f64 / self.rate
+    }
+}
+
+/// The signal `samples` later: linear interpolation, the ends held.
+fn shifted(x: &[f64], samples: f64) -> Vec<f64> {
+    if samples == 0.0 || x.is_empty() {
+        return x.to_vec();
+    }
+    let last = (x.len() - 1) as f64;
+    (0..x.len())
+        .map(|k| {
+            let at = (k as f64 + samples).clamp(0.0, last);
+            let low = at.floor() as usize;
+            let high = (low + 1).min(x.len() - 1);
+            x[low] + (at - low as f64) * (x[high] - x[low])
+        })
+        .collect()
+}
+
+/// Torques of the standard model for given parameters, split by what makes them. `[j][t]`.
+pub(super) struct ModelTorques {
+    /// Inertia, centrifugal, Coriolis, gravity, rotors.
+    pub rigid: Vec<Vec<f64>>,
+    /// Viscous and Coulomb friction.
+    pub friction: Vec<Vec<f64>>,
+    /// Everything.
+    pub total: Vec<Vec<f64>>,
+}
+
+const BLOCK: usize = 256;
+
+fn part(x: &[Vec<f64>], first: usize, count: usize) -> Vec<&[f64]> {
+    x.iter().map(|v| &v[first..first + count]).collect()
+}
+
+/// Every row of IDM in blocks: `each(first sample, samples, entries with stride BLOCK)`.
+pub(super) fn each_block(model: &dyn Model, s: &Signals, mut each: impl FnMut(usize, usize, &[f64])) {
+    let mut out = vec![0.0; model.pattern().columns.len() * BLOCK];
+    let mut first = 0;
+    while first < s.len() {
+        let count = BLOCK.min(s.len() - first);
+        let (q, dq, ddq) = (part(&s.q, first, count), part(&s.dq, first, count), part(&s.ddq, first, count));
+        model.idm_block(States { q: &q, dq: &dq, ddq: &ddq }, BLOCK, &mut out);
+        each(first, count, &out);
+        first += count;
+    }
+}
+
+impl ModelTorques {
+    pub fn new(model: &dyn Model, chi: &[f64], s: &Signals) -> Self {
+        let n = s.q.len();
+        let zero = || vec![vec![0.0; s.len()]; n];
+        let mut out = Self { rigid: zero(), friction: zero(), total: zero() };
+        let kinds: Vec<ParameterKind> =
+            model.robot().base.iter().map(|b| model.robot().standard[b.standard].kind).collect();
+        let pattern = model.pattern().clone();
+        each_block(model, s, |first, count, entries| {
+            for j in 0..n {
+                for e in pattern.rows[j]..pattern.rows[j + 1] {
+                    let k = pattern.columns[e];
+                    let part = match kinds[k] {
+                        ParameterKind::Fv | ParameterKind::Fc | ParameterKind::Fvm | ParameterKind::Fcm => {
+                            Some(&mut out.friction[j])
+                        }
+                        ParameterKind::Off => None,
+                        _ => Some(&mut out.rigid[j]),
+                    };
+                    let values = &entries[e * BLOCK..e * BLOCK + count];
+                    if let Some(part) = part {
+                        for (o, v) in part[first..first + count].iter_mut().zip(values) {
+                            *o += v * chi[k];
+                        }
+                    }
+                    for (o, v) in out.total[j][first..first + count].iter_mut().zip(values) {
+                        *o += v * chi[k];
+                    }
+                }
+            }
+        });
+        out
+    }
+}
+
+/// The linear forms of dq whose sign enters the row of each joint: its own speed, and those of coupled motors.
+pub(super) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
+    let n = robot.joints();
+    let mut forms: Vec<Vec<Vec<f64>>> = (0..n)
+        .map(|j| {
+            let mut own = vec![0.0; n];
+            own[j] = 1.0;
+            vec![own]
+        })
+        .collect();
+    for &m in robot.drive.coupled_friction.iter() {
+        let row = &robot.drive.gear[m * n..(m + 1) * n];
+        let form: Vec<f64> = row.iter().map(|g| g / row[m]).collect();
+        for (j, forms) in forms.iter_mut().enumerate() {
+            if form[j] != 0.0 && !forms.contains(&form) {
+                forms.push(form.clone());
+            }
+        }
+    }
+    forms
+}
+
+/// Kind of each joint.
+pub(super) fn joint_kinds(robot: &Robot) -> Vec<JointKind> {
+    robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect()
+}

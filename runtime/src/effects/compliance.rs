@@ -1,0 +1,121 @@
+//! A link that is driven through a spring, with or without play.
+//!
+//! The encoder sees the motor. With x = q_motor - q_link the link obeys M ddx = load - f(x, dx), where M is the
+//! inertia of the links behind the joint, `load` the torque that they would ask for if they followed the motor
+//! rigidly, and f the torque of spring and damper. The motor then feels M ddx less than the rigid model says.
+
+/// A compliant transmission of one joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transmission {
+    /// N.m/rad or N/m.
+    pub stiffness: f64,
+    /// N.m.s/rad or N.s/m.
+    pub damping: f64,
+    /// Inertia on the motor's side of the spring, kg.m² or kg.
+    pub rotor: f64,
+    /// Whole free travel, rad or m.
+    pub play: f64,
+    /// Natural frequency with the median inertia of the link and the motor held, Hz.
+    pub frequency: f64,
+    /// Whether the joint is prismatic.
+    pub prismatic: bool,
+}
+
+impl Transmission {
+    /// From the scale-free shape (natural frequency in Hz, damping ratio, rotor as a fraction of the least inertia,
+    /// play as a fraction of the travel) and the joint's inertia over the motion (least, median) and travel.
+    pub fn from_shape(shape: &[f64], least: f64, median: f64, travel: f64, prismatic: bool) -> Self {
+        let rotor = shape[2] * least;
+        let link = (median - rotor).max(1e-3 * median);
+        let w = 2.0 * std::f64::consts::PI * shape[0];
+        let stiffness = link * w * w;
+        Self {
+            stiffness,
+            damping: 2.0 * shape[1] * (stiffness * link).sqrt(),
+            rotor,
+            play: shape[3] * travel,
+            frequency: shape[0],
+            prismatic,
+        }
+    }
+}
+
+/// An effect of this form.
+pub trait Compliance: Sync {
+    /// Shapes to try: natural frequency Hz, damping ratio, rotor fraction, play as a fraction of the travel.
+    fn shapes(&self) -> Vec<[f64; 4]>;
+
+    /// The quantities a person knows: name, value, unit.
+    fn describe(&self, transmission: &Transmission) -> Vec<(&'static str, f64, &'static str)>;
+}
+
+/// Steps of the integration between two samples: at least this many a second.
+const STEPS_PER_SECOND: f64 = 2000.0;
+
+/// -M ddx for every sample: what the motor feels beyond the rigid model.
+///
+/// `load[t]` and `inertia[t]` belong to the links alone (no rotor). Semi-implicit steps: the spring of the step to
+/// come and the damper act on the new velocity, which is stable for every stiffness.
+pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, out: &mut [f64]) {
+    let Some(&first) = load.first() else { return };
+    let steps = (STEPS_PER_SECOND / rate).ceil().max(1.0);
+    let h = 1.0 / (rate * steps);
+    let half = 0.5 * t.play;
+    let start = if t.play > 0.0 { half * first.signum() } else { 0.0 };
+    let (mut x, mut v) = (first / t.stiffness + start, 0.0);
+    let mut before = first;
+    for (k, (&now, &m)) in load.iter().zip(inertia).enumerate() {
+        let mut sum = 0.0;
+        let m_free = 1.0 / m;
+        let m_held = 1.0 / (m + h * t.damping + h * h * t.stiffness);
+        let slope = (now - before) / steps;
+        for step in 1..=steps as usize {
+            let force = before + slope * step as f64;
+            let stretch = if x > half {
+                x - half
+            } else if x < -half {
+                x + half
+            } else {
+                0.0
+            };
+            let new = if stretch != 0.0 || half == 0.0 {
+                (m * v + h * (force - t.stiffness * stretch)) * m_held
+            } else {
+                v + h * force * m_free
+            };
+            sum += new - v;
+            v = new;
+            x += h * v;
+        }
+        out[k] = -m * sum / (h * steps);
+        before = now;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_load_leaves_nothing_and_a_step_rings_at_the_natural_frequency() {
+        let t = Transmission::from_shape(&[10.0, 0.01, 0.0, 0.0], 2.0, 2.0, 1.0, false);
+        let mut out = vec![0.0; 1000];
+        deflection(&[5.0; 1000], &[2.0; 1000], 500.0, &t, &mut out);
+        assert!(out.iter().all(|x| x.abs() < 1e-9));
+        let load: Vec<f64> = (0..1000).map(|k| if k < 100 { 0.0 } else { 5.0 }).collect();
+        deflection(&load, &[2.0; 1000], 500.0, &t, &mut out);
+        let crossings = out[200..950].windows(2).filter(|w| w[0] < 0.0 && w[1] >= 0.0).count();
+        assert!((crossings as f64 / 1.5 - 10.0).abs() < 0.7, "{crossings} periods in 1.5 s");
+    }
+
+    #[test]
+    fn play_is_felt_only_where_the_load_changes_its_sign() {
+        let t = Transmission::from_shape(&[40.0, 0.3, 0.0, 0.002], 1.0, 1.0, 1.0, false);
+        let load: Vec<f64> = (0..2000).map(|k| 10.0 * (k as f64 * 0.01 * 0.63).cos()).collect();
+        let mut out = vec![0.0; 2000];
+        deflection(&load, &[1.0; 2000], 500.0, &t, &mut out);
+        let near: f64 = (0..2000).filter(|&k| load[k].abs() < 5.0).map(|k| out[k] * out[k]).sum();
+        let far: f64 = (200..2000).filter(|&k| load[k].abs() > 9.0).map(|k| out[k] * out[k]).sum();
+        assert!(near > 20.0 * far, "{near} {far}");
+    }
+}

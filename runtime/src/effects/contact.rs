@@ -1,0 +1,49 @@
+//! An outside force in time windows.
+
+use super::Words;
+use crate::model::{Link, Robot, standard_idm};
+use serde::{Deserialize, Serialize};
+
+/// What a person is told.
+pub(super) const WORDS: Words = Words {
+    id: "contact",
+    title: "Contact",
+    what: "Something pushed the robot for a while.",
+    looks_like: "several joints jump together, in the ratio that one force on one link has, and come back",
+    revealed_by: "time",
+    experiment: "move the same path without the obstacle",
+    source: "De Luca and Mattone 2005; Haddadin, De Luca and Albu-Schaeffer 2017",
+};
+
+/// A force that acted on a link while a window of time lasted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Wrench {
+    /// Motion it happened in.
+    pub motion: String,
+    /// First and last instant, s.
+    pub window: [f64; 2],
+    /// Number j of the frame of the link that was touched: the force acts at its origin or beyond.
+    pub link: usize,
+    /// Largest force in frame 0, N.
+    pub force: [f64; 3],
+    /// Mean force over the window in frame 0, N.
+    pub mean_force: [f64; 3],
+}
+
+/// Motor torques that a force of 1 N along x, y, z of frame 0 at the origin of `frame` asks for: `out[axis][joint]`.
+///
+/// By virtual work they are -JT f: what a mass point of 1 kg at that origin asks for in a gravity of f at rest.
+pub fn unit_force_torques(robot: &Robot, links: &[Link<f64>], frame: usize, q: &[f64], out: &mut [Vec<f64>; 3]) {
+    let rest = vec![0.0; q.len()];
+    for (axis, torques) in out.iter_mut().enumerate() {
+        torques.clear();
+        torques.resize(robot.joints(), 0.0);
+        let mut gravity = [0.0; 3];
+        gravity[axis] = 1.0;
+        standard_idm(links, gravity, q, &rest, &rest, |joint, k, columns| {
+            if k == frame {
+                torques[joint] = columns[9];
+            }
+        });
+    }
+}

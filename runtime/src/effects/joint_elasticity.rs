@@ -1,0 +1,36 @@
+//! Compliance between motor and link (Spong 1987).
+
+use super::{Compliance, Transmission, Words};
+
+/// What a person is told.
+pub(super) const WORDS: Words = Words {
+    id: "joint_elasticity",
+    title: "Joint elasticity",
+    what: "Motor and link are joined by a spring: the link swings while the encoder on the motor hardly sees it.",
+    looks_like: "ringing of one frequency after every jerk, on the joint and on those it is coupled to",
+    revealed_by: "frequency",
+    experiment: "steps in acceleration with the arm folded and stretched out; an accelerometer on the link",
+    source: "Spong 1987; Albu-Schaeffer and Hirzinger 2001",
+};
+
+/// The law.
+pub(super) struct JointElasticity;
+
+impl Compliance for JointElasticity {
+    fn shapes(&self) -> Vec<[f64; 4]> {
+        let mut shapes = Vec::new();
+        for frequency in [3.0, 4.0, 5.5, 7.0, 9.0, 11.5, 15.0, 19.0, 24.0] {
+            for damping in [0.03, 0.12] {
+                for rotor in [0.0, 0.4, 0.8] {
+                    shapes.push([frequency, damping, rotor, 0.0]);
+                }
+            }
+        }
+        shapes
+    }
+
+    fn describe(&self, t: &Transmission) -> Vec<(&'static str, f64, &'static str)> {
+        let (k, d) = if t.prismatic { ("N/m", "N.s/m") } else { ("N.m/rad", "N.m.s/rad") };
+        vec![("k", t.stiffness, k), ("d", t.damping, d), ("frequency", t.frequency, "Hz")]
+    }
+}

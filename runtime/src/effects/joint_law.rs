@@ -1,0 +1,93 @@
+//! Laws of a single joint: what they are evaluated at, and the trait that they share.
+
+use super::Parameter;
+
+/// The scales of a joint in a recording: shapes are searched relative to them, so that no number of a law depends
+/// on a robot's size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Speed that 98 % of the samples do not pass, rad/s or m/s.
+    pub speed: f64,
+    /// Travel between the lowest and the highest position, rad or m.
+    pub range: f64,
+    /// Largest torque of the standard model, N.m or N.
+    pub torque: f64,
+    /// Latest time in any motion, s.
+    pub duration: f64,
+    /// Motor turns per joint turn, or rad of the motor per metre.
+    pub gear: f64,
+    /// Whether the joint is prismatic.
+    pub prismatic: bool,
+}
+
+impl Scale {
+    /// Unit of the joint's torque.
+    pub fn torque_unit(&self) -> &'static str {
+        if self.prismatic { "N" } else { "N.m" }
+    }
+
+    /// Unit of the joint's position.
+    pub fn position_unit(&self) -> &'static str {
+        if self.prismatic { "m" } else { "rad" }
+    }
+
+    /// Unit of the joint's speed.
+    pub fn speed_unit(&self) -> &'static str {
+        if self.prismatic { "m/s" } else { "rad/s" }
+    }
+}
+
+/// One joint at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct At {
+    /// Time in the motion, s.
+    pub time: f64,
+    /// Position, rad or m.
+    pub q: f64,
+    /// Velocity.
+    pub dq: f64,
+    /// Direction of motion: -1 or 1; at rest the direction that is asked about.
+    pub sign: f64,
+    /// Torque transmitted to the links: inertia and gravity, no friction.
+    pub load: f64,
+    /// Torque of the standard model.
+    pub torque: f64,
+    /// Viscous and Coulomb friction of the standard model.
+    pub friction: f64,
+}
+
+/// A torque law of one joint, linear in its amplitudes for a given shape.
+pub trait JointLaw: Sync {
+    /// Amplitudes, that is columns.
+    fn amplitudes(&self, shape: &[f64]) -> usize;
+
+    /// Shapes to try, coarse: the search refines them. One empty shape where the law has none.
+    fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>>;
+
+    /// Which shape parameters are continuous and may be refined, as a factor between neighbours of the grid.
+    fn refinement(&self) -> &'static [f64] {
+        &[]
+    }
+
+    /// Values of the columns at an instant.
+    fn law(&self, scale: &Scale, shape: &[f64], at: &At, memory: f64, out: &mut [f64]);
+
+    /// New inner state after a travel of the joint; laws without memory keep 0.
+    fn advance(&self, _shape: &[f64], memory: f64, _travel: f64) -> f64 {
+        memory
+    }
+
+    /// Whether the law has the sign of the velocity, so that it also holds the joint at rest.
+    fn is_dry(&self) -> bool {
+        false
+    }
+
+    /// Amplitudes and shape as the quantities a person knows: value, standard deviation (0 where unknown), unit.
+    fn parameters(&self, scale: &Scale, shape: &[f64], amplitude: &[f64], sigma: &[f64]) -> Vec<Parameter>;
+}
+
+/// `count` values from `low` to `high`, each a constant factor from the next.
+pub(super) fn geometric(low: f64, high: f64, count: usize) -> Vec<f64> {
+    let step = (high / low).ln() / (count.max(2) - 1) as f64;
+    (0..count).map(|k| low * (step * k as f64).exp()).collect()
+}

@@ -1,0 +1,56 @@
+//! Friction level that varies with the joint angle: (c·cos kq + s·sin kq)·sign v.
+
+use super::{At, JointLaw, Parameter, Scale, Words};
+
+/// What a person is told.
+pub(super) const WORDS: Words = Words {
+    id: "position_dependent_friction",
+    title: "Position-dependent friction",
+    what: "The friction level is not the same all along the travel: a worn section, a misaligned gear, an uneven preload.",
+    looks_like: "a residual with the sign of the speed that depends on where the joint is",
+    revealed_by: "joint position",
+    experiment: "slow strokes over the full travel in both directions",
+    source: "Armstrong-Helouvry 1991; Bittencourt and Gunnarsson 2012",
+};
+
+/// The law.
+pub(super) struct PositionDependentFriction;
+
+impl JointLaw for PositionDependentFriction {
+    fn amplitudes(&self, _: &[f64]) -> usize {
+        2
+    }
+
+    /// Waves along the travel: at least half a wave, at most six; whole orders of the joint where it turns.
+    fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
+        let half_wave = std::f64::consts::PI / scale.range.max(1e-9);
+        let mut orders: Vec<f64> = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0].iter().map(|k| k * half_wave).collect();
+        if !scale.prismatic {
+            orders.extend([1.0, 2.0, 3.0, 4.0].iter().filter(|&&k| k > half_wave));
+        }
+        orders.into_iter().map(|k| vec![k]).collect()
+    }
+
+    fn refinement(&self) -> &'static [f64] {
+        &[1.2]
+    }
+
+    fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        let (s, c) = (shape[0] * at.q).sin_cos();
+        out[0] = c * at.sign;
+        out[1] = s * at.sign;
+    }
+
+    fn is_dry(&self) -> bool {
+        true
+    }
+
+    fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+        let per = if scale.prismatic { "1/m" } else { "1/rad" };
+        vec![
+            Parameter::new("amplitude", a[0].hypot(a[1]), s[0].max(s[1]), scale.torque_unit()),
+            Parameter::new("wave_number", shape[0], 0.0, per),
+            Parameter::new("phase", a[1].atan2(a[0]), 0.0, "rad"),
+        ]
+    }
+}

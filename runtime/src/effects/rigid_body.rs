@@ -1,0 +1,90 @@
+//! A rigid body fixed to a link: its ten columns, and what they say about mass, centre and inertia.
+
+use crate::model::{Link, Robot, standard_idm};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+/// An effect of this form.
+pub trait BodyOnLink: Sync {
+    /// Frames (0-based) of the links that may carry it.
+    fn links(&self, robot: &Robot) -> Vec<usize>;
+}
+
+/// A rigid body from the ten parameters that were added to a link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lump {
+    /// kg.
+    pub mass: f64,
+    /// Centre of mass in the frame of the link, m.
+    pub centre: [f64; 3],
+    /// Principal moments about the centre of mass, kg.m², ascending.
+    pub principal: [f64; 3],
+    /// Whether a real body can have these parameters: positive mass, and principal moments that are positive and
+    /// fulfil the triangle inequality (Traversaro et al. 2016), within the tolerance it was made with.
+    pub consistent: bool,
+}
+
+impl Lump {
+    /// From XX XY XZ YY YZ ZZ MX MY MZ M at the origin of the frame.
+    ///
+    /// Ten least-squares numbers need not be a body: `slack` (kg.m²) is by how much the triangle inequality may fail
+    /// before the body is called inconsistent, a few standard deviations of the moments.
+    pub fn from_parameters(p: &[f64], slack: f64) -> Self {
+        let mass = p[9];
+        let safe = if mass.abs() > 1e-9 { mass } else { 1e-9 };
+        let c = Vector3::new(p[6], p[7], p[8]) / safe;
+        let at_origin = Matrix3::new(p[0], p[1], p[2], p[1], p[3], p[4], p[2], p[4], p[5]);
+        let steiner = (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * mass;
+        let mut e = SymmetricEigen::new(at_origin - steiner).eigenvalues;
+        e.as_mut_slice().sort_by(f64::total_cmp);
+        let consistent = mass > 0.0 && e[0] > -slack && e[0] + e[1] > e[2] - slack;
+        Self { mass, centre: [c[0], c[1], c[2]], principal: [e[0], e[1], e[2]], consistent }
+    }
+}
+
+/// The ten columns of a frame's inertial parameters at one state: `out[parameter][joint]`, zeros included.
+pub fn body_columns(
+    robot: &Robot,
+    links: &[Link<f64>],
+    frame: usize,
+    state: [&[f64]; 3],
+    out: &mut [Vec<f64>; 10],
+) {
+    for column in out.iter_mut() {
+        column.fill(0.0);
+    }
+    standard_idm(links, robot.gravity, state[0], state[1], state[2], |joint, k, columns| {
+        if k == frame {
+            for (column, value) in out.iter_mut().zip(columns) {
+                column[joint] = *value;
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_away_from_the_origin_is_recognised() {
+        let (m, c, i) = (2.0, [0.1, -0.2, 0.3], [0.01, 0.02, 0.025]);
+        let mut p = [0.0; 10];
+        p[0] = i[0] + m * (c[1] * c[1] + c[2] * c[2]);
+        p[3] = i[1] + m * (c[0] * c[0] + c[2] * c[2]);
+        p[5] = i[2] + m * (c[0] * c[0] + c[1] * c[1]);
+        p[1] = -m * c[0] * c[1];
+        p[2] = -m * c[0] * c[2];
+        p[4] = -m * c[1] * c[2];
+        for k in 0..3 {
+            p[6 + k] = m * c[k];
+        }
+        p[9] = m;
+        let lump = Lump::from_parameters(&p, 1e-9);
+        assert!(lump.consistent);
+        for k in 0..3 {
+            assert!((lump.centre[k] - c[k]).abs() < 1e-12 && (lump.principal[k] - i[k]).abs() < 1e-12);
+        }
+        p[0] -= 0.06;
+        assert!(!Lump::from_parameters(&p, 1e-4).consistent);
+    }
+}

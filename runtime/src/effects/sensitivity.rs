@@ -1,0 +1,237 @@
+//! Errors of the model's own numbers: columns that are exact derivatives of the model, by dual numbers.
+
+use crate::model::{Dual, Model, RecursiveModel, RecursiveModelError, Row};
+
+/// Which of an effect's numbers is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Variant {
+    /// The joint that a finding is named on (0-based); `None` for the whole robot.
+    pub joint: Option<usize>,
+    /// What the effect counts its numbers by.
+    pub index: usize,
+    /// Name of the number.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+impl Variant {
+    /// A number of one joint.
+    pub fn joint(joint: usize, name: &'static str, unit: &'static str) -> Self {
+        Self { joint: Some(joint), index: joint, name, unit }
+    }
+}
+
+/// Everything that a model is evaluated with; an effect sets the slopes.
+pub struct Seeds<'a> {
+    /// Positions.
+    pub q: &'a mut [Dual],
+    /// Velocities.
+    pub dq: &'a mut [Dual],
+    /// Accelerations.
+    pub ddq: &'a mut [Dual],
+    /// Derivatives of the accelerations.
+    pub jerk: &'a [f64],
+    /// The table.
+    pub rows: &'a mut [Row<Dual>],
+    /// Gravity in frame 0.
+    pub gravity: &'a mut [Dual; 3],
+}
+
+/// An effect whose torque is, for a small error e, e times the derivative of the model.
+pub trait Sensitivity: Sync {
+    /// The numbers that may be wrong.
+    fn variants(&self, robot: &crate::model::Robot) -> Vec<Variant>;
+
+    /// Whether all numbers are wrong together (one finding) or each by itself.
+    fn together(&self) -> bool {
+        false
+    }
+
+    /// Sets the slopes for one number.
+    fn seed(&self, variant: &Variant, seeds: &mut Seeds<'_>);
+}
+
+/// A model whose derivatives have no entry left out: entries that vanish only because gravity is vertical count.
+pub fn derivable(robot: &crate::model::Robot) -> Result<RecursiveModel, RecursiveModelError> {
+    let mut tilted = robot.clone();
+    tilted.gravity = [1.3, -2.1, -9.4];
+    RecursiveModel::new(tilted)
+}
+
+/// Derivative of the model's torque with respect to one number, for every joint and sample.
+///
+/// `model` is [`derivable`]; `gravity` is the real one. `states` is q, dq, ddq and jerk, `[j][t]`; `out[j][t]` is filled.
+pub fn derivative(
+    model: &RecursiveModel,
+    gravity: [f64; 3],
+    chi: &[f64],
+    effect: &dyn Sensitivity,
+    variant: &Variant,
+    states: [&[Vec<f64>]; 4],
+    out: &mut [Vec<f64>],
+) {
+    let robot = model.robot();
+    let n = robot.joints();
+    let samples = states[0].first().map_or(0, Vec::len);
+    let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
+    let mut links = Vec::new();
+    let mut entries = vec![Dual::default(); model.pattern().columns.len()];
+    let (mut q, mut dq, mut ddq) = (vec![Dual::default(); n], vec![Dual::default(); n], vec![Dual::default(); n]);
+    let mut jerk = vec![0.0; n];
+    let mut gravity = gravity.map(|g| Dual::new(g, 0.0));
+    for series in out.iter_mut() {
+        series.resize(samples, 0.0);
+    }
+    for t in 0..samples {
+        for j in 0..n {
+            q[j] = Dual::new(states[0][j][t], 0.0);
+            dq[j] = Dual::new(states[1][j][t], 0.0);
+            ddq[j] = Dual::new(states[2][j][t], 0.0);
+            jerk[j] = states[3][j][t];
+        }
+        if t == 0 {
+            let mut seeds = Seeds {
+                q: &mut q,
+                dq: &mut dq,
+                ddq: &mut ddq,
+                jerk: &jerk,
+                rows: &mut rows,
+                gravity: &mut gravity,
+            };
+            effect.seed(variant, &mut seeds);
+            links = robot.frames.iter().zip(&rows).map(|(f, r)| crate::model::Link::new(f, r)).collect();
+        } else {
+            effect.seed(
+                variant,
+                &mut Seeds {
+                    q: &mut q,
+                    dq: &mut dq,
+                    ddq: &mut ddq,
+                    jerk: &jerk,
+                    rows: &mut rows,
+                    gravity: &mut gravity,
+                },
+            );
+        }
+        model.idm_with(&links, gravity, &q, &dq, &ddq, &mut entries);
+        let pattern = model.pattern();
+        for (j, series) in out.iter_mut().enumerate() {
+            series[t] = (pattern.rows[j]..pattern.rows[j + 1])
+                .map(|e| entries[e].slope * chi[pattern.columns[e]])
+                .sum();
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::{EffectKind, Form};
+    use super::*;
+    use crate::model::{BaseParameter, Drive, Frame, JointKind, Limits, Robot, standard_parameters};
+    use std::borrow::Cow;
+
+    fn arm() -> Robot {
+        let row = |parent, alpha, d, r| Frame {
+            parent,
+            kind: JointKind::Revolute,
+            gamma: 0.0,
+            b: 0.0,
+            alpha,
+            d,
+            theta: 0.0,
+            r,
+        };
+        let frames = vec![
+            row(None, 0.0, 0.0, 0.3),
+            row(Some(0), -1.5707963267948966, 0.1, 0.0),
+            row(Some(1), 0.0, 0.4, 0.05),
+        ];
+        let standard = standard_parameters(&frames, &[]);
+        let base = standard
+            .iter()
+            .enumerate()
+            .map(|(k, p)| BaseParameter {
+                name: p.name.clone(),
+                standard: k,
+                combination: Cow::Owned(vec![(k, 1.0)]),
+                relation: p.name.clone(),
+                unit: Cow::Borrowed("1"),
+            })
+            .collect();
+        Robot {
+            name: "arm".into(),
+            description: "three axes".into(),
+            gravity: [0.0, 0.0, -9.81],
+            frames: frames.into(),
+            drive: Drive { gear: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() },
+            limits: Limits::default(),
+            standard: standard.into(),
+            base: Cow::Owned(base),
+            nominal: None,
+        }
+    }
+
+    fn torque(robot: &Robot, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<f64> {
+        let model = RecursiveModel::new(robot.clone()).unwrap();
+        let pattern = model.pattern().clone();
+        let mut entries = vec![0.0; pattern.columns.len()];
+        model.idm(q, dq, ddq, &mut entries);
+        (0..3)
+            .map(|j| (pattern.rows[j]..pattern.rows[j + 1]).map(|e| entries[e] * chi[pattern.columns[e]]).sum())
+            .collect()
+    }
+
+    #[test]
+    fn columns_agree_with_differences_of_a_changed_robot() {
+        let robot = arm();
+        let model = derivable(&robot).unwrap();
+        let chi: Vec<f64> = (0..robot.base.len()).map(|k| 0.3 + (k as f64 * 0.7).sin()).collect();
+        let (q, dq, ddq, jerk) = ([0.3, -0.8, 1.1], [0.9, -1.4, 0.6], [2.0, 1.0, -3.0], [5.0, -7.0, 4.0]);
+        let wrap = |x: [f64; 3]| x.iter().map(|&v| vec![v]).collect::<Vec<_>>();
+        let states = [wrap(q), wrap(dq), wrap(ddq), wrap(jerk)];
+        let h = 1e-6;
+        for kind in EffectKind::ALL {
+            let Form::Sensitivity(effect) = kind.form() else { continue };
+            for variant in effect.variants(&robot) {
+                let mut out = vec![Vec::new(); 3];
+                let signals = [&states[0], &states[1], &states[2], &states[3]].map(Vec::as_slice);
+                derivative(&model, robot.gravity, &chi, effect, &variant, signals, &mut out);
+                let moved = |e: f64| {
+                    let mut robot = robot.clone();
+                    let (mut q, mut dq, mut ddq) = (q, dq, ddq);
+                    match kind {
+                        EffectKind::PositionOffset => q[variant.index] += e,
+                        EffectKind::WrongSampleRate => {
+                            dq = dq.map(|x| x * (1.0 + e));
+                            ddq = ddq.map(|x| x * (1.0 + e) * (1.0 + e));
+                        }
+                        EffectKind::TimeDelay => {
+                            for j in 0..3 {
+                                q[j] -= e * dq[j];
+                                dq[j] -= e * ddq[j];
+                                ddq[j] -= e * jerk[j];
+                            }
+                        }
+                        EffectKind::GeometryError => {
+                            let row = &mut robot.frames.to_mut()[variant.index / 2];
+                            if variant.index % 2 == 0 { row.d += e } else { row.r += e }
+                        }
+                        _ => {
+                            let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]][variant.index];
+                            robot.gravity[0] += e * axis[1] * -9.81;
+                            robot.gravity[1] -= e * axis[0] * -9.81;
+                        }
+                    }
+                    torque(&robot, &chi, &q, &dq, &ddq)
+                };
+                let (plus, minus) = (moved(h), moved(-h));
+                for j in 0..3 {
+                    let expected = (plus[j] - minus[j]) / (2.0 * h);
+                    assert!((out[j][0] - expected).abs() < 1e-6, "{kind:?} {variant:?} {j}: {} {expected}", out[j][0]);
+                }
+            }
+        }
+    }
+}
