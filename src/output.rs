@@ -80,6 +80,14 @@ impl Bar {
     }
 }
 
+impl Bar {
+    /// Moves it to a share of the whole, and says what is being done.
+    pub fn share(&self, done: f64, what: &str) {
+        self.0.set_message(what.to_owned());
+        self.at((1000.0 * done.clamp(0.0, 1.0)) as usize, 1000);
+    }
+}
+
 impl Drop for Bar {
     fn drop(&mut self) {
         self.0.finish_and_clear();

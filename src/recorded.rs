@@ -57,7 +57,7 @@ pub struct Sampling {
 
 impl Sampling {
     /// The same as settings of the observation.
-    pub fn settings(&self, joints: usize, band: f64, windows: Vec<[f64; 2]>) -> ObserveSettings {
+    pub fn settings(&self, joints: usize, band: f64) -> ObserveSettings {
         let standstill = match (self.all_rows, self.standstill.as_slice()) {
             (true, _) => Standstill::Keep,
             (false, []) => Standstill::default(),
@@ -68,11 +68,31 @@ impl Sampling {
             band,
             rate: self.rate,
             standstill,
-            windows,
             threads: self.threads,
             ..ObserveSettings::default()
         }
     }
+}
+
+/// A recording that was read.
+pub struct Measured {
+    /// The robot's dynamics.
+    pub dynamics: Dynamics,
+    /// The title of the recording.
+    pub title: String,
+    /// Its motions as measured, within the window that was asked for.
+    pub trajectories: Vec<Trajectory>,
+    /// What was left out.
+    pub rows: LeftOut,
+}
+
+/// What of the files was not used.
+#[derive(Debug, Clone, Default)]
+pub struct LeftOut {
+    /// Rows that could not be right.
+    pub rows: RowReport,
+    /// Motions, or pieces between two gaps, that are too short to be filtered.
+    pub too_short: Vec<String>,
 }
 
 /// A recording that was read and prepared.
@@ -83,49 +103,88 @@ pub struct Recorded {
     pub title: String,
     /// Its motions: filtered, differentiated, on a uniform grid.
     pub motions: Vec<Motion>,
-    /// Motions, or pieces between two gaps, that are too short to be filtered and were left out.
-    pub too_short: Vec<String>,
-    /// Rows that could not be right.
-    pub rows: RowReport,
+    /// What was left out.
+    pub rows: LeftOut,
     /// How equations are sampled from it.
     pub settings: ObserveSettings,
 }
 
-/// Reads a recording and prepares its motions.
+/// Reads a recording.
 ///
 /// # Errors
 /// [`Failure::Input`] for what is wrong in a file, [`Failure::Data`] where the rows cannot support an answer.
-pub fn read(options: &RecordingOptions) -> Result<Recorded, Failure> {
+pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
     let manifest = Manifest::read(&options.recording).map_err(recording_failure)?;
     let dynamics = match &options.robot {
         Some(name) => resolve(name, None)?,
         None => resolve(&manifest.robot, Some(&manifest.folder))?,
     };
-    let robot = dynamics.model().robot();
-    let windows = window(options.from, options.to)?;
-    let recording = load(&manifest, robot).map_err(recording_failure)?;
+    let window = window(options.from, options.to)?;
+    let recording = load(&manifest, dynamics.model().robot()).map_err(recording_failure)?;
+    let trajectories: Vec<Trajectory> = match window {
+        Some(window) => recording.trajectories.iter().filter_map(|t| cropped(t, window)).collect(),
+        None => recording.trajectories,
+    };
+    if trajectories.is_empty() {
+        return Err(Failure::Data(format!(
+            "{}: no row lies between --from and --to",
+            options.recording.display()
+        )));
+    }
+    let rows = LeftOut { rows: recording.rows, too_short: Vec::new() };
+    Ok(Measured { dynamics, title: manifest.title, trajectories, rows })
+}
+
+/// Prepares the motions of a recording.
+///
+/// # Errors
+/// [`Failure::Data`] where no motion can be prepared.
+pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Recorded, Failure> {
+    let Measured { dynamics, title, trajectories, mut rows } = measured;
+    let failure = |error: &SignalError| Failure::Data(in_recording(&options.recording, error));
     let band = match options.sampling.band {
         Some(band) => band,
-        None => {
-            choose_bandwidth(&recording.trajectories)
-                .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?
-                .band
-        }
+        None => choose_bandwidth(&trajectories).map_err(|error| failure(&error))?.band,
     };
     let mut motions: Vec<Motion> = Vec::new();
-    let mut too_short = Vec::new();
-    for trajectory in &recording.trajectories {
+    for trajectory in &trajectories {
         match prepare(trajectory, &preparation(&options.sampling, band, trajectory)) {
             Ok(motion) => motions.push(motion),
-            Err(error @ SignalError::TooShort { .. }) => too_short.push(error.to_string()),
-            Err(error) => return Err(Failure::Data(in_recording(&options.recording, &error))),
+            Err(error @ SignalError::TooShort { .. }) => rows.too_short.push(error.to_string()),
+            Err(error) => return Err(failure(&error)),
         }
     }
     if motions.is_empty() {
-        return Err(Failure::Data(format!("{}: {}", options.recording.display(), too_short.join("; "))));
+        return Err(Failure::Data(format!("{}: {}", options.recording.display(), rows.too_short.join("; "))));
     }
-    let settings = options.sampling.settings(robot.joints(), band, windows);
-    Ok(Recorded { dynamics, title: manifest.title, motions, too_short, rows: recording.rows, settings })
+    let settings = options.sampling.settings(dynamics.model().robot().joints(), band);
+    Ok(Recorded { dynamics, title, motions, rows, settings })
+}
+
+/// [`measure`] and [`prepared`].
+///
+/// # Errors
+/// As theirs.
+pub fn read(options: &RecordingOptions) -> Result<Recorded, Failure> {
+    prepared(measure(options)?, options)
+}
+
+/// The rows of a trajectory within a window of time; `None` where there is none.
+fn cropped(trajectory: &Trajectory, [from, to]: [f64; 2]) -> Option<Trajectory> {
+    let first = trajectory.time.partition_point(|&t| t < from);
+    let last = trajectory.time.partition_point(|&t| t <= to);
+    if first >= last {
+        return None;
+    }
+    let cut = |channel: &Vec<Vec<f64>>| channel.iter().map(|c| c[first..last].to_vec()).collect();
+    Some(Trajectory {
+        name: trajectory.name.clone(),
+        time: trajectory.time[first..last].to_vec(),
+        position: cut(&trajectory.position),
+        velocity: trajectory.velocity.as_ref().map(cut),
+        torque: cut(&trajectory.torque),
+        fixed: trajectory.fixed.clone(),
+    })
 }
 
 /// The position filter that goes with a band at the trajectory's rate.
@@ -149,14 +208,14 @@ pub fn observe_failure(recording: &Path, error: &ObserveError) -> Failure {
     }
 }
 
-/// One window from what was asked for; none: everything.
-fn window(from: Option<f64>, to: Option<f64>) -> Result<Vec<[f64; 2]>, Failure> {
+/// The window that was asked for.
+fn window(from: Option<f64>, to: Option<f64>) -> Result<Option<[f64; 2]>, Failure> {
     if from.is_none() && to.is_none() {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let window = [from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY)];
     if window[0] < window[1] {
-        Ok(vec![window])
+        Ok(Some(window))
     } else {
         Err(Failure::Input(format!("--from {} is not before --to {}", window[0], window[1])))
     }
@@ -172,8 +231,8 @@ fn in_recording(path: &Path, error: &dyn std::error::Error) -> String {
 
 /// What of the files was not used: a line about the rows that were left out, the first of them, the cuts; nothing
 /// where every row was used.
-pub fn left_out_words(recorded: &Recorded) -> Vec<String> {
-    let rows = &recorded.rows;
+pub fn left_out_words(left_out: &LeftOut) -> Vec<String> {
+    let rows = &left_out.rows;
     let mut words = Vec::new();
     if rows.left_out > 0 {
         let reasons: Vec<String> =
@@ -184,6 +243,6 @@ pub fn left_out_words(recorded: &Recorded) -> Vec<String> {
     words.extend(rows.cuts.iter().map(|cut| {
         format!("{}: cut between {:.3} s and {:.3} s: {}", cut.trajectory, cut.after, cut.until, cut.what)
     }));
-    words.extend(recorded.too_short.iter().map(|what| format!("left out: {what}")));
+    words.extend(left_out.too_short.iter().map(|what| format!("left out: {what}")));
     words
 }

@@ -109,7 +109,7 @@ fn identify(recorded: &Recorded, arguments: &Arguments) -> Result<(Identified, E
         },
         &estimate,
         errors,
-        recorded.rows.left_out,
+        recorded.rows.rows.left_out,
     );
     Ok((identified, estimate))
 }
@@ -122,7 +122,7 @@ fn summary(
 ) -> String {
     let robot = recorded.dynamics.model().robot();
     let mut text = format!("{}: {}\n", robot.name, recorded.title);
-    for line in left_out_words(recorded) {
+    for line in left_out_words(&recorded.rows) {
         text.push_str(&format!("{line}\n"));
     }
     text.push_str(&format!(

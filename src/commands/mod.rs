@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod diagnose;
 mod identify;
 mod robots;
 mod show;
@@ -26,6 +27,8 @@ enum Command {
     Identify(identify::Arguments),
     /// Predict the torques of a recording with an identified model
     Validate(validate::Arguments),
+    /// Find out which physics is missing, where, and whether adding it helps on motion that was held back
+    Diagnose(diagnose::Arguments),
     /// Show a robot: its table, its base parameters, its operation counts
     Show(show::Arguments),
 }
@@ -36,6 +39,7 @@ pub fn run() -> ExitCode {
         Command::Robots => robots::run(),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
     };
     match outcome {

@@ -3,13 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dynid_runtime::estimation::observe::{Equations, observe};
-use dynid_runtime::estimation::{Identified, Observed, per_equation, relative_error};
+use dynid_runtime::diagnosis::term_torques;
+use dynid_runtime::estimation::observe::{Equations, Observation, observe};
+use dynid_runtime::estimation::{Identified, Observed, errors_against, per_equation, relative_error};
 use dynid_runtime::report::{percent, significant};
+use dynid_runtime::signal::Motion;
 
+use super::diagnose::diagnosis_failure;
 use crate::failure::{Failure, file_failure};
 use crate::output::{Bar, print, table, write_json};
-use crate::recorded::{RecordingOptions, left_out_words, observe_failure, read};
+use crate::recorded::{Recorded, RecordingOptions, left_out_words, observe_failure, read};
 
 /// What to predict, with what.
 #[derive(Debug, Args)]
@@ -23,66 +26,98 @@ pub(super) struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// What `validate` writes: the errors of the prediction beside the model's parameters.
+/// Predicts, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let identified = read_model(&arguments.model)?;
     let mut options = arguments.recording.clone();
-    let recorded_robot = options.robot.take();
-    // The model knows its robot; the recording's own name for it must agree.
-    options.robot = recorded_robot.or_else(|| Some(identified.robot.clone()));
+    // The model was identified for a robot and a band; the same are used unless something else is asked for.
+    options.robot = options.robot.or_else(|| Some(identified.robot.clone()));
     options.sampling.band = options.sampling.band.or(Some(identified.band));
     let recorded = read(&options)?;
-    let model = recorded.dynamics.model();
-    let chi = identified.chi(model.robot()).map_err(|missing| {
-        Failure::Input(format!(
-            "{}: it has no {missing}, which {} needs: it was identified for another robot",
-            arguments.model.display(),
-            model.robot().name
-        ))
-    })?;
-    let bar = Bar::new("samples");
-    let observation = observe(
-        model,
-        &recorded.motions,
-        Equations::Torque,
-        None,
-        &recorded.settings,
-        Some(&|done, all| bar.at(done, all)),
-    )
-    .map_err(|error| observe_failure(&options.recording, &error))?;
-    drop(bar);
-    let overall = relative_error(&observation, &chi);
-    let per_joint = per_equation(&observation, &chi);
+    let Prediction { observation, errors } = prediction(&recorded, &identified, &arguments.model)?;
     if let Some(path) = &arguments.json {
-        let result = identified.validated(
-            &Observed {
-                samples: observation.samples,
-                trajectories: &observation.trajectories,
-                left_out: &observation.left_out,
-                settings: &recorded.settings,
-            },
-            (overall, per_joint.clone()),
-            recorded.rows.left_out,
-        );
-        write_json(path, &result)?;
+        let observed = Observed {
+            samples: observation.samples,
+            trajectories: &observation.trajectories,
+            left_out: &observation.left_out,
+            settings: &recorded.settings,
+        };
+        let left_out = recorded.rows.rows.left_out;
+        write_json(path, &identified.validated(&observed, errors.clone(), left_out))?;
         if path == Path::new("-") {
             return Ok(());
         }
     }
-    print(&format!("{}: {}", model.robot().name, recorded.title));
-    for line in left_out_words(&recorded) {
+    print(&format!("{}: {}", recorded.dynamics.model().robot().name, recorded.title));
+    for line in left_out_words(&recorded.rows) {
         print(&line);
     }
     let used: usize = observation.left_out.iter().map(|l| l.used).sum();
     let slow: usize = observation.left_out.iter().map(|l| l.standstill).sum();
     print(&format!(
-        "{used} equations of {} Hz bandwidth, {slow} left out where the joint hardly moves\n",
+        "{used} equations of {} Hz bandwidth, {slow} left out where the joint hardly moves",
         significant(recorded.settings.band, 3)
     ));
-    let rows = per_joint.iter().enumerate().map(|(j, e)| vec![(j + 1).to_string(), percent(*e)]).collect();
-    print(&table(&["<joint", "relative error"], rows));
-    print(&format!("\nrelative error of the torques {}", percent(overall)));
+    if !identified.effects.is_empty() {
+        let names: Vec<&str> = identified.effects.iter().map(|term| term.effect.id()).collect();
+        print(&format!("effects in the model: {}", names.join(", ")));
+    }
+    let rows = errors.1.iter().enumerate().map(|(j, e)| vec![(j + 1).to_string(), percent(*e)]).collect();
+    print(&format!("\n{}", table(&["<joint", "relative error"], rows)));
+    print(&format!("\nrelative error of the torques {}", percent(errors.0)));
     Ok(())
+}
+
+/// A recording seen by a model.
+pub(super) struct Prediction {
+    /// The recording's equations, without the effects of the model.
+    pub observation: Observation,
+    /// Relative error of the torques, overall and per joint.
+    pub errors: (f64, Vec<f64>),
+}
+
+/// Predicts the torques of a recording with a model and its effects.
+///
+/// # Errors
+/// [`Failure::Input`] where the model is of another robot; [`Failure::Data`] where no row can be used.
+pub(super) fn prediction(
+    recorded: &Recorded,
+    identified: &Identified,
+    model_path: &Path,
+) -> Result<Prediction, Failure> {
+    let model = recorded.dynamics.model();
+    let chi = identified.chi(model.robot()).map_err(|missing| {
+        Failure::Input(format!(
+            "{}: it has no {missing}, which {} needs: it was identified for another robot",
+            model_path.display(),
+            model.robot().name
+        ))
+    })?;
+    let bar = Bar::new("samples");
+    let observed = |motions: &[Motion]| {
+        let progress = |done, all| bar.at(done, all);
+        observe(model, motions, Equations::Torque, None, &recorded.settings, Some(&progress))
+            .map_err(|error| observe_failure(model_path, &error))
+    };
+    let observation = observed(&recorded.motions)?;
+    if identified.effects.is_empty() {
+        let errors = (relative_error(&observation, &chi), per_equation(&observation, &chi));
+        return Ok(Prediction { observation, errors });
+    }
+    // What the effects explain is taken from the torques; the error still counts against the torques as measured.
+    let mut rest = recorded.motions.clone();
+    for motion in &mut rest {
+        let torques = term_torques(model, &chi, &identified.effects, motion)
+            .map_err(|error| diagnosis_failure(model_path, &error))?;
+        for (measured, effect) in motion.torque.iter_mut().zip(&torques) {
+            for (m, e) in measured.iter_mut().zip(effect) {
+                *m -= e;
+            }
+        }
+    }
+    let unexplained = observed(&rest)?;
+    let errors = errors_against(&unexplained, &observation, &chi);
+    Ok(Prediction { observation, errors })
 }
 
 /// Reads a saved model.

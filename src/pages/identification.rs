@@ -20,7 +20,7 @@ pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, Obse
 
     let mut page = Page::new(&format!("{}: {}", robot.name, recorded.title));
     page.verdict(&verdict(identified));
-    page.list(left_out_words(recorded));
+    page.list(left_out_words(&recorded.rows));
     page.list(&identified.warnings);
     page.heading("Torques, measured and predicted");
     for rows in observation.rows.iter().flatten() {

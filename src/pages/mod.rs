@@ -1,3 +1,4 @@
 //! The HTML reports.
 
+pub mod diagnosis;
 pub mod identification;

@@ -244,7 +244,9 @@ pub(super) fn make(
 ) -> Candidate {
     let trials: Vec<Trial> = shapes
         .iter()
-        .map(|shape| Trial::new(design, shape.clone(), columns(context, design, effect, place, shape, change)))
+        .map(|shape| {
+            Trial::new(design, shape.clone(), columns(context, design, effect, place, shape, change))
+        })
         .filter(|t| t.columns.iter().all(|c| c.iter().flat_map(|(_, v)| v).all(|x| x.is_finite())))
         .collect();
     let own = match (effect.form(), place) {

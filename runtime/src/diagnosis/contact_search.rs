@@ -107,7 +107,11 @@ fn robust(design: &Design) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// Per instant: squares in units of the noise, rows, joints pushed.
-fn energies(design: &Design, residual: &[f64], sigma: &[f64]) -> BTreeMap<(usize, usize), (f64, usize, usize)> {
+fn energies(
+    design: &Design,
+    residual: &[f64],
+    sigma: &[f64],
+) -> BTreeMap<(usize, usize), (f64, usize, usize)> {
     let mut energy = BTreeMap::new();
     for (j, s) in sigma.iter().enumerate() {
         for r in design.of_joint(j) {
@@ -165,8 +169,13 @@ pub(super) fn find(context: &Context<'_>, design: &Design, signals: &[Signals]) 
     if pushed_time == 0.0 || pushed_time > MOST * all_time {
         return None;
     }
-    let mut contacts =
-        Contacts { windows: vec![Vec::new(); signals.len()], wrenches: vec![], before: 0.0, after: 0.0, torque: 0.0 };
+    let mut contacts = Contacts {
+        windows: vec![Vec::new(); signals.len()],
+        wrenches: vec![],
+        before: 0.0,
+        after: 0.0,
+        torque: 0.0,
+    };
     for (k, windows) in windows.iter().enumerate() {
         for &w in windows {
             if let Some((wrench, squares)) = explain(context, design, &residual, &sigma, k, w) {
@@ -236,8 +245,7 @@ fn explain(
         let mean = neighbours.iter().copied().sum::<Vector3<f64>>() / neighbours.len().max(1) as f64;
         predicted += after(&units(context, frame, s, t), rows, sigma, &mean);
     }
-    let torque =
-        instants.values().flatten().map(|(j, _, y)| (y / sigma[*j]).powi(2)).sum::<f64>();
+    let torque = instants.values().flatten().map(|(j, _, y)| (y / sigma[*j]).powi(2)).sum::<f64>();
     let mean = forces.iter().sum::<Vector3<f64>>() / forces.len() as f64;
     let largest = forces.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied().unwrap_or(mean);
     let wrench = Wrench {

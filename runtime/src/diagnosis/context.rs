@@ -3,8 +3,8 @@
 use super::DiagnosisError;
 use super::signals::{ModelTorques, Signals, joint_kinds};
 use crate::effects::{
-    At, CoupledTransmission, EffectKind, Form, Place, Scale, Transmission, body_columns, deflection, derivable,
-    derivative,
+    At, CoupledTransmission, EffectKind, Form, Place, Scale, Transmission, body_columns, deflection,
+    derivable, derivative,
 };
 use crate::model::{JointKind, Link, Model, RecursiveModel};
 use crate::signal::{Butterworth, Stencil, central_difference};
@@ -201,11 +201,10 @@ impl<'a> Context<'a> {
             let s = &self.signals[signal];
             let n = s.q.len();
             let filter = Butterworth::low_pass(4, DRIVING_BAND.min(s.rate / 5.0), s.rate).ok();
-            let q: Vec<Vec<f64>> = s
-                .q
-                .iter()
-                .map(|x| filter.as_ref().and_then(|f| f.zero_phase(x).ok()).unwrap_or_else(|| x.clone()))
-                .collect();
+            let q: Vec<Vec<f64>> =
+                s.q.iter()
+                    .map(|x| filter.as_ref().and_then(|f| f.zero_phase(x).ok()).unwrap_or_else(|| x.clone()))
+                    .collect();
             let derivative = |x: &Vec<f64>| {
                 let mut out = vec![0.0; x.len()];
                 central_difference(x, s.rate, Stencil::Seven, &mut out);
@@ -215,7 +214,8 @@ impl<'a> Context<'a> {
             let ddq: Vec<Vec<f64>> = dq.iter().map(derivative).collect();
             let mut links =
                 Links { load: vec![vec![0.0; s.len()]; n], ddq, mass: vec![vec![0.0; s.len()]; n * n] };
-            let (mut a, mut b, mut mass, mut bias) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
+            let (mut a, mut b, mut mass, mut bias) =
+                (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
             for t in 0..s.len() {
                 for j in 0..n {
                     (a[j], b[j]) = (q[j][t], dq[j][t]);

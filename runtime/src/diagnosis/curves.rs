@@ -4,9 +4,9 @@ use super::candidate::{Trial, columns, pace};
 use super::design::{Design, RowAt};
 use super::explain::Bare;
 use super::fit::Fit;
+use super::joint_number;
 use super::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
 use super::search::{Accepted, Search};
-use super::joint_number;
 use super::signals::Signals;
 use crate::effects::EffectKind;
 
@@ -151,7 +151,8 @@ pub(super) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held: &[f64]) -> Ve
         let rows: Vec<usize> = design.of_joint(j).collect();
         let residual: Vec<f64> = rows.iter().map(|&r| bare.residual_slow[r]).collect();
         let over = |f: &dyn Fn(&Signals, &RowAt) -> f64| -> f64 {
-            let values = rows.iter().map(|&r| f(&context.signals[design.rows[r].signal], &design.rows[r])).collect();
+            let values =
+                rows.iter().map(|&r| f(&context.signals[design.rows[r].signal], &design.rows[r])).collect();
             explained(values, &residual)
         };
         let candidates = [
@@ -161,9 +162,7 @@ pub(super) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held: &[f64]) -> Ve
             ("changes with time", over(&|s, r| s.time(r.centre))),
             (
                 "has the sign of the speed and grows with the load torque",
-                over(&|s, r| {
-                    context.torques[r.signal].rigid[j][r.centre] * s.dq[j][r.centre].signum()
-                }),
+                over(&|s, r| context.torques[r.signal].rigid[j][r.centre] * s.dq[j][r.centre].signum()),
             ),
         ];
         let best = candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -192,7 +191,9 @@ fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
                 break;
             }
             let (a, b, c) = (design.rows[r - 1], design.rows[r], design.rows[r + 1]);
-            if b.centre - a.centre == c.centre - b.centre && b.centre - a.centre <= 2 * design.spacing(b.signal) {
+            if b.centre - a.centre == c.centre - b.centre
+                && b.centre - a.centre <= 2 * design.spacing(b.signal)
+            {
                 sum += (residual[r] - 0.5 * (residual[r - 1] + residual[r + 1])).powi(2);
                 count += 1.0;
             }
@@ -221,7 +222,9 @@ pub(super) fn unexplained(search: &Search<'_, '_>) -> Unexplained {
         all += squares / (floor * floor).max(1e-300);
         let rows = design
             .of_joint(j)
-            .map(|r| (search.context.signals[design.rows[r].signal].dq[j][design.rows[r].centre], residual[r], 0.0))
+            .map(|r| {
+                (search.context.signals[design.rows[r].signal].dq[j][design.rows[r].centre], residual[r], 0.0)
+            })
             .collect();
         let mut curve = binned(rows);
         curve.variable = format!("joint speed, {}", search.context.scales[j].speed_unit());
@@ -254,7 +257,8 @@ pub(super) fn series(search: &Search<'_, '_>, before: &[f64], terms: &[Accepted]
             };
             for (range, _) in design.of_signal(j, signal) {
                 for r in range {
-                    let measured = design.smooth(signal, &context.signals[signal].torque[j], design.rows[r].centre);
+                    let measured =
+                        design.smooth(signal, &context.signals[signal].torque[j], design.rows[r].centre);
                     s.time.push(context.signals[signal].time(design.rows[r].centre));
                     s.measured.push(measured);
                     s.before.push(before[r]);

@@ -85,7 +85,8 @@ impl Design {
             for c in 0..chunks {
                 design.segments.push(Segment { signal: k, fresh: s.fresh });
                 for (j, kept) in kept.iter_mut().enumerate() {
-                    let centres = (bounds[c]..bounds[c + 1]).filter(|t| (t - first).is_multiple_of(half.max(1)));
+                    let centres =
+                        (bounds[c]..bounds[c + 1]).filter(|t| (t - first).is_multiple_of(half.max(1)));
                     kept.push(
                         centres
                             .filter(|&t| moving(s, t, half, &plan.directions[j], plan.slowest))
@@ -194,9 +195,8 @@ impl Design {
                     .iter()
                     .map(|range| {
                         let mut g = vec![0.0; (p + 1) * (p + 1)];
-                        let live: Vec<usize> = (0..=p)
-                            .filter(|&k| all[k][range.clone()].iter().any(|&x| x != 0.0))
-                            .collect();
+                        let live: Vec<usize> =
+                            (0..=p).filter(|&k| all[k][range.clone()].iter().any(|&x| x != 0.0)).collect();
                         for (a, &i) in live.iter().enumerate() {
                             for &k in &live[..=a] {
                                 let value = dot(&all[i][range.clone()], &all[k][range.clone()]);
@@ -220,9 +220,8 @@ impl Design {
 /// Hann window of half-width `half`, its taps adding up to 1.
 fn hann(half: usize) -> Vec<f64> {
     let n = 2 * half + 1;
-    let taps: Vec<f64> = (0..n)
-        .map(|k| (std::f64::consts::PI * (k + 1) as f64 / (n + 1) as f64).sin().powi(2))
-        .collect();
+    let taps: Vec<f64> =
+        (0..n).map(|k| (std::f64::consts::PI * (k + 1) as f64 / (n + 1) as f64).sin().powi(2)).collect();
     let sum: f64 = taps.iter().sum();
     taps.iter().map(|t| t / sum).collect()
 }

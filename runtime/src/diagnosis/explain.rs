@@ -62,7 +62,10 @@ pub(super) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> 
         let train = (0..design.segments.len()).map(|g| !fresh[cut..].contains(&g)).collect();
         vec![(train, fresh[cut..].to_vec())]
     } else {
-        fresh.iter().map(|&held| ((0..design.segments.len()).map(|g| g != held).collect(), vec![held])).collect()
+        fresh
+            .iter()
+            .map(|&held| ((0..design.segments.len()).map(|g| g != held).collect(), vec![held]))
+            .collect()
     };
     let mut out = HeldBack { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
     let p = design.columns.len();
@@ -205,9 +208,7 @@ pub(super) fn explain(
         spectra: search
             .spectra
             .iter()
-            .filter(|s| {
-                findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&s.joint))
-            })
+            .filter(|s| findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&s.joint)))
             .cloned()
             .collect(),
         series: curves::series(&search, &bare.fitted_fast, &terms),
@@ -273,9 +274,13 @@ fn named_on(model: &dyn Model, effect: EffectKind, place: Place) -> Vec<usize> {
     match (place, effect.form()) {
         (Place::Joint(j), _) => vec![joint_number(robot, j)],
         (Place::Pair(a, b), _) => vec![joint_number(robot, a), joint_number(robot, b)],
-        (Place::Variant(v), Form::Sensitivity(law)) if !law.together() => {
-            law.variants(robot).get(v).and_then(|x| x.joint).map(|j| joint_number(robot, j)).into_iter().collect()
-        }
+        (Place::Variant(v), Form::Sensitivity(law)) if !law.together() => law
+            .variants(robot)
+            .get(v)
+            .and_then(|x| x.joint)
+            .map(|j| joint_number(robot, j))
+            .into_iter()
+            .collect(),
         (Place::Link(frame), _) if effect == EffectKind::AddedMass => vec![frame + 1],
         _ => Vec::new(),
     }
@@ -480,10 +485,7 @@ fn propagate(of: impl Fn(&[f64]) -> Vec<Parameter>, shape: &[f64], shape_sigma: 
 }
 
 fn contact_finding(contacts: &Contacts) -> Finding {
-    let largest = contacts
-        .wrenches
-        .iter()
-        .max_by(|a, b| norm(a.force).total_cmp(&norm(b.force)));
+    let largest = contacts.wrenches.iter().max_by(|a, b| norm(a.force).total_cmp(&norm(b.force)));
     let mut parameters = std::collections::BTreeMap::new();
     let value = |value: f64, unit: &str| ParameterValue { value, sigma: 0.0, unit: unit.into() };
     parameters.insert("windows".into(), value(contacts.wrenches.len() as f64, "1"));
@@ -532,9 +534,7 @@ fn delay_finding(search: &mut Search<'_, '_>, skew: f64, settings: &Settings) ->
     without.refresh();
     let unaware = hold_back(&without, &side.sigma, false);
     let all: Vec<usize> = (0..side.design.joints).collect();
-    let weigh = |h: &HeldBack| -> f64 {
-        h.left.iter().zip(&side.sigma).map(|(l, s)| l / (s * s)).sum()
-    };
+    let weigh = |h: &HeldBack| -> f64 { h.left.iter().zip(&side.sigma).map(|(l, s)| l / (s * s)).sum() };
     let share = 1.0 - weigh(&with) / weigh(&unaware);
     if share < settings.least_share {
         return None;
@@ -544,9 +544,12 @@ fn delay_finding(search: &mut Search<'_, '_>, skew: f64, settings: &Settings) ->
         effect: EffectKind::TimeDelay.id().into(),
         joints: Vec::new(),
         confidence: 0.9999,
-        parameters: [("delay".to_string(), ParameterValue { value: skew, sigma: variance.sqrt(), unit: "s".into() })]
-            .into_iter()
-            .collect(),
+        parameters: [(
+            "delay".to_string(),
+            ParameterValue { value: skew, sigma: variance.sqrt(), unit: "s".into() },
+        )]
+        .into_iter()
+        .collect(),
         held_out_before: unaware.error_on(&all),
         held_out_after: with.error_on(&all),
         share,

@@ -100,10 +100,7 @@ fn normal(design: &Design, sigma: &[f64], train: &dyn Fn(usize) -> bool) -> (DMa
             }
         }
     }
-    (
-        DMatrix::from_fn(p, p, |i, k| sum[i * (p + 1) + k]),
-        DVector::from_fn(p, |i, _| sum[i * (p + 1) + p]),
-    )
+    (DMatrix::from_fn(p, p, |i, k| sum[i * (p + 1) + k]), DVector::from_fn(p, |i, _| sum[i * (p + 1) + p]))
 }
 
 /// Fits with weights that are iterated to the residuals' own standard deviations; returns them per joint.
@@ -112,10 +109,8 @@ pub(super) fn fit_weighted(design: &Design, sigma: &mut [f64], train: impl Fn(us
     for _ in 0..6 {
         for (j, s) in sigma.iter_mut().enumerate() {
             let rows = design.count(j, train);
-            let squares: f64 = (0..design.segments.len())
-                .filter(|&g| train(g))
-                .map(|g| fit.squares(design, j, g))
-                .sum();
+            let squares: f64 =
+                (0..design.segments.len()).filter(|&g| train(g)).map(|g| fit.squares(design, j, g)).sum();
             let largest = design.y[design.of_joint(j)].iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             *s = (squares / rows.max(1) as f64).sqrt().max(1e-9 * largest).max(1e-12);
         }

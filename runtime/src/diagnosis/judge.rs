@@ -92,9 +92,8 @@ impl Own {
             return Some((a, gain));
         }
         let k = self.b.len();
-        let scale = DVector::from_fn(k, |i, _| {
-            if self.s[(i, i)] > 0.0 { 1.0 / self.s[(i, i)].sqrt() } else { 0.0 }
-        });
+        let scale =
+            DVector::from_fn(k, |i, _| if self.s[(i, i)] > 0.0 { 1.0 / self.s[(i, i)].sqrt() } else { 0.0 });
         let m = DMatrix::from_fn(k, k, |i, j| {
             self.s[(i, j)] * scale[i] * scale[j] + if i == j { 1e-7 } else { 0.0 }
         });
@@ -171,7 +170,14 @@ pub(super) fn single_motion(design: &Design) -> bool {
 }
 
 /// Inner products of the candidate's own part (over all motion) on the training segments only.
-fn rest_of_motion(design: &Design, whole: &Fit, sigma: &[f64], trial: &Trial, own: &Own, train: &[bool]) -> Own {
+fn rest_of_motion(
+    design: &Design,
+    whole: &Fit,
+    sigma: &[f64],
+    trial: &Trial,
+    own: &Own,
+    train: &[bool],
+) -> Own {
     let (p, k) = (design.columns.len(), trial.columns.len());
     let (mut s, mut b) = (DMatrix::zeros(k, k), DVector::zeros(k));
     for (j, sd) in sigma.iter().enumerate() {

@@ -167,12 +167,20 @@ fn check(model: &dyn Model, design: &Design) -> Result<(), DiagnosisError> {
 }
 
 /// Refuses motions that do not determine the standard model, and recordings that it has nothing to do with.
-fn check_fit(model: &dyn Model, design: &Design, fit: &fit::Fit, sigma: &[f64]) -> Result<(), DiagnosisError> {
+fn check_fit(
+    model: &dyn Model,
+    design: &Design,
+    fit: &fit::Fit,
+    sigma: &[f64],
+) -> Result<(), DiagnosisError> {
     let free: Vec<usize> = fit.undetermined(1e-4);
     let parameters = design.parameters;
     if free.len() * 4 > parameters {
-        let names: Vec<String> =
-            free.iter().filter(|&&k| k < parameters).map(|&k| model.robot().base[k].name.to_string()).collect();
+        let names: Vec<String> = free
+            .iter()
+            .filter(|&&k| k < parameters)
+            .map(|&k| model.robot().base[k].name.to_string())
+            .collect();
         return Err(DiagnosisError::NotExciting { free: free.len(), parameters, names: names.join(", ") });
     }
     let mut left = 0.0;

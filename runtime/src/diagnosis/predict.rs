@@ -56,7 +56,8 @@ fn torques_on(
             amplitude = vec![1.0];
         }
         for (k, torque) in out.iter_mut().enumerate() {
-            for (column, a) in context.series(k, term.effect, term.place, &term.shape).iter().zip(&amplitude) {
+            for (column, a) in context.series(k, term.effect, term.place, &term.shape).iter().zip(&amplitude)
+            {
                 for (j, values) in column {
                     torque[*j].iter_mut().zip(values).for_each(|(t, v)| *t += a * v);
                 }
@@ -96,9 +97,8 @@ pub fn predict_errors(
     for (k, s) in signals.iter().enumerate() {
         let standard = ModelTorques::new(model, &parameters.chi, s);
         for j in 0..n {
-            let series: Vec<f64> = (0..s.len())
-                .map(|t| s.torque[j][t] - standard.total[j][t] - added[k][j][t])
-                .collect();
+            let series: Vec<f64> =
+                (0..s.len()).map(|t| s.torque[j][t] - standard.total[j][t] - added[k][j][t]).collect();
             for (range, _) in design.of_signal(j, k) {
                 for r in range {
                     left[j] += design.smooth(k, &series, design.rows[r].centre).powi(2);

@@ -130,7 +130,16 @@ impl<'c, 'a> Search<'c, 'a> {
             let fit = fit_weighted(&design, &mut sigma, |_| true);
             let folds = folds(&design, &sigma);
             let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
-            Side { design, sigma, fit, folds, candidates: Vec::new(), measured, fixed_columns, term_columns: vec![] }
+            Side {
+                design,
+                sigma,
+                fit,
+                folds,
+                candidates: Vec::new(),
+                measured,
+                fixed_columns,
+                term_columns: vec![],
+            }
         };
         let slow = make_side(slow, context);
         let fast = make_side(fast, context);

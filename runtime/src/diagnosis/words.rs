@@ -30,11 +30,15 @@ pub(super) fn sentence(robot: &Robot, effect: EffectKind, f: &Finding) -> String
     let place = match f.joints.as_slice() {
         [] => format!("On the whole {}", robot.name),
         [j] => format!("On joint {j}"),
-        many => format!("On joints {}", many.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ")),
+        many => {
+            format!("On joints {}", many.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and "))
+        }
     };
     let q = |name: &str| quantity(f, name);
     let detail = match effect {
-        EffectKind::Stribeck => format!("{} more friction close to rest, gone above about {}", q("fs"), q("vs")),
+        EffectKind::Stribeck => {
+            format!("{} more friction close to rest, gone above about {}", q("fs"), q("vs"))
+        }
         EffectKind::NonlinearViscous => format!("friction bends with speed to the power {}", q("p")),
         EffectKind::LoadDependentFriction => format!("friction grows by {} of the load torque", q("mu")),
         EffectKind::PositionDependentFriction => {
@@ -60,8 +64,12 @@ pub(super) fn sentence(robot: &Robot, effect: EffectKind, f: &Finding) -> String
             format!("a body of {} at ({}, {}, {})", q("mass"), q("x"), q("y"), q("z"))
         }
         EffectKind::BaseTilt => format!("the base is tilted by {} and {}", q("tilt_1"), q("tilt_2")),
-        EffectKind::CoupledTransmission => format!("its motor also turns with the neighbour, ratio {}", q("ratio")),
-        EffectKind::TorqueConstantError => format!("the recorded torque is {} times the real one", q("factor")),
+        EffectKind::CoupledTransmission => {
+            format!("its motor also turns with the neighbour, ratio {}", q("ratio"))
+        }
+        EffectKind::TorqueConstantError => {
+            format!("the recorded torque is {} times the real one", q("factor"))
+        }
         EffectKind::TorqueSaturation => {
             format!("the torque constant is off by {} at the highest torque", q("droop_at_most_torque"))
         }
@@ -70,7 +78,9 @@ pub(super) fn sentence(robot: &Robot, effect: EffectKind, f: &Finding) -> String
         }
         EffectKind::Backlash => format!("there is a play of {}", q("gap")),
         EffectKind::TimeDelay => format!("torques were recorded {} after the positions", q("delay")),
-        EffectKind::WrongSampleRate => format!("the true sampling rate differs by a fraction of {}", q("rate_error")),
+        EffectKind::WrongSampleRate => {
+            format!("the true sampling rate differs by a fraction of {}", q("rate_error"))
+        }
         EffectKind::PositionOffset => format!("the encoder zero is off by {}", q("offset")),
         EffectKind::GeometryError => {
             format!("a length of the table is off by {}{}", q("error_d"), q("error_r"))

@@ -20,7 +20,9 @@ pub(super) struct BaseTilt;
 impl Sensitivity for BaseTilt {
     /// Two turns of gravity about axes of frame 0 that are square to it.
     fn variants(&self, _: &Robot) -> Vec<Variant> {
-        (0..2).map(|index| Variant { joint: None, index, name: ["tilt_1", "tilt_2"][index], unit: "rad" }).collect()
+        (0..2)
+            .map(|index| Variant { joint: None, index, name: ["tilt_1", "tilt_2"][index], unit: "rad" })
+            .collect()
     }
 
     fn together(&self) -> bool {

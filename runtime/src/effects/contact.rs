@@ -33,7 +33,13 @@ pub struct Wrench {
 /// Motor torques that a force of 1 N along x, y, z of frame 0 at the origin of `frame` asks for: `out[axis][joint]`.
 ///
 /// By virtual work they are -JT f: what a mass point of 1 kg at that origin asks for in a gravity of f at rest.
-pub fn unit_force_torques(robot: &Robot, links: &[Link<f64>], frame: usize, q: &[f64], out: &mut [Vec<f64>; 3]) {
+pub fn unit_force_torques(
+    robot: &Robot,
+    links: &[Link<f64>],
+    frame: usize,
+    q: &[f64],
+    out: &mut [Vec<f64>; 3],
+) {
     let rest = vec![0.0; q.len()];
     for (axis, torques) in out.iter_mut().enumerate() {
         torques.clear();

@@ -24,7 +24,8 @@ impl JointLaw for PositionDependentFriction {
     /// Waves along the travel: at least half a wave, at most six; whole orders of the joint where it turns.
     fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
         let half_wave = std::f64::consts::PI / scale.range.max(1e-9);
-        let mut orders: Vec<f64> = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0].iter().map(|k| k * half_wave).collect();
+        let mut orders: Vec<f64> =
+            [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0].iter().map(|k| k * half_wave).collect();
         if !scale.prismatic {
             orders.extend([1.0, 2.0, 3.0, 4.0].iter().filter(|&&k| k > half_wave));
         }

@@ -77,7 +77,8 @@ pub fn derivative(
     let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
     let mut links = Vec::new();
     let mut entries = vec![Dual::default(); model.pattern().columns.len()];
-    let (mut q, mut dq, mut ddq) = (vec![Dual::default(); n], vec![Dual::default(); n], vec![Dual::default(); n]);
+    let (mut q, mut dq, mut ddq) =
+        (vec![Dual::default(); n], vec![Dual::default(); n], vec![Dual::default(); n]);
     let mut jerk = vec![0.0; n];
     let mut gravity = gravity.map(|g| Dual::new(g, 0.0));
     for series in out.iter_mut() {
@@ -165,7 +166,10 @@ mod tests {
             description: "three axes".into(),
             gravity: [0.0, 0.0, -9.81],
             frames: frames.into(),
-            drive: Drive { gear: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() },
+            drive: Drive {
+                gear: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0].into(),
+                coupled_friction: vec![].into(),
+            },
             limits: Limits::default(),
             standard: standard.into(),
             base: Cow::Owned(base),
@@ -179,7 +183,9 @@ mod tests {
         let mut entries = vec![0.0; pattern.columns.len()];
         model.idm(q, dq, ddq, &mut entries);
         (0..3)
-            .map(|j| (pattern.rows[j]..pattern.rows[j + 1]).map(|e| entries[e] * chi[pattern.columns[e]]).sum())
+            .map(|j| {
+                (pattern.rows[j]..pattern.rows[j + 1]).map(|e| entries[e] * chi[pattern.columns[e]]).sum()
+            })
             .collect()
     }
 
@@ -229,7 +235,11 @@ mod tests {
                 let (plus, minus) = (moved(h), moved(-h));
                 for j in 0..3 {
                     let expected = (plus[j] - minus[j]) / (2.0 * h);
-                    assert!((out[j][0] - expected).abs() < 1e-6, "{kind:?} {variant:?} {j}: {} {expected}", out[j][0]);
+                    assert!(
+                        (out[j][0] - expected).abs() < 1e-6,
+                        "{kind:?} {variant:?} {j}: {} {expected}",
+                        out[j][0]
+                    );
                 }
             }
         }

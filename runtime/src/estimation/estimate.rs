@@ -251,6 +251,24 @@ pub fn relative_error(observation: &Observation, chi: &[f64]) -> f64 {
     ratio(e.sqrt(), y.sqrt())
 }
 
+/// Relative errors, overall and per equation, of a model whose effects have been taken from the torques of
+/// `unexplained`: what W chi leaves of them, against the torques of `measured`, the same rows before that.
+pub fn errors_against(unexplained: &Observation, measured: &Observation, chi: &[f64]) -> (f64, Vec<f64>) {
+    let equations = measured.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
+    let mut left = vec![0.0; equations];
+    let mut whole = vec![0.0; equations];
+    for group in &unexplained.groups {
+        if let Some(left) = left.get_mut(group.equation) {
+            *left += residual_norm(group, chi).powi(2);
+        }
+    }
+    for group in &measured.groups {
+        whole[group.equation] += group.factor.norm_y().powi(2);
+    }
+    let overall = ratio(left.iter().sum::<f64>().sqrt(), whole.iter().sum::<f64>().sqrt());
+    (overall, left.iter().zip(&whole).map(|(e, y)| ratio(e.sqrt(), y.sqrt())).collect())
+}
+
 fn ratio(e: f64, y: f64) -> f64 {
     if y > 0.0 { e / y } else { 0.0 }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::observe::{LeftOut, ObserveSettings};
 use super::{EquationError, Estimate, ParameterEstimate, Warning};
+use crate::effects::EffectTerm;
 use crate::model::Robot;
 
 /// An identified model: what `identify` writes as JSON and saves, and what `validate` reads back.
@@ -41,7 +42,7 @@ pub struct Identified {
     pub warnings: Vec<String>,
     /// Effects that a diagnosis found and that belong to the model.
     #[serde(default)]
-    pub effects: Vec<serde_json::Value>,
+    pub effects: Vec<EffectTerm>,
 }
 
 /// A parameter with its uncertainty and unit.

@@ -16,7 +16,7 @@ mod total;
 mod weights;
 
 pub use bandwidth::{Bandwidth, choose_bandwidth};
-pub use estimate::{EstimateSettings, estimate, per_equation, relative_error};
+pub use estimate::{EstimateSettings, errors_against, estimate, per_equation, relative_error};
 pub use factor::{BLOCK_ROWS, Factor};
 pub use identified::{EquationRows, EssentialParameters, Identified, NamedParameter, Observed};
 pub use instrumental::{InstrumentalEstimate, Instruments, instrumental_variables};

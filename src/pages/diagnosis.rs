@@ -1,0 +1,296 @@
+//! The report of `diagnose`: the verdict first, then for every finding where it was seen and what it changed.
+
+use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, HeldOut, OrderSpectrum, TorqueSeries};
+use dynid_runtime::effects::EffectKind;
+use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, percent, significant};
+
+/// A recording that was kept apart from the diagnosis, and the errors on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptApart {
+    /// Which recording.
+    pub name: String,
+    /// Relative error of the standard model, overall and per joint.
+    pub before: (f64, Vec<f64>),
+    /// The same with the findings.
+    pub after: (f64, Vec<f64>),
+}
+
+/// The whole page.
+pub fn page(title: &str, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>, notes: &[String]) -> String {
+    let mut page = Page::new(&format!("{}: {title}", diagnosis.robot));
+    page.verdict(&diagnosis.verdict.join(" "));
+    page.list(notes);
+    errors(&mut page, diagnosis, kept_apart);
+    for finding in &diagnosis.findings {
+        found(&mut page, diagnosis, finding);
+    }
+    mismatch(&mut page, diagnosis);
+    shifts(&mut page, diagnosis);
+    cannot_tell(&mut page, diagnosis);
+    unexplained(&mut page, diagnosis);
+    page.heading("How this was done");
+    page.paragraph(&format!(
+        "{} equations; {} candidate effects at places with all of their shapes were tried. Every candidate was \
+         fitted together with all standard parameters and judged on motion that was held back: {}.",
+        diagnosis.rows, diagnosis.tried, diagnosis.held_out.how
+    ));
+    if diagnosis.delay != 0.0 {
+        page.paragraph(&format!(
+            "A skew of {} ms between torques and positions was taken out first.",
+            significant(1e3 * diagnosis.delay, 3)
+        ));
+    }
+    page.to_html()
+}
+
+fn errors(page: &mut Page, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>) {
+    page.heading("Before and after");
+    let held = &diagnosis.held_out;
+    let mut header = vec!["relative error of the torques", "before", "after"];
+    let joints: Vec<String> = (0..held.per_joint_before.len()).map(|j| format!("joint {}", j + 1)).collect();
+    header.truncate(3);
+    let mut rows = vec![
+        vec![
+            "fitted motion".to_owned(),
+            percent(diagnosis.before.relative_error),
+            percent(diagnosis.after.relative_error),
+        ],
+        vec![format!("held back: {}", held.how), percent(held.before), percent(held.after)],
+    ];
+    if let Some(test) = kept_apart {
+        rows.push(vec![format!("kept apart: {}", test.name), percent(test.before.0), percent(test.after.0)]);
+    }
+    page.table(&header, &rows);
+    let joint_rows: Vec<Vec<String>> =
+        joints.iter().enumerate().map(|(j, name)| joint_row(name, j, diagnosis, held, kept_apart)).collect();
+    let mut header = vec!["", "fitted, before", "after", "held back, before", "after"];
+    if kept_apart.is_some() {
+        header.extend(["kept apart, before", "after"]);
+    }
+    page.table(&header, &joint_rows);
+    if !held.by_motion.is_empty() {
+        page.details("Each motion that was held back", |page| {
+            let rows: Vec<Vec<String>> = held
+                .by_motion
+                .iter()
+                .map(|(name, before, after)| vec![name.clone(), percent(*before), percent(*after)])
+                .collect();
+            page.table(&["held back", "before", "after"], &rows);
+        });
+    }
+}
+
+fn joint_row(
+    name: &str,
+    j: usize,
+    diagnosis: &Diagnosis,
+    held: &HeldOut,
+    kept_apart: Option<&KeptApart>,
+) -> Vec<String> {
+    let at = |errors: &[f64]| errors.get(j).map_or_else(|| "-".to_owned(), |e| percent(*e));
+    let mut row = vec![
+        name.to_owned(),
+        at(&diagnosis.before.per_joint),
+        at(&diagnosis.after.per_joint),
+        at(&held.per_joint_before),
+        at(&held.per_joint_after),
+    ];
+    if let Some(test) = kept_apart {
+        row.extend([at(&test.before.1), at(&test.after.1)]);
+    }
+    row
+}
+
+/// `joints 2 and 3`, `the whole robot`.
+pub(crate) fn joint_words(joints: &[usize]) -> String {
+    match joints {
+        [] => "the whole robot".to_owned(),
+        [one] => format!("joint {one}"),
+        [first @ .., last] => {
+            let first: Vec<String> = first.iter().map(ToString::to_string).collect();
+            format!("joints {} and {last}", first.join(", "))
+        }
+    }
+}
+
+fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
+    let words = EffectKind::from_id(&finding.effect).map(EffectKind::words);
+    let title = words.map_or(finding.effect.as_str(), |w| w.title);
+    page.heading(&format!("{title} on {}", joint_words(&finding.joints)));
+    page.paragraph(&finding.sentence);
+    if let Some(words) = words {
+        page.paragraph(words.what);
+    }
+    if let Some(curve) = &finding.curve {
+        page.plot(&revealing(curve));
+    }
+    for spectrum in diagnosis.spectra.iter().filter(|s| finding.joints.contains(&s.joint)) {
+        if finding.effect == EffectKind::TorqueRipple.id() {
+            page.plot(&orders(spectrum));
+        }
+    }
+    // One motion shows it; the others are there for who wants to look.
+    let mut shown = diagnosis.series.iter().filter(|s| finding.joints.contains(&s.joint));
+    if let Some(first) = shown.next() {
+        page.plot(&torques(first, finding));
+    }
+    let others: Vec<&TorqueSeries> = shown.collect();
+    if !others.is_empty() {
+        page.details("The other motions and joints", |page| {
+            for series in others {
+                page.plot(&torques(series, finding));
+            }
+        });
+    }
+    let parameters: Vec<Vec<String>> = finding
+        .parameters
+        .iter()
+        .map(|(name, p)| {
+            let sigma = if p.sigma > 0.0 { significant(p.sigma, 2) } else { "-".to_owned() };
+            vec![name.clone(), significant(p.value, 4), sigma, p.unit.clone()]
+        })
+        .collect();
+    page.table(&["parameter", "value", "sigma", "unit"], &parameters);
+    page.paragraph(&format!(
+        "On held-back motion its joints' error falls from {} to {}; confidence {}.",
+        percent(finding.held_out_before),
+        percent(finding.held_out_after),
+        significant(finding.confidence, 4)
+    ));
+    if !finding.alternatives.is_empty() {
+        page.subheading("Other explanations");
+        let rows: Vec<Vec<String>> = finding
+            .alternatives
+            .iter()
+            .map(|a| vec![format!("{} on {}", a.effect, joint_words(&a.joints)), a.why_not.clone()])
+            .collect();
+        page.table(&["effect", "why not"], &rows);
+    }
+    if let Some(words) = words {
+        page.note(&format!("Literature: {}.", words.source));
+    }
+}
+
+/// The residual over the variable that reveals the effect, with the law.
+fn revealing(curve: &Curve) -> Plot {
+    let points: Vec<(f64, f64)> = curve.x.iter().copied().zip(curve.residual.iter().copied()).collect();
+    let law: Vec<(f64, f64)> = curve.x.iter().copied().zip(curve.law.iter().copied()).collect();
+    let bound = |sign: f64| -> Vec<(f64, f64)> {
+        let with_error = curve.residual.iter().zip(&curve.error).map(|(r, e)| r + sign * 2.0 * e);
+        curve.x.iter().copied().zip(with_error).collect()
+    };
+    let mut plot = Plot::new(
+        format!("What the standard model leaves, over {}", curve.variable),
+        curve.variable.clone(),
+        format!("residual, {}", curve.unit),
+    )
+    .with("mean residual", Role::Before, SeriesKind::Points, points);
+    if curve.error.iter().any(|e| *e > 0.0) {
+        plot = plot.with("two standard errors", Role::Aside, SeriesKind::Line, bound(1.0)).with(
+            "",
+            Role::Aside,
+            SeriesKind::Line,
+            bound(-1.0),
+        );
+    }
+    plot.with("fitted law", Role::Law, SeriesKind::Line, law)
+}
+
+fn orders(spectrum: &OrderSpectrum) -> Plot {
+    let points = spectrum.order.iter().copied().zip(spectrum.amplitude.iter().copied()).collect();
+    Plot::new(
+        format!(
+            "Order spectrum of joint {}: waves per turn of the joint (a motor turn is {} of its turns)",
+            spectrum.joint,
+            significant(1.0 / spectrum.gear, 3)
+        ),
+        "order, waves per joint turn",
+        "amplitude, N.m or N",
+    )
+    .with("residual", Role::Before, SeriesKind::Line, points)
+}
+
+fn torques(series: &TorqueSeries, finding: &Finding) -> Plot {
+    let curve = |values: &[f64]| series.time.iter().copied().zip(values.iter().copied()).collect();
+    let mut plot = Plot::new(
+        format!("Torque of joint {}, {}", series.joint, series.motion),
+        "time, s",
+        "torque, N.m or N",
+    )
+    .with("measured", Role::Measured, SeriesKind::Line, curve(&series.measured))
+    .with("model before", Role::Before, SeriesKind::Line, curve(&series.before))
+    .with("model after", Role::After, SeriesKind::Line, curve(&series.after));
+    plot.bands = finding
+        .contacts
+        .iter()
+        .filter(|w| w.motion == series.motion)
+        .map(|w| Band { from: w.window[0], to: w.window[1] })
+        .collect();
+    plot
+}
+
+fn mismatch(page: &mut Page, diagnosis: &Diagnosis) {
+    if diagnosis.mismatch.is_empty() {
+        return;
+    }
+    page.heading("Where the standard model fails");
+    let rows: Vec<Vec<String>> = diagnosis
+        .mismatch
+        .iter()
+        .map(|m| vec![format!("joint {}", m.joint), percent(m.share), m.where_.clone()])
+        .collect();
+    page.table(&["joint", "share of what is unexplained", "where it lives"], &rows);
+}
+
+fn shifts(page: &mut Page, diagnosis: &Diagnosis) {
+    if diagnosis.shifts.is_empty() {
+        return;
+    }
+    page.heading("Parameters that the missing physics had biased");
+    let rows: Vec<Vec<String>> = diagnosis
+        .shifts
+        .iter()
+        .map(|s| {
+            vec![
+                s.name.clone(),
+                significant(s.before, 4),
+                significant(s.sigma_before, 2),
+                significant(s.after, 4),
+                significant(s.sigma_after, 2),
+                s.unit.clone(),
+            ]
+        })
+        .collect();
+    page.table(&["parameter", "before", "sigma", "after", "sigma", "unit"], &rows);
+}
+
+fn cannot_tell(page: &mut Page, diagnosis: &Diagnosis) {
+    if diagnosis.cannot_tell.is_empty() {
+        return;
+    }
+    page.heading("What this motion cannot tell");
+    page.list(diagnosis.cannot_tell.iter().map(|c| {
+        format!("{} on {}. To tell: {}.", c.between.join(" or "), joint_words(&c.joints), c.experiment)
+    }));
+}
+
+fn unexplained(page: &mut Page, diagnosis: &Diagnosis) {
+    page.heading("What nothing explains");
+    page.paragraph(&format!(
+        "{} of the squared error that remains on held-back motion is more than noise.",
+        percent(diagnosis.unexplained.share)
+    ));
+    page.details("What remains, joint by joint", |page| {
+        for (j, curve) in diagnosis.unexplained.curves.iter().enumerate() {
+            let points = curve.x.iter().copied().zip(curve.residual.iter().copied()).collect();
+            page.plot(
+                &Plot::new(
+                    format!("Joint {}", j + 1),
+                    curve.variable.clone(),
+                    format!("residual, {}", curve.unit),
+                )
+                .with("mean residual", Role::Before, SeriesKind::Points, points),
+            );
+        }
+    });
+}
