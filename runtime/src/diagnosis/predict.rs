@@ -40,10 +40,10 @@ fn torques_on(
     }
     let mut context = Context::new(model, signals, scales(model, signals, chi), chi.to_vec())?;
     for term in terms {
-        if let (Place::Joint(j), Some(scale)) = (term.place, term.scale) {
-            if j < n {
-                context.scales[j] = scale.into();
-            }
+        if let (Place::Joint(j), Some(scale)) = (term.place, term.scale)
+            && j < n
+        {
+            context.scales[j] = scale.into();
         }
         let mut amplitude = term.amplitude.clone();
         if let (Form::Compliance(_), Place::Joint(j), &[k, d, rotor, play]) =

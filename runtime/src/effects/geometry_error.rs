@@ -35,6 +35,6 @@ impl Sensitivity for GeometryError {
 
     fn seed(&self, variant: &Variant, seeds: &mut Seeds<'_>) {
         let row = &mut seeds.rows[variant.index / 2];
-        if variant.index % 2 == 0 { row.d.slope = 1.0 } else { row.r.slope = 1.0 }
+        if variant.index.is_multiple_of(2) { row.d.slope = 1.0 } else { row.r.slope = 1.0 }
     }
 }
