@@ -26,7 +26,7 @@ pub struct Preparation {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VelocitySource {
     /// For each joint the recorded velocity if there is one that agrees with the positions (scale within 2 %, no
-    /// lag beyond a tenth of a sample or 0.5 ms) and is less noisy than their differences; else the positions.
+    /// lag beyond a fifth of a sample or 0.5 ms) and is less noisy than their differences; else the positions.
     #[default]
     Automatic,
     /// Central differences of the filtered positions, as in the paper.
@@ -159,7 +159,7 @@ fn agree(recorded: &[f64], ours: &[f64], rate: f64) -> bool {
     let scale = (rd * ss - rs * ds) / determinant;
     let lag = -(rs * dd - rd * ds) / determinant;
     let rest = rr - scale * rd + lag * rs;
-    (scale - 1.0).abs() <= 0.02 && lag.abs() <= (0.1 / rate).max(0.5e-3) && rest <= 0.01 * rr
+    (scale - 1.0).abs() <= 0.02 && lag.abs() <= (0.2 / rate).max(0.5e-3) && rest <= 0.01 * rr
 }
 
 /// Mean square of the third differences: what a signal has of noise, for a motion has next to none of it.
