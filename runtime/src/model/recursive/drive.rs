@@ -44,8 +44,12 @@ impl DriveEntry {
 
     /// Twice the entry's share of its column's energy: dq_row * sum_s A[row][s] dq_s; zero for friction.
     #[inline(always)]
-    pub fn twice_energy(&self, dq: &[f64]) -> f64 {
-        if self.law == Law::Acceleration { dq[self.row] * self.scale * self.form_of(dq) } else { 0.0 }
+    pub fn twice_energy<T: Number>(&self, dq: &[T]) -> T {
+        if self.law == Law::Acceleration {
+            dq[self.row] * T::constant(self.scale) * self.form_of(dq)
+        } else {
+            T::constant(0.0)
+        }
     }
 
     /// The entry's row of rotor inertia per unit parameter, where it is one: (joint, inertia).

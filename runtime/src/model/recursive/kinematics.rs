@@ -64,6 +64,18 @@ impl<T: Number> Link<T> {
         Link::from_trigonometry(frame, &Row::new(frame), exact(frame.gamma), exact(frame.alpha))
     }
 
+    /// The same row in another number type.
+    pub(super) fn lift(link: &Link<f64>) -> Link<T> {
+        Link {
+            parent: link.parent,
+            kind: link.kind,
+            orientation: link.orientation.map(|row| row.map(T::constant)),
+            offset: link.offset.map(T::constant),
+            theta: T::constant(link.theta),
+            r: T::constant(link.r),
+        }
+    }
+
     fn from_trigonometry(frame: &Frame, row: &Row<T>, (sg, cg): (T, T), (sa, ca): (T, T)) -> Link<T> {
         let zero = T::constant(0.0);
         Link {

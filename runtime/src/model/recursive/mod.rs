@@ -11,7 +11,7 @@ mod vector;
 pub use columns::{standard_energy, standard_idm, standard_power};
 pub use kinematics::{Link, Row};
 
-use super::{Model, Number, Pattern, Robot, States};
+use super::{LANES, Lanes, Model, Number, Pattern, Robot, States};
 use composite::Inertia;
 use drive::DriveEntry;
 use std::borrow::Cow;
@@ -149,8 +149,15 @@ impl RecursiveModel {
 
     /// Terms of the power row, several for one column where several joints drive it.
     #[inline(always)]
-    fn each_power(&self, q: &[f64], dq: &[f64], ddq: &[f64], mut emit: impl FnMut(usize, f64)) {
-        standard_power(&self.links, self.robot.gravity, q, dq, ddq, |frame, row| {
+    fn each_power<T: Number>(
+        &self,
+        links: &[Link<T>],
+        q: &[T],
+        dq: &[T],
+        ddq: &[T],
+        mut emit: impl FnMut(usize, T),
+    ) {
+        standard_power(links, self.robot.gravity.map(T::constant), q, dq, ddq, |frame, row| {
             for &(kind, column) in &self.columns[frame] {
                 emit(column, row[kind]);
             }
@@ -161,14 +168,14 @@ impl RecursiveModel {
     }
 
     #[inline(always)]
-    fn each_energy(&self, q: &[f64], dq: &[f64], mut emit: impl FnMut(usize, f64)) {
-        standard_energy(&self.links, self.robot.gravity, q, dq, |frame, row| {
+    fn each_energy<T: Number>(&self, links: &[Link<T>], q: &[T], dq: &[T], mut emit: impl FnMut(usize, T)) {
+        standard_energy(links, self.robot.gravity.map(T::constant), q, dq, |frame, row| {
             for &(kind, column) in &self.columns[frame] {
                 emit(column, row[kind]);
             }
         });
         for entry in &self.drive {
-            emit(entry.column, 0.5 * entry.twice_energy(dq));
+            emit(entry.column, T::constant(0.5) * entry.twice_energy(dq));
         }
     }
 }
@@ -184,12 +191,12 @@ impl Model for RecursiveModel {
 
     fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]) {
         h.fill(0.0);
-        self.each_energy(q, dq, |column, value| h[column] += value);
+        self.each_energy(&self.links, q, dq, |column, value| h[column] += value);
     }
 
     fn power(&self, q: &[f64], dq: &[f64], ddq: &[f64], dh: &mut [f64]) {
         dh.fill(0.0);
-        self.each_power(q, dq, ddq, |column, value| dh[column] += value);
+        self.each_power(&self.links, q, dq, ddq, |column, value| dh[column] += value);
     }
 
     fn idm(&self, q: &[f64], dq: &[f64], ddq: &[f64], entries: &mut [f64]) {
@@ -197,24 +204,25 @@ impl Model for RecursiveModel {
     }
 
     fn idm_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
-        each_sample(states, |t, q, dq, ddq| {
-            self.each_entry(&self.links, self.robot.gravity, q, dq, ddq, |entry, value| {
-                out[entry * stride + t] = value;
+        let gravity = self.robot.gravity.map(Lanes::constant);
+        self.each_group(states, |links, group, q, dq, ddq| {
+            self.each_entry(links, gravity, q, dq, ddq, |entry, value| {
+                group.write(&mut out[entry * stride..], value);
             });
         });
     }
 
     fn power_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
         clear(out, stride, self.robot.base.len(), &states);
-        each_sample(states, |t, q, dq, ddq| {
-            self.each_power(q, dq, ddq, |column, value| out[column * stride + t] += value);
+        self.each_group(states, |links, group, q, dq, ddq| {
+            self.each_power(links, q, dq, ddq, |column, value| group.add(&mut out[column * stride..], value));
         });
     }
 
     fn energy_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
         clear(out, stride, self.robot.base.len(), &states);
-        each_sample(States { ddq: states.dq, ..states }, |t, q, dq, _| {
-            self.each_energy(q, dq, |column, value| out[column * stride + t] += value);
+        self.each_group(States { ddq: states.dq, ..states }, |links, group, q, dq, _| {
+            self.each_energy(links, q, dq, |column, value| group.add(&mut out[column * stride..], value));
         });
     }
 
@@ -244,17 +252,49 @@ fn clear(out: &mut [f64], stride: usize, columns: usize, states: &States<'_>) {
     }
 }
 
-fn each_sample(states: States<'_>, mut evaluate: impl FnMut(usize, &[f64], &[f64], &[f64])) {
-    let n = states.q.len();
-    let samples = states.q.first().map_or(0, |q| q.len());
-    let mut state = [[0.0; MAX_FRAMES]; 3];
-    for t in 0..samples {
-        for (one, all) in state.iter_mut().zip([states.q, states.dq, states.ddq]) {
-            for (value, signal) in one.iter_mut().zip(all) {
-                *value = signal[t];
-            }
+/// Samples that are evaluated together.
+#[derive(Clone, Copy)]
+struct Group {
+    first: usize,
+    count: usize,
+}
+
+impl Group {
+    fn write(self, column: &mut [f64], value: Lanes) {
+        column[self.first..self.first + self.count].copy_from_slice(&value.to_array()[..self.count]);
+    }
+
+    fn add(self, column: &mut [f64], value: Lanes) {
+        let column = &mut column[self.first..self.first + self.count];
+        for (x, y) in column.iter_mut().zip(value.to_array()) {
+            *x += y;
         }
-        evaluate(t, &state[0][..n], &state[1][..n], &state[2][..n]);
+    }
+}
+
+impl RecursiveModel {
+    /// Evaluates all samples, four at a time; a last group that is not full repeats its last sample.
+    fn each_group(
+        &self,
+        states: States<'_>,
+        mut evaluate: impl FnMut(&[Link<Lanes>], Group, &[Lanes], &[Lanes], &[Lanes]),
+    ) {
+        let n = states.q.len();
+        let samples = states.q.first().map_or(0, |q| q.len());
+        let Some(last) = self.links.last() else { return };
+        let links: [Link<Lanes>; MAX_FRAMES] =
+            std::array::from_fn(|k| Link::lift(self.links.get(k).unwrap_or(last)));
+        let mut state = [[Lanes::constant(0.0); MAX_FRAMES]; 3];
+        for first in (0..samples).step_by(LANES) {
+            let count = LANES.min(samples - first);
+            for (one, all) in state.iter_mut().zip([states.q, states.dq, states.ddq]) {
+                for (value, signal) in one.iter_mut().zip(all) {
+                    *value = Lanes::new(std::array::from_fn(|k| signal[first + k.min(count - 1)]));
+                }
+            }
+            let [q, dq, ddq] = &state;
+            evaluate(&links[..self.links.len()], Group { first, count }, &q[..n], &dq[..n], &ddq[..n]);
+        }
     }
 }
 
