@@ -7,6 +7,7 @@
 pub mod commands;
 pub mod failure;
 pub mod models;
+pub mod motions;
 pub mod output;
 pub mod pages;
 pub mod recorded;

@@ -4,7 +4,9 @@ mod axis;
 mod html;
 mod numbers;
 mod plot;
+mod sheet;
 
 pub use html::{Page, escape};
 pub use numbers::{percent, significant};
 pub use plot::{Band, Plot, Role, Series, SeriesKind};
+pub use sheet::{Panel, Sheet};

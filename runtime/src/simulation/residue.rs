@@ -26,6 +26,9 @@ pub struct Residue {
 }
 
 impl Residue {
+    /// Share of the dry friction that the ripple of [`Residue::typical`] has at size 1.
+    pub const TYPICAL_RIPPLE: f64 = 0.25;
+
     /// Residue of a stated size relative to the dry friction of each joint, its motor's included. At `size` 1:
     /// Stribeck friction of 30 % below 0.1 rad/s (or m/s), 6 % of the transmitted torque, friction uneven by 25 %
     /// over a turn, and ripple of 25 % once a motor turn. That leaves residuals of the size of those of the public
@@ -47,7 +50,7 @@ impl Residue {
             stribeck_speed: vec![0.1; n],
             load: vec![0.06 * size; n],
             uneven: share(0.25),
-            ripple: share(0.25),
+            ripple: share(Self::TYPICAL_RIPPLE),
             ripple_order: vec![1.0; n],
             ripple_phase: (0..n).map(|j| 0.7 * j as f64).collect(),
             turns: (0..n).map(|j| robot.drive.gear[j * n + j].abs() / std::f64::consts::TAU).collect(),

@@ -1,0 +1,141 @@
+//! `dynid excite ROBOT`: motions that make the parameters observable.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use dynid_runtime::model::{Model, Robot};
+use dynid_runtime::report::significant;
+use dynid_runtime::simulation::excitation::{ExcitationPlan, ExcitationSettings, Identification, excite};
+use dynid_runtime::simulation::{Reference, check_standard};
+
+use crate::failure::{Failure, file_failure};
+use crate::motions::{MotionOptions, to_csv, to_svg};
+use crate::output::{Bar, print, table, write};
+use crate::robots::resolve;
+
+/// What to search, and where to put it.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A robot's name, or the path of a robot YAML
+    robot: String,
+    /// Folder for motion1.csv, motion1.svg, ...
+    #[arg(long)]
+    out: PathBuf,
+    /// For the power model: one motion for each joint, with the joints before it fixed, so that the observation
+    /// matrix becomes block-triangular
+    #[arg(long)]
+    pim: bool,
+    #[command(flatten)]
+    motions: MotionOptions,
+    /// Random starts for each motion
+    #[arg(long, default_value_t = 4)]
+    starts: usize,
+    /// Candidate motions tried from each start
+    #[arg(long, default_value_t = 1500)]
+    evaluations: usize,
+    /// The same seed gives the same motions
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Rows a second in the CSV files, Hz
+    #[arg(long, default_value_t = 1000.0)]
+    rate: f64,
+}
+
+/// Searches, prints, writes.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let dynamics = resolve(&arguments.robot, None)?;
+    let model = dynamics.model();
+    let robot = model.robot();
+    if !(arguments.rate > 0.0 && arguments.rate <= 1e6) {
+        return Err(Failure::Input(format!("--rate {}: it must be a positive number of Hz", arguments.rate)));
+    }
+    let chi = nominal(robot)?;
+    let settings = ExcitationSettings {
+        kind: arguments.motions.kind(),
+        identification: if arguments.pim { Identification::Pim } else { Identification::Idim },
+        sets: if arguments.pim { robot.joints() } else { 1 },
+        starts: arguments.starts,
+        evaluations: arguments.evaluations,
+        share: arguments.motions.share,
+        seed: arguments.seed,
+    };
+    let plan = search(model, chi.as_deref(), &settings)?;
+    std::fs::create_dir_all(&arguments.out)
+        .map_err(|error| file_failure("make the folder", &arguments.out, &error))?;
+    for (k, motion) in plan.motions.iter().enumerate() {
+        let title = format!("{}: motion {} of {}", robot.name, k + 1, plan.motions.len());
+        write(
+            &arguments.out.join(format!("motion{}.csv", k + 1)),
+            to_csv(motion, arguments.rate).trim_end(),
+        )?;
+        write(&arguments.out.join(format!("motion{}.svg", k + 1)), &to_svg(motion, robot, &title))?;
+    }
+    print(&summary(robot, &plan, arguments));
+    Ok(())
+}
+
+/// Base parameters of the nominal robot, where it has them; checked.
+fn nominal(robot: &Robot) -> Result<Option<Vec<f64>>, Failure> {
+    let Some(nominal) = &robot.nominal else { return Ok(None) };
+    check_standard(robot, &nominal.standard)
+        .map_err(|error| Failure::Input(format!("{}: nominal parameters: {error}", robot.name)))?;
+    Ok(Some(robot.base_from_standard(&nominal.standard)))
+}
+
+fn search(
+    model: &dyn Model,
+    chi: Option<&[f64]>,
+    settings: &ExcitationSettings,
+) -> Result<ExcitationPlan, Failure> {
+    let bar = Bar::new("motions");
+    excite(model, chi, settings, &|share| bar.at((1000.0 * share) as usize, 1000))
+        .map_err(|error| Failure::Input(error.to_string()))
+}
+
+fn summary(robot: &Robot, plan: &ExcitationPlan, arguments: &Arguments) -> String {
+    let mut text = format!(
+        "{}: {} motion{} in {}\n",
+        robot.name,
+        plan.motions.len(),
+        if plan.motions.len() == 1 { "" } else { "s" },
+        arguments.out.display()
+    );
+    let rows = plan
+        .motions
+        .iter()
+        .enumerate()
+        .map(|(k, motion)| {
+            let fixed: Vec<String> = motion.fixed().iter().map(|j| (j + 1).to_string()).collect();
+            let mut row = vec![
+                (k + 1).to_string(),
+                significant(motion.duration(), 3),
+                if fixed.is_empty() { "none".to_owned() } else { fixed.join(" ") },
+            ];
+            row.extend(plan.blocks[k].iter().map(|&reached| if reached { "x" } else { "0" }.to_owned()));
+            row
+        })
+        .collect();
+    let names: Vec<String> = (1..=robot.joints()).map(|j| format!("chi{j}")).collect();
+    let mut header = vec!["motion", "s", "<fixed joints"];
+    header.extend(names.iter().map(String::as_str));
+    text.push_str(&table(&header, rows));
+    text.push_str(if arguments.pim {
+        "\n\nblocks of the power model's W: x is reached, 0 is zero throughout"
+    } else {
+        "\n\nblocks of W by joint: x is reached, 0 is zero throughout"
+    });
+    text.push_str(&format!(
+        "\ncondition number of the weighted, scaled W: {} before the search, {} after",
+        significant(plan.condition_before, 3),
+        significant(plan.condition_after, 3)
+    ));
+    text.push_str(&format!(
+        "\nlog det of the information: {} before, {} after",
+        significant(plan.log_determinant_before, 4),
+        significant(plan.log_determinant_after, 4)
+    ));
+    if let Some(share) = plan.torque_share {
+        text.push_str(&format!("\nlargest share of a torque limit: {} %", significant(100.0 * share, 3)));
+    }
+    text
+}

@@ -1,0 +1,242 @@
+//! `dynid simulate MODEL|ROBOT`: a closed loop, written as a recording.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use dynid_runtime::estimation::Identified;
+use dynid_runtime::model::{Model, Robot};
+use dynid_runtime::recording;
+use dynid_runtime::report::significant;
+use dynid_runtime::simulation::excitation::{ExcitationSettings, Identification, excite};
+use dynid_runtime::simulation::{
+    ElasticJoint, LoopSettings, Plant, Reference, Residue, Simulation, SimulationError, check_standard,
+    simulate,
+};
+
+use crate::failure::{Failure, file_failure};
+use crate::motions::{MotionOptions, read as read_motions};
+use crate::output::{Bar, print, table};
+use crate::robots::resolve;
+
+/// What to simulate, and where to put it.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A robot's name (its nominal parameters are used), the path of a robot YAML, or a model saved by `identify`
+    robot: String,
+    /// Folder for the recording
+    #[arg(long)]
+    out: PathBuf,
+    /// Follow these motions: a CSV or a folder written by `excite` [default: random motions within the limits]
+    #[arg(long)]
+    follow: Option<PathBuf>,
+    /// How many random motions
+    #[arg(long, default_value_t = 3)]
+    motions: usize,
+    #[command(flatten)]
+    family: MotionOptions,
+    /// Control rate, Hz
+    #[arg(long, default_value_t = 5000.0)]
+    rate: f64,
+    /// Control samples for each recorded row
+    #[arg(long, default_value_t = 5)]
+    record_every: usize,
+    /// The same seed gives the same recording
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Factor on the robot's nominal noise of encoders and torques
+    #[arg(long, default_value_t = 1.0)]
+    noise: f64,
+    /// Smallest step of the encoders, rad or m at the joint
+    #[arg(long, default_value_t = 0.0)]
+    quantum: f64,
+    /// Physics beyond the model of this size: Stribeck, load and uneven friction and ripple; 1 is a real robot's
+    #[arg(long, default_value_t = 0.0)]
+    residue: f64,
+    /// Torque ripple of this share of each joint's dry friction, once a motor turn
+    #[arg(long, default_value_t = 0.0)]
+    ripple: f64,
+    /// Elastic joint: JOINT:STIFFNESS[:DAMPING[:PLAY]], SI; may be repeated
+    #[arg(long)]
+    elastic: Vec<String>,
+    /// Feed nothing forward: the controller works from the errors alone
+    #[arg(long)]
+    no_feed_forward: bool,
+}
+
+/// The robot that is simulated.
+enum Parameters {
+    /// Standard parameters.
+    Standard(Vec<f64>),
+    /// Base parameters of an identified model.
+    Base(Vec<f64>),
+}
+
+/// Simulates and writes.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let saved = saved_model(&arguments.robot)?;
+    let name = saved.as_ref().map_or(arguments.robot.as_str(), |identified| identified.robot.as_str());
+    let dynamics = resolve(name, Path::new(&arguments.robot).parent())?;
+    let model = dynamics.model();
+    let robot = model.robot();
+    let parameters = parameters(robot, saved.as_ref(), &arguments.robot)?;
+    let chi = match &parameters {
+        Parameters::Standard(standard) => robot.base_from_standard(standard),
+        Parameters::Base(chi) => chi.clone(),
+    };
+    let failed = |error: SimulationError| Failure::Input(error.to_string());
+    let motions = planned(model, &chi, arguments)?;
+    let bar = Bar::new("simulating");
+    let mut runs: Vec<Simulation> = Vec::new();
+    for (k, motion) in motions.iter().enumerate() {
+        let mut plant = plant(model, &parameters, arguments)?;
+        let settings = loop_settings(model, &chi, motion.as_ref(), arguments, k);
+        let done = |share: f64| bar.at(((k as f64 + share) * 1000.0) as usize, 1000 * motions.len());
+        runs.push(simulate(&mut plant, motion.as_ref(), &settings, &mut { done }).map_err(failed)?);
+    }
+    drop(bar);
+    let trajectories: Vec<_> = runs.iter().map(|run| run.recorded.clone()).collect();
+    let title = format!("closed-loop simulation of {}, seed {}", robot.name, arguments.seed);
+    let path = recording::write(&arguments.out, robot, name, &title, &trajectories)
+        .map_err(|error| Failure::Input(error.to_string()))?;
+    print(&summary(&path, &runs));
+    Ok(())
+}
+
+fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
+    let path = Path::new(name);
+    if path.extension().is_none_or(|extension| extension != "json") {
+        return Ok(None);
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| file_failure("read the model", path, &error))?;
+    serde_json::from_str(&text)
+        .map(Some)
+        .map_err(|error| Failure::Input(format!("{name}:{}:{}: {error}", error.line(), error.column())))
+}
+
+fn parameters(robot: &Robot, saved: Option<&Identified>, name: &str) -> Result<Parameters, Failure> {
+    if let Some(identified) = saved {
+        let chi = identified.chi(robot).map_err(|missing| {
+            Failure::Input(format!("{name}: it has no {missing}: it was identified for another robot"))
+        })?;
+        return Ok(Parameters::Base(chi));
+    }
+    let Some(nominal) = &robot.nominal else {
+        return Err(Failure::Input(SimulationError::NoNominal { robot: robot.name.to_string() }.to_string()));
+    };
+    check_standard(robot, &nominal.standard)
+        .map_err(|error| Failure::Input(format!("{}: nominal parameters: {error}", robot.name)))?;
+    Ok(Parameters::Standard(nominal.standard.to_vec()))
+}
+
+fn planned(
+    model: &dyn Model,
+    chi: &[f64],
+    arguments: &Arguments,
+) -> Result<Vec<Box<dyn Reference>>, Failure> {
+    if let Some(path) = &arguments.follow {
+        let read = read_motions(path, model.robot().joints())?;
+        return Ok(read.into_iter().map(|motion| Box::new(motion) as Box<dyn Reference>).collect());
+    }
+    if arguments.motions == 0 {
+        return Err(Failure::Input("--motions 0: there must be one at least".to_owned()));
+    }
+    let mut motions: Vec<Box<dyn Reference>> = Vec::new();
+    for k in 0..arguments.motions {
+        let settings = ExcitationSettings {
+            kind: arguments.family.kind(),
+            identification: Identification::Idim,
+            sets: 1,
+            starts: 1,
+            evaluations: 0,
+            share: arguments.family.share,
+            seed: arguments.seed.wrapping_mul(1009).wrapping_add(k as u64),
+        };
+        let plan = excite(model, Some(chi), &settings, &|_| {}).map_err(|e| Failure::Input(e.to_string()))?;
+        motions.extend(plan.motions.into_iter().map(|motion| Box::new(motion) as Box<dyn Reference>));
+    }
+    Ok(motions)
+}
+
+fn plant<'m>(
+    model: &'m dyn Model,
+    parameters: &Parameters,
+    arguments: &Arguments,
+) -> Result<Plant<'m>, Failure> {
+    let robot = model.robot();
+    let failed = |error: SimulationError| Failure::Input(error.to_string());
+    let elastic = arguments.elastic.iter().map(|text| elastic_joint(text)).collect::<Result<Vec<_>, _>>()?;
+    let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
+    match parameters {
+        Parameters::Base(chi) if !more => Plant::new(model, chi).map_err(failed),
+        Parameters::Base(_) => Err(Failure::Input(
+            "--residue, --ripple and --elastic need standard parameters: simulate a robot with nominal values".to_owned(),
+        )),
+        Parameters::Standard(standard) => {
+            let mut residue = Residue::typical(robot, standard, arguments.residue);
+            let whole = Residue::typical(robot, standard, 1.0);
+            for (ripple, full) in residue.ripple.iter_mut().zip(&whole.ripple) {
+                *ripple += arguments.ripple * full / Residue::TYPICAL_RIPPLE;
+            }
+            let beyond = arguments.residue != 0.0 || arguments.ripple != 0.0;
+            let effects = if beyond { vec![residue.boxed()] } else { Vec::new() };
+            Plant::with_effects(model, standard, &elastic, effects).map_err(failed)
+        }
+    }
+}
+
+fn elastic_joint(text: &str) -> Result<ElasticJoint, Failure> {
+    let wrong = || Failure::Input(format!("--elastic {text}: expected JOINT:STIFFNESS[:DAMPING[:PLAY]]"));
+    let mut fields = text.split(':');
+    let joint: usize = fields.next().and_then(|x| x.parse().ok()).filter(|&j| j > 0).ok_or_else(wrong)?;
+    let numbers: Vec<f64> = fields.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    match numbers[..] {
+        [stiffness] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping: 0.0, play: 0.0 }),
+        [stiffness, damping] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play: 0.0 }),
+        [stiffness, damping, play] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play }),
+        _ => Err(wrong()),
+    }
+}
+
+fn loop_settings(
+    model: &dyn Model,
+    chi: &[f64],
+    motion: &dyn Reference,
+    arguments: &Arguments,
+    k: usize,
+) -> LoopSettings {
+    let seed = arguments.seed.wrapping_mul(1000).wrapping_add(k as u64);
+    let mut settings = LoopSettings::nominal(model, chi, motion, arguments.rate, seed);
+    settings.record_every = arguments.record_every;
+    settings.name = format!("motion {}", k + 1);
+    let sensors = &mut settings.sensors;
+    for sigma in sensors.position_noise.iter_mut().chain(&mut sensors.torque_noise) {
+        *sigma *= arguments.noise;
+    }
+    if arguments.quantum != 0.0 {
+        sensors.position_quantum = vec![arguments.quantum; motion.joints()];
+    }
+    if arguments.no_feed_forward {
+        settings.controller.feed_forward = None;
+    }
+    settings
+}
+
+fn summary(path: &Path, runs: &[Simulation]) -> String {
+    let rows = runs
+        .iter()
+        .map(|run| {
+            let last = run.recorded.time.last().copied().unwrap_or(0.0);
+            let worst = run.tracking_error.iter().fold(0.0_f64, |m, &x| m.max(x));
+            vec![
+                run.recorded.name.clone(),
+                significant(last, 3),
+                run.recorded.time.len().to_string(),
+                significant(worst, 2),
+                run.limited.iter().sum::<usize>().to_string(),
+            ]
+        })
+        .collect();
+    let header =
+        ["<motion", "s", "rows", "largest tracking error, rad or m", "control samples at a torque limit"];
+    format!("{}\n{}", path.display(), table(&header, rows))
+}
