@@ -1,0 +1,159 @@
+//! Identification of real robots from public recordings: the numbers that the design asks for.
+//!
+//! The recordings belong to others and are not part of the project; where `../shared` is absent the tests say that
+//! they were skipped.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use dynid::models;
+use dynid_runtime::estimation::observe::{Equations, Observation, ObserveSettings, Standstill, observe};
+use dynid_runtime::estimation::{
+    Bandwidth, Estimate, EstimateSettings, Method, choose_bandwidth, estimate, relative_error,
+};
+use dynid_runtime::model::Model;
+use dynid_runtime::recording::{Manifest, load};
+use dynid_runtime::signal::{Motion, Preparation, prepare};
+
+/// A recording with the band that is chosen for it, or `None` where it is absent.
+struct Recorded {
+    model: &'static dyn Model,
+    motions: Vec<Motion>,
+    bandwidth: Bandwidth,
+}
+
+fn recorded(name: &str, bandwidth: Option<Bandwidth>) -> Option<Recorded> {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
+    if !path.exists() {
+        eprintln!("skipped: {} is not there", path.display());
+        return None;
+    }
+    let manifest = Manifest::read(&path).unwrap();
+    let model = models::find(&manifest.robot).unwrap();
+    let trajectories = load(&manifest, model.robot()).unwrap().trajectories;
+    let bandwidth = bandwidth.unwrap_or_else(|| choose_bandwidth(&trajectories).unwrap());
+    let preparation = Preparation { cutoff: Some(bandwidth.cutoff), ..Preparation::default() };
+    let motions = trajectories.iter().map(|t| prepare(t, &preparation).unwrap()).collect();
+    Some(Recorded { model, motions, bandwidth })
+}
+
+impl Recorded {
+    fn settings(&self) -> ObserveSettings {
+        ObserveSettings { band: self.bandwidth.band, ..ObserveSettings::default() }
+    }
+
+    fn observe(&self, equations: Equations, settings: &ObserveSettings) -> Observation {
+        observe(self.model, &self.motions, equations, None, settings, None).unwrap()
+    }
+
+    fn torque(&self, windows: &[[f64; 2]], standstill: Standstill) -> Observation {
+        let settings = ObserveSettings { windows: windows.to_vec(), standstill, ..self.settings() };
+        self.observe(Equations::Torque, &settings)
+    }
+
+    fn value(&self, estimate: &Estimate, name: &str) -> f64 {
+        let found = estimate.parameters.iter().find(|p| p.name == name || p.name == format!("{name}R"));
+        found.unwrap_or_else(|| panic!("no {name}")).value
+    }
+}
+
+fn weighted(observation: &Observation) -> Estimate {
+    estimate(observation, &EstimateSettings::default())
+}
+
+#[test]
+fn the_tx40_is_identified_from_its_recording() {
+    let Some(tx40) = recorded("tx40/recording.yaml", None) else { return };
+    assert_eq!(tx40.model.robot().base.len(), 60);
+    assert_eq!((tx40.bandwidth.band, tx40.bandwidth.cutoff), (50.0, 100.0));
+    let observation = tx40.torque(&[], Standstill::Automatic);
+    assert_eq!(observation.rates, [100.0]);
+    let identified = weighted(&observation);
+    println!("moving rows {:.4}", identified.relative_error);
+    assert!(identified.warnings.is_empty(), "{:?}", identified.warnings);
+    assert!(identified.relative_error <= 0.068);
+    let every_row = weighted(&tx40.torque(&[], Standstill::Keep)).relative_error;
+    println!("all rows {every_row:.4}");
+    assert!(every_row < 0.0685);
+    // Friction differs from one robot to the next. The paper's TX-40 (Table II, Case 1): Fv 6.90 4.54 1.73 0.92,
+    // Fc 6.71 8.11 6.30 2.40. Another published set is nearer to the robot of this recording.
+    for (name, expected) in [
+        ("Fv1", 7.94),
+        ("Fv2", 5.69),
+        ("Fv3", 1.98),
+        ("Fv4", 1.11),
+        ("Fc1", 6.98),
+        ("Fc2", 7.83),
+        ("Fc3", 6.19),
+        ("Fc4", 2.41),
+    ] {
+        let value = tx40.value(&identified, name);
+        println!("{name} {value:.3} published {expected}");
+        assert!((value / expected - 1.0).abs() < 0.12, "{name} {value}");
+    }
+}
+
+#[test]
+fn the_tx40_model_holds_on_later_motion() {
+    let Some(tx40) = recorded("tx40/recording.yaml", None) else { return };
+    let error = |tx40: &Recorded, standstill: Standstill| {
+        let fitted = weighted(&tx40.torque(&[[0.0, 4.5]], standstill.clone()));
+        relative_error(&tx40.torque(&[[4.5, 7.4]], standstill), &fitted.chi())
+    };
+    let every_row = error(&tx40, Standstill::Keep);
+    println!("50 Hz, all rows {every_row:.4}");
+    assert!(every_row < 0.0875);
+    let narrow = Bandwidth { band: 25.0, cutoff: 100.0, noise: 0.0 };
+    let tx40 = recorded("tx40/recording.yaml", Some(narrow)).unwrap();
+    let moving = error(&tx40, Standstill::Automatic);
+    println!("25 Hz, moving rows {moving:.4}");
+    assert!(moving < 0.075);
+}
+
+#[test]
+fn the_power_model_on_one_motion_fits_the_power_and_fails_the_torques() {
+    // Case 3 of the paper: 0.069 against 0.53 on its robot.
+    let Some(tx40) = recorded("tx40/recording.yaml", None) else { return };
+    let torques = tx40.torque(&[], Standstill::Automatic);
+    let inverse_dynamics = weighted(&torques).relative_error;
+    for closed_form in [false, true] {
+        let power = tx40.observe(Equations::Power { closed_form }, &tx40.settings());
+        let identified = weighted(&power);
+        assert_eq!(identified.method, Method::PimWls);
+        let reconstructed = relative_error(&torques, &identified.chi());
+        println!(
+            "closed form {closed_form}: power {:.4}, torques {reconstructed:.4}",
+            identified.relative_error
+        );
+        assert!(identified.relative_error < inverse_dynamics);
+        assert!(reconstructed > 3.0 * inverse_dynamics);
+    }
+}
+
+#[test]
+fn the_ur10e_is_predicted_on_other_motions() {
+    let Some(train) = recorded("ur10e/train.yaml", None) else { return };
+    let Some(test) = recorded("ur10e/test.yaml", Some(train.bandwidth)) else { return };
+    let fitted = weighted(&train.torque(&[], Standstill::Automatic));
+    let moving = relative_error(&test.torque(&[], Standstill::Automatic), &fitted.chi());
+    let every_row = relative_error(&test.torque(&[], Standstill::Keep), &fitted.chi());
+    println!("{:?}: moving rows {moving:.4}, all rows {every_row:.4}", train.bandwidth);
+    assert!(moving <= 0.042);
+    assert!(every_row <= 0.045);
+}
+
+#[test]
+fn the_panda_is_predicted_on_its_last_two_fifths() {
+    let Some(panda) = recorded("panda/recording.yaml", None) else { return };
+    let fitted = weighted(&panda.torque(&[[0.3, 12.54]], Standstill::Automatic));
+    let error = relative_error(&panda.torque(&[[12.54, 20.7]], Standstill::Automatic), &fitted.chi());
+    println!("{:?}: {error:.4}", panda.bandwidth);
+    assert!(error <= 0.013);
+}
+
+#[test]
+fn the_threads_do_not_change_a_digit() {
+    let Some(tx40) = recorded("tx40/recording.yaml", None) else { return };
+    let with = |threads| tx40.observe(Equations::Torque, &ObserveSettings { threads, ..tx40.settings() });
+    assert_eq!(with(1), with(2));
+}
