@@ -23,6 +23,17 @@ pub enum ModelError {
     },
 }
 
+/// One way to derive the equations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Variant {
+    /// Consecutive parallel axes are turned together.
+    pub merge: bool,
+    /// Sines and cosines of sums and differences are composed.
+    pub compose: bool,
+    /// How the regressor rows come about.
+    pub derivation: Derivation,
+}
+
 /// Operations of the functions of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModelCounts {
@@ -34,6 +45,13 @@ pub struct ModelCounts {
     pub idm: OperationCounts,
     /// Mass matrix and bias together.
     pub forward: OperationCounts,
+}
+
+impl ModelCounts {
+    /// What identification evaluates at every sample: h, dh and IDM.
+    fn weighted(self) -> usize {
+        self.energy.weighted() + self.power.weighted() + self.idm.weighted()
+    }
 }
 
 /// The equations of a robot in its base parameters.
@@ -56,30 +74,26 @@ pub struct Equations {
 impl Equations {
     /// Derives everything from the table; of the possible derivations the one with fewer operations is taken.
     pub fn derive(robot: &Robot, set: &BaseSet) -> Result<Self, ModelError> {
-        let mut best: Option<(usize, Equations)> = None;
-        for merge in [true, false] {
-            for derivation in [Derivation::ScrewsOutward, Derivation::WrenchesInward] {
-                let equations = Equations::derive_as(robot, set, merge, derivation)?;
-                let cost = equations.counts().idm.arithmetic();
-                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                    best = Some((cost, equations));
-                }
+        let first = Variant { merge: true, compose: true, derivation: Derivation::ScrewsOutward };
+        let others = [
+            Variant { compose: false, ..first },
+            Variant { merge: false, ..first },
+            Variant { derivation: Derivation::WrenchesInward, ..first },
+        ];
+        let mut best = Equations::derive_as(robot, set, first)?;
+        for variant in others {
+            let equations = Equations::derive_as(robot, set, variant)?;
+            if equations.counts().weighted() < best.counts().weighted() {
+                best = equations;
             }
         }
-        match best {
-            Some((_, equations)) => Ok(equations),
-            None => Equations::derive_as(robot, set, true, Derivation::ScrewsOutward),
-        }
+        Ok(best)
     }
 
-    pub(super) fn derive_as(
-        robot: &Robot,
-        set: &BaseSet,
-        merge: bool,
-        derivation: Derivation,
-    ) -> Result<Self, ModelError> {
+    pub(super) fn derive_as(robot: &Robot, set: &BaseSet, variant: Variant) -> Result<Self, ModelError> {
+        let Variant { merge, compose, derivation } = variant;
         let transmission = Transmission::new(&robot.drive)?;
-        let mut graph = Graph::new();
+        let mut graph = if compose { Graph::composing_angles() } else { Graph::new() };
         let g = &mut graph;
         let geometry = Geometry::new(g, robot, merge);
         let n = geometry.joint_frames.len();

@@ -13,7 +13,7 @@
 //!
 //! | | multiplications | additions | sine/cosine pairs |
 //! |---|---|---|---|
-//! | h | 15 | 4 | 3 |
+//! | h | 17 | 6 | 2 |
 //! | dh | 25 | 11 | 2 |
 //! | IDM | 16 | 14 | 2 |
 //! | M and N | 24 | 16 | 2 |
@@ -381,9 +381,9 @@ pub static PATTERN: Pattern = Pattern {
 pub static OPERATIONS: [Operations; 4] = [
     Operations {
         function: "h",
-        multiplications: 15,
-        additions: 4,
-        sine_cosine_pairs: 3,
+        multiplications: 17,
+        additions: 6,
+        sine_cosine_pairs: 2,
     },
     Operations {
         function: "dh",
@@ -409,7 +409,7 @@ pub fn energy<T: Number>(q: &[T; N], dq: &[T; N], h: &mut [T; NB]) {
     let k = T::constant;
     let [q1, q2] = *q;
     let [dq1, dq2] = *dq;
-    let ([s1, s12, s2], [c1, c12, c2]) = T::sin_cos_each([q1, q1 + q2, q2]);
+    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     // Link 1.
     let u1_11 = dq1 * dq1;
     h[0] = k(0.5) * u1_11;
@@ -426,11 +426,11 @@ pub fn energy<T: Number>(q: &[T; N], dq: &[T; N], h: &mut [T; NB]) {
     h[6] = k(0.5) * u2_11;
     let t1 = k(0.5) * dq1;
     let v2_y = c2 * t1;
-    let g2_x = k(9.81) * s12;
+    let g2_x = (a1_x * c2).add_product(a1_y, s2);
     h[7] = g2_x.add_product(w2_z, v2_y);
     let v2_x = s2 * t1;
-    let g2_y = k(9.81) * c12;
-    h[8] = g2_y.sub_product(w2_z, v2_x);
+    let g2_y = (a1_x * s2).sub_product(a1_y, c2);
+    h[8] = (-g2_y).sub_product(w2_z, v2_x);
     h[9] = k(0.5) * (dq2 * dq2);
     h[10] = k(0.0);
     h[11] = k(0.0);
@@ -454,16 +454,16 @@ pub fn power<T: Number>(q: &[T; N], dq: &[T; N], ddq: &[T; N], dh: &mut [T; NB])
     dh[4] = dq1 * dq1.sign();
     dh[5] = dq1;
     // Link 2.
-    let w2_z = dq1 + dq2;
     let dw2_z = ddq1 + ddq2;
-    dh[6] = dw2_z * w2_z;
+    let w2_z = dq1 + dq2;
+    dh[6] = w2_z * dw2_z;
     let t1 = k(0.5) * dq1;
     let v2_y = c2 * t1;
     let t2 = a1_y.add_product(k(0.5), ddq1);
     let v2_x = s2 * t1;
-    let b2_y = (t2 * c2).sub_product(a1_x, s2).sub_product(dq2, v2_x);
+    let b2_y = (c2 * t2).sub_product(a1_x, s2).sub_product(dq2, v2_x);
     dh[7] = (w2_z * b2_y).add_product(dw2_z, v2_y);
-    let b2_x = (t2 * s2).add_product(a1_x, c2).add_product(dq2, v2_y);
+    let b2_x = (s2 * t2).add_product(a1_x, c2).add_product(dq2, v2_y);
     dh[8] = (-w2_z * b2_x).sub_product(dw2_z, v2_x);
     dh[9] = ddq2 * dq2;
     dh[10] = dq2 * dq2;
@@ -492,9 +492,9 @@ pub fn idm<T: Number>(q: &[T; N], dq: &[T; N], ddq: &[T; N], idm: &mut [T; ENTRI
     let t1 = a1_y.add_product(k(0.5), ddq1);
     let u1_11 = dq1 * dq1;
     let t2 = a1_x.sub_product(k(0.5), u1_11);
-    let a2_y = (t2 * s2).sub_product(t1, c2);
+    let a2_y = (s2 * t2).sub_product(c2, t1);
     idm[10] = -a2_y;
-    let a2_x = (t2 * c2).add_product(t1, s2);
+    let a2_x = (c2 * t2).add_product(s2, t1);
     idm[11] = -a2_x;
     // Row 1, link 2.
     idm[6] = dw2_z;
@@ -538,8 +538,8 @@ pub fn mass_and_bias<T: Number>(
     let a1_x = k(9.81) * s1;
     let t2 = a1_x.sub_product(k(0.5), u1_11);
     let a1_y = k(9.81) * c1;
-    let a2_x = (t2 * c2).add_product(a1_y, s2);
-    let a2_y = (t2 * s2).sub_product(a1_y, c2);
+    let a2_x = (c2 * t2).add_product(a1_y, s2);
+    let a2_y = (s2 * t2).sub_product(a1_y, c2);
     let m2_z = (MX2 * a2_y).add_product(MY2, a2_x);
     bias[1] = -m2_z;
     let w2_z = dq1 + dq2;
