@@ -207,15 +207,14 @@ impl Graph {
     /// Sine and cosine of an angle in canonical form.
     fn variable_sin_cos(&mut self, bare: Angle) -> (Expr, Expr) {
         let known = self.angles.iter().position(|known| *known == bare);
-        if known.is_none() && self.compose_angles {
-            if let Some((a, b, sign)) = self.parts_of(&bare) {
-                let (sa, ca) = (self.intern(Node::Sine(a)), self.intern(Node::Cosine(a)));
-                let (sb, cb) = (self.intern(Node::Sine(b)).signed(sign < 0), self.intern(Node::Cosine(b)));
-                let (left, right) = (self.mul(sa, cb), self.mul(ca, sb));
-                let sine = self.add(left, right);
-                let (left, right) = (self.mul(ca, cb), self.mul(sa, sb));
-                return (sine, self.sub(left, right));
-            }
+        let parts = if known.is_none() && self.compose_angles { self.parts_of(&bare) } else { None };
+        if let Some((a, b, sign)) = parts {
+            let (sa, ca) = (self.intern(Node::Sine(a)), self.intern(Node::Cosine(a)));
+            let (sb, cb) = (self.intern(Node::Sine(b)).signed(sign < 0), self.intern(Node::Cosine(b)));
+            let (left, right) = (self.mul(sa, cb), self.mul(ca, sb));
+            let sine = self.add(left, right);
+            let (left, right) = (self.mul(ca, cb), self.mul(sa, sb));
+            return (sine, self.sub(left, right));
         }
         let at = known.unwrap_or_else(|| {
             self.angles.push(bare);
