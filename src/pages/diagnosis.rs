@@ -46,9 +46,8 @@ pub fn page(title: &str, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>, 
 fn errors(page: &mut Page, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>) {
     page.heading("Before and after");
     let held = &diagnosis.held_out;
-    let mut header = vec!["relative error of the torques", "before", "after"];
+    let header = ["relative error of the torques", "before", "after"];
     let joints: Vec<String> = (0..held.per_joint_before.len()).map(|j| format!("joint {}", j + 1)).collect();
-    header.truncate(3);
     let mut rows = vec![
         vec![
             "fitted motion".to_owned(),
@@ -58,7 +57,7 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>
         vec![format!("held back: {}", held.how), percent(held.before), percent(held.after)],
     ];
     if let Some(test) = kept_apart {
-        rows.push(vec![format!("kept apart: {}", test.name), percent(test.before.0), percent(test.after.0)]);
+        rows.push(vec![format!("kept apart, 25 Hz band: {}", test.name), percent(test.before.0), percent(test.after.0)]);
     }
     page.table(&header, &rows);
     let joint_rows: Vec<Vec<String>> =
@@ -118,9 +117,6 @@ fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
     let title = words.map_or(finding.effect.as_str(), |w| w.title);
     page.heading(&format!("{title} on {}", joint_words(&finding.joints)));
     page.paragraph(&finding.sentence);
-    if let Some(words) = words {
-        page.paragraph(words.what);
-    }
     if let Some(curve) = &finding.curve {
         page.plot(&revealing(curve));
     }
@@ -132,13 +128,13 @@ fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
     // One motion shows it; the others are there for who wants to look.
     let mut shown = diagnosis.series.iter().filter(|s| finding.joints.contains(&s.joint));
     if let Some(first) = shown.next() {
-        page.plot(&torques(first, finding));
+        page.plot(&torques(first, finding)).plot(&residuals(first, finding));
     }
     let others: Vec<&TorqueSeries> = shown.collect();
     if !others.is_empty() {
         page.details("The other motions and joints", |page| {
             for series in others {
-                page.plot(&torques(series, finding));
+                page.plot(&torques(series, finding)).plot(&residuals(series, finding));
             }
         });
     }
@@ -164,7 +160,7 @@ fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
             .iter()
             .map(|a| vec![format!("{} on {}", a.effect, joint_words(&a.joints)), a.why_not.clone()])
             .collect();
-        page.table(&["effect", "why not"], &rows);
+        page.table(&["effect", "<why not"], &rows);
     }
     if let Some(words) = words {
         page.note(&format!("Literature: {}.", words.source));
@@ -220,13 +216,35 @@ fn torques(series: &TorqueSeries, finding: &Finding) -> Plot {
     .with("measured", Role::Measured, SeriesKind::Line, curve(&series.measured))
     .with("model before", Role::Before, SeriesKind::Line, curve(&series.before))
     .with("model after", Role::After, SeriesKind::Line, curve(&series.after));
-    plot.bands = finding
+    plot.bands = windows(series, finding);
+    plot
+}
+
+fn residuals(series: &TorqueSeries, finding: &Finding) -> Plot {
+    let left = |model: &[f64]| -> Vec<(f64, f64)> {
+        let rest = series.measured.iter().zip(model).map(|(y, m)| y - m);
+        series.time.iter().copied().zip(rest).collect()
+    };
+    let mut plot = Plot::new(
+        format!("What the model leaves of it, {}", series.motion),
+        "time, s",
+        "residual, N.m or N",
+    )
+    .with("before", Role::Before, SeriesKind::Line, left(&series.before))
+    .with("after", Role::After, SeriesKind::Line, left(&series.after));
+    plot.height = 200.0;
+    plot.bands = windows(series, finding);
+    plot
+}
+
+/// The windows of a contact in this motion.
+fn windows(series: &TorqueSeries, finding: &Finding) -> Vec<Band> {
+    finding
         .contacts
         .iter()
         .filter(|w| w.motion == series.motion)
         .map(|w| Band { from: w.window[0], to: w.window[1] })
-        .collect();
-    plot
+        .collect()
 }
 
 fn mismatch(page: &mut Page, diagnosis: &Diagnosis) {
@@ -239,7 +257,7 @@ fn mismatch(page: &mut Page, diagnosis: &Diagnosis) {
         .iter()
         .map(|m| vec![format!("joint {}", m.joint), percent(m.share), m.where_.clone()])
         .collect();
-    page.table(&["joint", "share of what is unexplained", "where it lives"], &rows);
+    page.table(&["joint", "share of what is unexplained", "<where it lives"], &rows);
 }
 
 fn shifts(page: &mut Page, diagnosis: &Diagnosis) {

@@ -33,7 +33,7 @@ pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, Obse
     ));
     page.heading("Base parameters");
     page.table(
-        &["parameter", "value", "sigma", "sigma %", "sigma by blocks", "unit"],
+        &["parameter", "value", "sigma", "sigma %", "sigma by blocks", "<unit"],
         &parameters(identified),
     );
     page.note("sigma assumes errors that are independent from row to row; sigma by blocks does not.");
@@ -47,7 +47,7 @@ pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, Obse
         ));
     }
     page.details("What is regrouped into each base parameter", |page| {
-        page.table(&["parameter", "relation"], &relations(robot));
+        page.table(&["parameter", "<relation"], &relations(robot));
     });
     page.details("Rows used and left out", |page| {
         page.table(

@@ -76,17 +76,19 @@ impl Page {
         self
     }
 
-    /// A table; the first column holds names and is set to the left, the others hold numbers.
+    /// A table. The first column and those whose header starts with `<` hold words, the others numbers.
     pub fn table<S: AsRef<str>>(&mut self, header: &[S], rows: &[Vec<String>]) -> &mut Self {
         self.body.push_str("<div class=\"wide\"><table><thead><tr>");
-        for cell in header {
-            self.element("th", "th", cell.as_ref());
+        let words = |k: usize| k == 0 || header.get(k).is_some_and(|h| h.as_ref().starts_with('<'));
+        for (k, cell) in header.iter().enumerate() {
+            let open = if words(k) { "th class=\"words\"" } else { "th" };
+            self.element(open, "th", cell.as_ref().trim_start_matches('<'));
         }
         self.body.push_str("</tr></thead><tbody>");
         for row in rows {
             self.body.push_str("<tr>");
-            for cell in row {
-                self.element("td", "td", cell);
+            for (k, cell) in row.iter().enumerate() {
+                self.element(if words(k) { "td class=\"words\"" } else { "td" }, "td", cell);
             }
             self.body.push_str("</tr>");
         }

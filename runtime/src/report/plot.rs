@@ -6,10 +6,10 @@ use super::axis::Axis;
 use super::escape;
 
 const WIDTH: f64 = 720.0;
-const LEFT: f64 = 62.0;
+const LEFT: f64 = 72.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 10.0;
-const BOTTOM: f64 = 44.0;
+const BOTTOM: f64 = 48.0;
 
 /// More points than this in a line are thinned to their extremes per pixel: the picture stays the same.
 const MOST_POINTS: usize = 1400;
@@ -55,7 +55,7 @@ pub enum SeriesKind {
 /// One curve of a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
+    /// Its name in the legend; empty: it is not named there.
     pub label: String,
     /// What it stands for.
     pub role: Role,
@@ -123,7 +123,7 @@ impl Plot {
         out.push_str(&self.to_svg());
         if self.series.len() > 1 {
             out.push_str("<p class=\"legend\">");
-            for series in &self.series {
+            for series in self.series.iter().filter(|s| !s.label.is_empty()) {
                 let _ = write!(
                     out,
                     "<span class=\"key {}\">{}</span> ",
@@ -175,7 +175,7 @@ impl Plot {
             let _ = write!(
                 out,
                 "<path class=\"grid\" d=\"M{at:.1} {TOP}V{floor}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
-                floor + 15.0
+                floor + 17.0
             );
         }
         for (value, label) in y.ticks(5) {
