@@ -105,6 +105,18 @@ impl<'m> Plant<'m> {
         Self::build(model, chi.to_vec(), Vec::new(), None, Vec::new())
     }
 
+    /// [`Plant::new`] with torques of effects.
+    ///
+    /// # Errors
+    /// As [`Plant::new`].
+    pub fn with_torques(
+        model: &'m dyn Model,
+        chi: &[f64],
+        effects: Vec<Box<dyn ExtraTorque + 'm>>,
+    ) -> Result<Self, SimulationError> {
+        Self::build(model, chi.to_vec(), Vec::new(), None, effects)
+    }
+
     /// A robot from standard parameters chi_st, with elastic joints and effects. Rotors and friction of an
     /// elastic joint are on its motor side.
     ///
