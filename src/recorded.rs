@@ -6,7 +6,7 @@ use clap::Args;
 use dynid_runtime::estimation::observe::{ObserveError, ObserveSettings, Standstill};
 use dynid_runtime::estimation::{Bandwidth, choose_bandwidth};
 use dynid_runtime::recording::{Manifest, RecordingError, RowReport, Trajectory, load};
-use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare};
+use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare_all};
 
 use crate::failure::Failure;
 use crate::robots::{Dynamics, resolve};
@@ -142,21 +142,16 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
 pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Recorded, Failure> {
     let Measured { dynamics, title, trajectories, mut rows } = measured;
     let failure = |error: &SignalError| Failure::Data(in_recording(&options.recording, error));
-    let band = match options.sampling.band {
-        Some(band) => band,
-        None => choose_bandwidth(&trajectories).map_err(|error| failure(&error))?.band,
-    };
-    let mut motions: Vec<Motion> = Vec::new();
-    for trajectory in &trajectories {
-        match prepare(trajectory, &preparation(&options.sampling, band, trajectory)) {
-            Ok(motion) => motions.push(motion),
-            Err(error @ SignalError::TooShort { .. }) => rows.too_short.push(error.to_string()),
-            Err(error) => return Err(failure(&error)),
+    let (band, cutoff) = match options.sampling.band {
+        Some(band) => (band, cutoff_of(band, &trajectories)),
+        None => {
+            let chosen = choose_bandwidth(&trajectories).map_err(|error| failure(&error))?;
+            (chosen.band, Some(chosen.cutoff))
         }
-    }
-    if motions.is_empty() {
-        return Err(Failure::Data(format!("{}: {}", options.recording.display(), rows.too_short.join("; "))));
-    }
+    };
+    let preparation = Preparation { cutoff: options.sampling.cutoff.or(cutoff), ..Preparation::default() };
+    let (motions, too_short) = prepare_all(&trajectories, &preparation).map_err(|error| failure(&error))?;
+    rows.too_short = too_short.iter().map(SignalError::to_string).collect();
     let settings = options.sampling.settings(dynamics.model().robot().joints(), band);
     Ok(Recorded { dynamics, title, motions, rows, settings })
 }
@@ -187,15 +182,13 @@ fn cropped(trajectory: &Trajectory, [from, to]: [f64; 2]) -> Option<Trajectory> 
     })
 }
 
-/// The position filter that goes with a band at the trajectory's rate.
-fn preparation(sampling: &Sampling, band: f64, trajectory: &Trajectory) -> Preparation {
-    let rate = match (trajectory.time.first(), trajectory.time.last()) {
-        (Some(first), Some(last)) if last > first => (trajectory.time.len() - 1) as f64 / (last - first),
-        _ => 0.0,
+/// The position filter that goes with a band at the slowest trajectory's rate; `None` where no rate is known.
+fn cutoff_of(band: f64, trajectories: &[Trajectory]) -> Option<f64> {
+    let rate = |t: &Trajectory| match (t.time.first(), t.time.last()) {
+        (Some(first), Some(last)) if last > first => Some((t.time.len() - 1) as f64 / (last - first)),
+        _ => None,
     };
-    // A rate of zero is refused where the trajectory is laid on its grid.
-    let cutoff = (rate > 0.0).then(|| Bandwidth::cutoff_for(band, rate));
-    Preparation { cutoff: sampling.cutoff.or(cutoff), ..Preparation::default() }
+    trajectories.iter().filter_map(rate).min_by(f64::total_cmp).map(|rate| Bandwidth::cutoff_for(band, rate))
 }
 
 /// What the observation refuses, as the end of a command.

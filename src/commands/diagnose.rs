@@ -12,7 +12,7 @@ use super::validate::prediction;
 use crate::failure::Failure;
 use crate::output::{Bar, print, table, write, write_json};
 use crate::pages::diagnosis::{KeptApart, joint_words, page};
-use crate::recorded::{Measured, RecordingOptions, left_out_words, measure, prepared};
+use crate::recorded::{Measured, RecordingOptions, left_out_words, measure, read};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
@@ -35,6 +35,10 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: Option<PathBuf>,
 }
+
+/// Band in which models with effects are compared on other recordings unless another is asked for, Hz: that of the
+/// diagnosis' faster rows.
+const BAND: f64 = 25.0;
 
 /// Diagnoses, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -125,7 +129,7 @@ fn saved(
         condition_number: 0.0,
         rows_left_out: 0,
         equations: Vec::new(),
-        band: options.sampling.band.unwrap_or(25.0),
+        band: options.sampling.band.unwrap_or(BAND),
         warnings: Vec::new(),
         effects: if with_findings { diagnosis.terms() } else { Vec::new() },
     }
@@ -137,7 +141,9 @@ fn tested(
     standard: &Identified,
     improved: &Identified,
 ) -> Result<KeptApart, Failure> {
-    let recorded = prepared(measure(options)?, options)?;
+    let mut options = options.clone();
+    options.sampling.band = Some(standard.band);
+    let recorded = read(&options)?;
     let errors = |model: &Identified| prediction(&recorded, model, &options.recording).map(|p| p.errors);
     Ok(KeptApart { name: recorded.title.clone(), before: errors(standard)?, after: errors(improved)? })
 }

@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod demo;
 mod diagnose;
 mod excite;
 mod identify;
@@ -11,6 +12,8 @@ mod validate;
 pub(crate) use identify::cells as parameter_cells;
 
 use clap::{Parser, Subcommand};
+
+use crate::failure::Failure;
 use std::process::ExitCode;
 
 /// From a modified-DH table and a recording to a dynamic model you can trust.
@@ -23,6 +26,8 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Simulate a TX-40 that hides an effect, identify it, find the effect, and write a report
+    Demo(demo::Arguments),
     /// List the robots that have generated models
     Robots,
     /// Search motions that make a robot's parameters observable
@@ -41,20 +46,31 @@ enum Command {
 
 /// Runs the command line of this process and says how it went.
 pub fn run() -> ExitCode {
-    let outcome = match Cli::parse().command {
-        Command::Robots => robots::run(),
-        Command::Excite(arguments) => excite::run(&arguments),
-        Command::Identify(arguments) => identify::run(&arguments),
-        Command::Validate(arguments) => validate::run(&arguments),
-        Command::Diagnose(arguments) => diagnose::run(&arguments),
-        Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Show(arguments) => show::run(&arguments),
-    };
-    match outcome {
+    match execute(Cli::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("{failure}");
             failure.exit_code()
         }
     }
+}
+
+fn execute(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Demo(arguments) => demo::run(&arguments),
+        Command::Robots => robots::run(),
+        Command::Excite(arguments) => excite::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments),
+        Command::Identify(arguments) => identify::run(&arguments),
+        Command::Show(arguments) => show::run(&arguments),
+        Command::Validate(arguments) => validate::run(&arguments),
+    }
+}
+
+/// Runs a command given as words, without the name of the program.
+fn execute_words(words: &[&str]) -> Result<(), Failure> {
+    let line = std::iter::once("dynid").chain(words.iter().copied());
+    let cli = Cli::try_parse_from(line).map_err(|error| Failure::Input(error.to_string()))?;
+    execute(cli.command)
 }

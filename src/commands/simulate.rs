@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::estimation::Identified;
 use dynid_runtime::model::{Model, Robot};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, Identification, excite};
 use dynid_runtime::simulation::{
-    ElasticJoint, LoopSettings, Plant, Reference, Residue, Simulation, SimulationError, check_standard,
-    simulate,
+    ElasticJoint, LoopSettings, Plant, Reference, Residue, SimulatedEffects, Simulation, SimulationError,
+    check_standard, simulate,
 };
 
 use crate::failure::{Failure, file_failure};
@@ -67,8 +68,8 @@ pub(super) struct Arguments {
 enum Parameters {
     /// Standard parameters.
     Standard(Vec<f64>),
-    /// Base parameters of an identified model.
-    Base(Vec<f64>),
+    /// Base parameters of an identified model, and the effects that were found with them.
+    Base(Vec<f64>, Vec<EffectTerm>),
 }
 
 /// Simulates and writes.
@@ -81,9 +82,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let parameters = parameters(robot, saved.as_ref(), &arguments.robot)?;
     let chi = match &parameters {
         Parameters::Standard(standard) => robot.base_from_standard(standard),
-        Parameters::Base(chi) => chi.clone(),
+        Parameters::Base(chi, _) => chi.clone(),
     };
     let failed = |error: SimulationError| Failure::Input(error.to_string());
+    if let Parameters::Base(chi, terms) = &parameters {
+        for effect in SimulatedEffects::new(model, chi, terms).left_out {
+            print(&format!("{} is in the model, but is not simulated", effect.id()));
+        }
+    }
     let motions = planned(model, &chi, arguments)?;
     let bar = Bar::new("simulating");
     let mut runs: Vec<Simulation> = Vec::new();
@@ -118,7 +124,7 @@ fn parameters(robot: &Robot, saved: Option<&Identified>, name: &str) -> Result<P
         let chi = identified.chi(robot).map_err(|missing| {
             Failure::Input(format!("{name}: it has no {missing}: it was identified for another robot"))
         })?;
-        return Ok(Parameters::Base(chi));
+        return Ok(Parameters::Base(chi, identified.effects.clone()));
     }
     let Some(nominal) = &robot.nominal else {
         return Err(Failure::Input(SimulationError::NoNominal { robot: robot.name.to_string() }.to_string()));
@@ -167,8 +173,11 @@ fn plant<'m>(
     let elastic = arguments.elastic.iter().map(|text| elastic_joint(text)).collect::<Result<Vec<_>, _>>()?;
     let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
     match parameters {
-        Parameters::Base(chi) if !more => Plant::new(model, chi).map_err(failed),
-        Parameters::Base(_) => Err(Failure::Input(
+        Parameters::Base(chi, terms) if !more => {
+            let effects = SimulatedEffects::new(model, chi, terms);
+            Plant::with_torques(model, &effects.chi, effects.torques).map_err(failed)
+        }
+        Parameters::Base(..) => Err(Failure::Input(
             "--residue, --ripple and --elastic need standard parameters: simulate a robot with nominal values".to_owned(),
         )),
         Parameters::Standard(standard) => {

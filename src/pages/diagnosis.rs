@@ -57,7 +57,11 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>
         vec![format!("held back: {}", held.how), percent(held.before), percent(held.after)],
     ];
     if let Some(test) = kept_apart {
-        rows.push(vec![format!("kept apart, 25 Hz band: {}", test.name), percent(test.before.0), percent(test.after.0)]);
+        rows.push(vec![
+            format!("kept apart, 25 Hz band: {}", test.name),
+            percent(test.before.0),
+            percent(test.after.0),
+        ]);
     }
     page.table(&header, &rows);
     let joint_rows: Vec<Vec<String>> =
@@ -225,13 +229,10 @@ fn residuals(series: &TorqueSeries, finding: &Finding) -> Plot {
         let rest = series.measured.iter().zip(model).map(|(y, m)| y - m);
         series.time.iter().copied().zip(rest).collect()
     };
-    let mut plot = Plot::new(
-        format!("What the model leaves of it, {}", series.motion),
-        "time, s",
-        "residual, N.m or N",
-    )
-    .with("before", Role::Before, SeriesKind::Line, left(&series.before))
-    .with("after", Role::After, SeriesKind::Line, left(&series.after));
+    let mut plot =
+        Plot::new(format!("What the model leaves of it, {}", series.motion), "time, s", "residual, N.m or N")
+            .with("before", Role::Before, SeriesKind::Line, left(&series.before))
+            .with("after", Role::After, SeriesKind::Line, left(&series.after));
     plot.height = 200.0;
     plot.bands = windows(series, finding);
     plot

@@ -146,7 +146,7 @@ mod tests {
         };
         let frames = vec![
             row(None, 0.0, 0.0, 0.3),
-            row(Some(0), -1.5707963267948966, 0.1, 0.0),
+            row(Some(0), -std::f64::consts::FRAC_PI_2, 0.1, 0.0),
             row(Some(1), 0.0, 0.4, 0.05),
         ];
         let standard = standard_parameters(&frames, &[]);

@@ -36,9 +36,8 @@ impl SimulatedEffects {
 
     fn add_body(&mut self, robot: &Robot, frame: usize, inertial: &[f64]) {
         let mut body = vec![0.0; robot.standard.len()];
-        let of_frame = (0..body.len()).filter(|&k| {
-            robot.standard[k].frame == frame && robot.standard[k].kind <= ParameterKind::M
-        });
+        let of_frame = (0..body.len())
+            .filter(|&k| robot.standard[k].frame == frame && robot.standard[k].kind <= ParameterKind::M);
         for (k, value) in of_frame.zip(inertial) {
             body[k] = *value;
         }
@@ -99,8 +98,15 @@ impl EffectTorque {
         let load = at.load[self.joint];
         let [fv, fc, off] = self.friction;
         let friction = fv * dq + fc * sign;
-        let here =
-            At { time: at.time, q: at.q[self.joint], dq, sign, load, torque: load + friction + off, friction };
+        let here = At {
+            time: at.time,
+            q: at.q[self.joint],
+            dq,
+            sign,
+            load,
+            torque: load + friction + off,
+            friction,
+        };
         let mut columns = [0.0; MOST_COLUMNS];
         let count = self.law.amplitudes(&self.shape).min(MOST_COLUMNS);
         self.law.law(&self.scale, &self.shape, &here, self.memory, &mut columns[..count]);
