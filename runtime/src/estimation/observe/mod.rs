@@ -141,6 +141,9 @@ pub enum ObserveError {
         /// Joints of the robot.
         expected: usize,
     },
+    /// Observations that do not go together.
+    #[error("the observations have different unknowns or equations")]
+    OtherUnknowns,
     /// No row is left in any motion.
     #[error("no row can be used: {reason}")]
     NoRows {
@@ -203,6 +206,44 @@ pub struct Observation {
     pub samples: usize,
     /// The decimated rows, in the order of `groups`, where they were asked for.
     pub rows: Option<Vec<Rows>>,
+}
+
+impl Observation {
+    /// Takes in the motions of another observation of the same unknowns, behind its own: a recording that is too
+    /// long for the memory is read, observed and dropped piece by piece.
+    ///
+    /// # Errors
+    /// Another model, other equations, or other extra unknowns.
+    pub fn append(&mut self, mut other: Observation) -> Result<(), ObserveError> {
+        if other.equations != self.equations || other.unknowns != self.unknowns {
+            return Err(ObserveError::OtherUnknowns);
+        }
+        let before = self.trajectories.len();
+        let blocks = other.blocks.iter_mut().flat_map(|b| {
+            b.trajectory += before;
+            &mut b.equations
+        });
+        for equation in blocks.chain(&mut other.groups) {
+            equation.trajectory += before;
+        }
+        other.left_out.iter_mut().for_each(|l| l.trajectory += before);
+        other.rows.iter_mut().flatten().for_each(|r| r.trajectory += before);
+        self.trajectories.extend(other.trajectories);
+        self.rates.extend(other.rates);
+        self.bands.extend(other.bands);
+        self.groups.extend(other.groups);
+        self.blocks.extend(other.blocks);
+        self.left_out.extend(other.left_out);
+        self.samples += other.samples;
+        self.rows = match (self.rows.take(), other.rows) {
+            (Some(mut own), Some(theirs)) => {
+                own.extend(theirs);
+                Some(own)
+            }
+            _ => None,
+        };
+        Ok(())
+    }
 }
 
 /// A motion with its decimation.

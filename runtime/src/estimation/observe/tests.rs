@@ -246,3 +246,16 @@ fn what_cannot_be_observed_is_refused_with_the_reason() {
     let windows = ObserveSettings { windows: vec![[100.0, 200.0]], ..settings() };
     assert!(refuse(&[motion(4.0, 0.0)], &windows).contains("time windows"));
 }
+
+#[test]
+fn pieces_observed_one_by_one_are_the_motions_observed_together() {
+    let motions = [motion(4.0, 0.3), motion(2.5, 2.0), motion(3.0, 1.0)];
+    // Speeds of standstill are common to all motions only where all are seen at once.
+    let settings = ObserveSettings { standstill: Standstill::BelowShare(0.02), ..settings() };
+    let together = run(&motions, Equations::Torque, &settings);
+    let mut pieces = run(&motions[..1], Equations::Torque, &settings);
+    pieces.append(run(&motions[1..], Equations::Torque, &settings)).unwrap();
+    assert_eq!(pieces, together);
+    let power = run(&motions[..1], Equations::Power { closed_form: true }, &settings);
+    assert_eq!(pieces.append(power), Err(ObserveError::OtherUnknowns));
+}

@@ -12,8 +12,11 @@ use crate::estimation::{BLOCK_ROWS, Factor};
 
 /// Shortest block of time, s: longer than the residuals of a robot remember.
 const BLOCK_SECONDS: f64 = 0.5;
-/// Most blocks of one trajectory.
+/// Most blocks of one trajectory, and about as many as there may be of all: their factors are kept.
 const MAX_BLOCKS: usize = 64;
+const ALL_BLOCKS: usize = 256;
+/// Fewest blocks that a trajectory is cut into, if it is long enough.
+const FEW_BLOCKS: usize = 4;
 /// A piece of work is at least this many filter lengths long: its first filter length is evaluated twice.
 const CHUNK_WINDOWS: usize = 16;
 
@@ -31,7 +34,8 @@ pub(super) fn run(
     settings: &ObserveSettings,
     progress: Option<Progress<'_>>,
 ) -> (Vec<TimeBlock>, Option<Vec<Rows>>) {
-    let chunks: Vec<Chunk> = prepared.iter().enumerate().flat_map(|(k, p)| chunks_of(k, p)).collect();
+    let most = (ALL_BLOCKS / prepared.len().max(1)).clamp(FEW_BLOCKS, MAX_BLOCKS);
+    let chunks: Vec<Chunk> = prepared.iter().enumerate().flat_map(|(k, p)| chunks_of(k, p, most)).collect();
     let total: usize = chunks.iter().map(|c| rows_of(c).len() * prepared[c.trajectory].grid.step).sum();
     let done = AtomicUsize::new(0);
     let results = in_parallel(chunks.len(), settings.threads, |c| {
@@ -88,11 +92,11 @@ fn rows_of(chunk: &Chunk) -> Range<usize> {
     start..end
 }
 
-fn chunks_of(trajectory: usize, p: &Prepared<'_>) -> Vec<Chunk> {
+fn chunks_of(trajectory: usize, p: &Prepared<'_>, most: usize) -> Vec<Chunk> {
     let count = p.grid.count;
     let row_rate = p.motion.rate / p.grid.step as f64;
     let shortest = (BLOCK_SECONDS * row_rate).ceil() as usize;
-    let block = shortest.max(count.div_ceil(MAX_BLOCKS)).max(1);
+    let block = shortest.max(count.div_ceil(most)).max(1);
     let window_rows = p.decimator.taps().len().div_ceil(p.grid.step);
     let chunk = (CHUNK_WINDOWS * window_rows).div_ceil(block).max(1);
     let blocks: Vec<Range<usize>> =
