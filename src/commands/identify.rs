@@ -44,6 +44,12 @@ pub(super) struct Arguments {
 
 /// Identifies, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.r_sigma.is_nan() || arguments.r_sigma <= 1.0 {
+        return Err(Failure::Input(format!(
+            "--r-sigma {}: it must be above 1; 10 to 30 is usual",
+            arguments.r_sigma
+        )));
+    }
     let recorded = read(&arguments.recording)?;
     let (identified, estimate) = identify(&recorded, arguments)?;
     if arguments.json.as_deref() != Some(Path::new("-")) {

@@ -170,6 +170,15 @@ struct RawTime {
     rate: Option<f64>,
 }
 
+/// A message without the length of what it quotes.
+fn shortened(message: &str) -> String {
+    const MOST: usize = 300;
+    match message.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{} ...", &message[..end]),
+        None => message.to_owned(),
+    }
+}
+
 impl Manifest {
     /// Reads a manifest file.
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
@@ -193,7 +202,14 @@ impl Manifest {
             let (line, column) = e.location().map_or((1, 1), |l| (l.line(), l.column()));
             let message = e.to_string();
             // The place is told once, in front.
-            let message = message.split(" at line ").next().unwrap_or_default().to_string();
+            let message = message.split(" at line ").next().unwrap_or_default();
+            // A file that is not a mapping at all is quoted whole by the parser.
+            let message = if message.ends_with("expected struct Raw") {
+                "this is not a recording YAML: it needs the keys robot, time, position, torque and trajectories"
+                    .to_owned()
+            } else {
+                shortened(message)
+            };
             RecordingError::Manifest { file: file.clone(), line, column, message }
         })?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();

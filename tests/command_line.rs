@@ -1,0 +1,207 @@
+//! The command line as a newcomer and as another program meet it: exit status, words, JSON.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Runs the command in an own folder that is removed afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("dynid-test-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn write(&self, name: &str, text: &str) -> &Self {
+        std::fs::write(self.0.join(name), text).unwrap();
+        self
+    }
+
+    fn run(&self, words: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_dynid")).args(words).current_dir(&self.0).output().unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn error_of(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn words_of(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+const MANIFEST: &str = "\
+robot: planar_2r
+side: joint
+layout: {header: true, delimiter: \",\"}
+time: {column: t, unit: s}
+position: {columns: [q1, q2], unit: rad}
+torque: {columns: [u1, u2], unit: N.m}
+trajectories:
+  - {file: motion.csv}
+";
+
+/// A planar arm that moves, with torques that follow no law.
+fn moving(rows: usize) -> String {
+    let mut text = String::from("t,q1,q2,u1,u2\n");
+    for k in 0..rows {
+        let t = k as f64 * 0.01;
+        let (a, b) = ((2.0 * t).sin(), (3.1 * t).cos());
+        text.push_str(&format!("{t},{a},{b},{},{}\n", 3.0 * a - b, 0.5 * b + 0.1 * a));
+    }
+    text
+}
+
+fn assert_refused(output: &Output, status: i32, what: &[&str]) {
+    let error = error_of(output);
+    assert_eq!(output.status.code(), Some(status), "{error}");
+    for part in what {
+        assert!(error.contains(part), "'{part}' is not in: {error}");
+    }
+    assert!(!error.contains("panicked"), "{error}");
+}
+
+#[test]
+fn wrong_input_ends_with_status_2_and_says_where() {
+    let folder = Folder::new("wrong");
+    folder.write("motion.csv", &moving(800)).write("recording.yaml", MANIFEST);
+    folder.write("column.yaml", &MANIFEST.replace("u1", "zz"));
+    folder.write("robot.yaml", &MANIFEST.replace("planar_2r", "planar_3r"));
+    folder.write("joints.yaml", &MANIFEST.replace("planar_2r", "tx40"));
+    folder.write("key.yaml", &MANIFEST.replace("side:", "sides:"));
+    folder.write("bytes.yaml", "\u{1}\u{2}");
+    assert_refused(&folder.run(&["identify", "none.yaml"]), 2, &["none.yaml"]);
+    assert_refused(&folder.run(&["identify", "column.yaml"]), 2, &["motion.csv:1", "`zz`", "q1"]);
+    assert_refused(&folder.run(&["identify", "robot.yaml"]), 2, &["planar_3r", "planar_2r"]);
+    assert_refused(&folder.run(&["identify", "joints.yaml"]), 2, &["joints.yaml:5", "6 joints"]);
+    assert_refused(&folder.run(&["identify", "key.yaml"]), 2, &["key.yaml:2", "sides"]);
+    assert_refused(&folder.run(&["identify", "motion.csv"]), 2, &["not a recording YAML"]);
+    assert_refused(&folder.run(&["identify", "recording.yaml", "--from", "3", "--to", "2"]), 2, &["--from"]);
+    assert_refused(&folder.run(&["identify", "recording.yaml", "--band", "nan"]), 2, &["band"]);
+    assert_refused(
+        &folder.run(&["validate", "recording.yaml", "recording.yaml"]),
+        2,
+        &["recording.yaml:1:1"],
+    );
+    assert_refused(&folder.run(&["show", "nobody"]), 2, &["nobody", "tx40"]);
+    assert_refused(&folder.run(&["show", "bytes.yaml"]), 2, &["bytes.yaml"]);
+}
+
+#[test]
+fn data_that_cannot_support_an_answer_end_with_status_1_and_say_why() {
+    let folder = Folder::new("data");
+    folder.write("recording.yaml", MANIFEST);
+    folder.write("motion.csv", "t,q1,q2,u1,u2\n");
+    assert_refused(&folder.run(&["identify", "recording.yaml"]), 1, &["motion.csv", "no rows"]);
+    folder.write("motion.csv", &moving(3));
+    assert_refused(&folder.run(&["identify", "recording.yaml"]), 1, &["3 samples"]);
+    let still: String = (0..900).map(|k| format!("{},0.3,0.4,1,1\n", k as f64 * 0.01)).collect();
+    folder.write("motion.csv", &format!("t,q1,q2,u1,u2\n{still}"));
+    assert_refused(&folder.run(&["identify", "recording.yaml"]), 1, &["no joint moves"]);
+    assert_refused(&folder.run(&["diagnose", "recording.yaml"]), 1, &["stands still"]);
+    let not_a_number: String = (0..900).map(|k| format!("{},NaN,0.4,1,1\n", k as f64 * 0.01)).collect();
+    folder.write("motion.csv", &format!("t,q1,q2,u1,u2\n{not_a_number}"));
+    assert_refused(&folder.run(&["identify", "recording.yaml"]), 1, &["not finite", "motion.csv:2"]);
+}
+
+#[test]
+fn every_mistake_of_a_robot_yaml_is_named_at_once_with_line_and_column() {
+    let folder = Folder::new("robot");
+    folder.write(
+        "arm.yaml",
+        "name: arm\ngravity: [0, 0, .nan]\nframes:\n  - {j: 1, sigma: 7, alpha: 0, d: 0, theta: q1, r: 0}\n  \
+         - {j: 2, sigma: 0, alpha: 0, d: width, theta: q2, r: 0}\ncolour: red\n",
+    );
+    let output = folder.run(&["show", "./arm.yaml"]);
+    assert_refused(
+        &output,
+        2,
+        &["arm.yaml:2:", "arm.yaml:4:", "arm.yaml:5:", "arm.yaml:6:", "width", "colour"],
+    );
+}
+
+#[test]
+fn a_robot_given_by_path_and_the_generated_one_identify_the_same_parameters() {
+    let folder = Folder::new("path");
+    folder.write("motion.csv", &moving(900)).write("recording.yaml", MANIFEST);
+    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("robots/planar_2r.yaml");
+    let run = |more: &[&str]| -> serde_json::Value {
+        let mut words = vec!["identify", "recording.yaml", "--json", "-"];
+        words.extend(more);
+        let output = folder.run(&words);
+        assert!(output.status.success(), "{}", error_of(&output));
+        serde_json::from_str(&words_of(&output)).unwrap()
+    };
+    let (generated, recursive) = (run(&[]), run(&["--robot", robots.to_str().unwrap()]));
+    let values = |value: &serde_json::Value| -> Vec<(String, f64)> {
+        let parameters = value["base_parameters"].as_array().unwrap();
+        parameters.iter().map(|p| (p["name"].to_string(), p["value"].as_f64().unwrap())).collect()
+    };
+    let (generated, recursive) = (values(&generated), values(&recursive));
+    assert!(!generated.is_empty() && generated.len() == recursive.len());
+    for ((name, a), (other, b)) in generated.iter().zip(&recursive) {
+        assert_eq!(name, other);
+        approx::assert_relative_eq!(a, b, epsilon = 1e-9, max_relative = 1e-7);
+    }
+}
+
+#[test]
+fn identify_writes_the_json_of_the_contract_and_a_model_that_validate_reads() {
+    let folder = Folder::new("contract");
+    folder.write("motion.csv", &moving(900)).write("recording.yaml", MANIFEST);
+    let output = folder.run(&[
+        "identify",
+        "recording.yaml",
+        "--json",
+        "id.json",
+        "--out",
+        "m.json",
+        "--report",
+        "r.html",
+    ]);
+    assert!(output.status.success(), "{}", error_of(&output));
+    let text = std::fs::read_to_string(folder.0.join("id.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["robot"], "planar_2r");
+    assert_eq!(json["method"], "idim-wls");
+    assert_eq!(json["samples"], 900);
+    assert_eq!(json["per_joint"].as_array().unwrap().len(), 2);
+    for key in ["relative_error", "condition_number", "rows_left_out"] {
+        assert!(json[key].is_number(), "{key}");
+    }
+    for key in ["name", "value", "sigma", "relative_sigma_percent", "unit"] {
+        assert!(!json["base_parameters"][0][key].is_null(), "{key}");
+    }
+    let validated = folder.run(&["validate", "m.json", "recording.yaml", "--json", "-"]);
+    let again: serde_json::Value = serde_json::from_str(&words_of(&validated)).unwrap();
+    approx::assert_relative_eq!(
+        again["relative_error"].as_f64().unwrap(),
+        json["relative_error"].as_f64().unwrap(),
+        max_relative = 1e-9
+    );
+    let page = std::fs::read_to_string(folder.0.join("r.html")).unwrap();
+    assert!(page.contains("<svg"));
+    assert!(!page.contains("src=") && !page.contains("href="), "the page needs nothing from elsewhere");
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    use std::process::Stdio;
+    let mut child = Command::new(env!("CARGO_BIN_EXE_dynid"))
+        .args(["show", "tx40", "--base"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", error_of(&output));
+}
