@@ -30,6 +30,8 @@ pub struct Signature<'a> {
     pub doc: &'a str,
     /// Arguments: name, and length as a constant of the module.
     pub arguments: &'a [(&'a str, &'a str)],
+    /// Letters of names that belong to other functions: `dw` is no part of an energy.
+    pub foreign: &'a [&'a str],
     /// Results: name and length.
     pub results: &'a [(&'a str, &'a str)],
 }
@@ -51,7 +53,7 @@ pub fn function(
 ) -> TokenStream {
     let values: Vec<Expr> = outputs.iter().map(|o| o.value).collect();
     let order = schedule(graph, &values);
-    let program = Program::new(graph, inputs, &values, &order);
+    let program = Program::new(graph, inputs, &values, &order, signature.foreign);
     let statements = statements(graph, inputs, &program, signature, outputs, &order);
     let parts = cut(statements);
     let head = prologue(graph, inputs, &program, &values);

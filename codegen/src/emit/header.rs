@@ -62,7 +62,11 @@ fn row(frame: &Frame) -> String {
             (false, _) => constant,
             (true, "0") => format!("q{}", frame.j),
             (true, _) => match constant.strip_prefix('-') {
-                Some(rest) => format!("q{} - {rest}", frame.j),
+                Some(rest) => {
+                    let inner = rest.strip_prefix('(').and_then(|r| r.strip_suffix(')')).unwrap_or(rest);
+                    let bare = if inner.contains(['+', '-', '(']) { rest } else { inner };
+                    format!("q{} - {bare}", frame.j)
+                }
                 None => format!("q{} + {constant}", frame.j),
             },
         }

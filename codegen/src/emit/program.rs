@@ -81,7 +81,16 @@ pub struct Program<'a> {
 
 impl<'a> Program<'a> {
     /// Decides which operations get a name: those with a name of their own and those used more than once.
-    pub fn new(graph: &'a Graph, inputs: &'a InputNames, outputs: &[Expr], order: &[Vec<usize>]) -> Self {
+    ///
+    /// A name whose letters are in `foreign` belongs to a quantity that the function is not about and that happens to
+    /// be the same expression; it would mislead.
+    pub fn new(
+        graph: &'a Graph,
+        inputs: &'a InputNames,
+        outputs: &[Expr],
+        order: &[Vec<usize>],
+        foreign: &[&str],
+    ) -> Self {
         let uses = graph.uses(outputs);
         let mut taken: HashSet<String> = HashSet::new();
         let mut unique = |name: String| {
@@ -97,7 +106,10 @@ impl<'a> Program<'a> {
         let mut variables = vec![None; graph.len()];
         let mut temporaries = 0;
         for &node in order.iter().flatten() {
-            let name = match graph.name_of(node) {
+            let letters =
+                |name: &str| name.split(|c: char| c.is_ascii_digit()).next().unwrap_or("").to_owned();
+            let own = graph.name_of(node).filter(|name| !foreign.contains(&letters(name).as_str()));
+            let name = match own {
                 Some(name) => unique(name.to_owned()),
                 None if uses[node] > 1 => {
                     temporaries += 1;

@@ -14,4 +14,6 @@ pub use geometry::{Geometry, Link, Rotation};
 pub use model::{Equations, ModelCounts, ModelError};
 
 #[cfg(test)]
+mod random_tables;
+#[cfg(test)]
 mod tests;

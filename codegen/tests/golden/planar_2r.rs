@@ -411,25 +411,23 @@ pub fn energy<T: Number>(q: &[T; N], dq: &[T; N], h: &mut [T; NB]) {
     let [dq1, dq2] = *dq;
     let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     // Link 1.
-    let u1_11 = dq1 * dq1;
-    h[0] = k(0.5) * u1_11;
-    let a1_x = k(9.81) * s1;
-    h[1] = a1_x;
-    let a1_y = k(9.81) * c1;
-    h[2] = a1_y;
+    h[0] = k(0.5) * (dq1 * dq1);
+    let t1 = k(9.81) * s1;
+    h[1] = t1;
+    let t2 = k(9.81) * c1;
+    h[2] = t2;
     h[3] = k(0.0);
     h[4] = k(0.0);
     h[5] = k(0.0);
     // Link 2.
     let w2_z = dq1 + dq2;
-    let u2_11 = w2_z * w2_z;
-    h[6] = k(0.5) * u2_11;
-    let t1 = k(0.5) * dq1;
-    let v2_y = c2 * t1;
-    let g2_x = (a1_x * c2).add_product(a1_y, s2);
+    h[6] = k(0.5) * (w2_z * w2_z);
+    let t3 = k(0.5) * dq1;
+    let v2_y = c2 * t3;
+    let g2_x = (t1 * c2).add_product(t2, s2);
     h[7] = g2_x.add_product(w2_z, v2_y);
-    let v2_x = s2 * t1;
-    let g2_y = (a1_x * s2).sub_product(a1_y, c2);
+    let v2_x = s2 * t3;
+    let g2_y = (t1 * s2).sub_product(t2, c2);
     h[8] = (-g2_y).sub_product(w2_z, v2_x);
     h[9] = k(0.5) * (dq2 * dq2);
     h[10] = k(0.0);
@@ -449,8 +447,7 @@ pub fn power<T: Number>(q: &[T; N], dq: &[T; N], ddq: &[T; N], dh: &mut [T; NB])
     dh[1] = dq1 * a1_y;
     let a1_x = k(9.81) * s1;
     dh[2] = -dq1 * a1_x;
-    let u1_11 = dq1 * dq1;
-    dh[3] = u1_11;
+    dh[3] = dq1 * dq1;
     dh[4] = dq1 * dq1.sign();
     dh[5] = dq1;
     // Link 2.
