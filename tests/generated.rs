@@ -190,13 +190,9 @@ fn blocks_give_what_single_samples_give() {
             let signal = |s: usize| -> Vec<Vec<f64>> {
                 (0..n).map(|j| states.iter().map(|state| state[s][j]).collect()).collect()
             };
-            let (q, dq, ddq) = (signal(0), signal(1), signal(2));
-            let (qs, dqs, ddqs): (Vec<&[f64]>, Vec<&[f64]>, Vec<&[f64]>) = (
-                q.iter().map(Vec::as_slice).collect(),
-                dq.iter().map(Vec::as_slice).collect(),
-                ddq.iter().map(Vec::as_slice).collect(),
-            );
-            let block = States { q: &qs, dq: &dqs, ddq: &ddqs };
+            let signals = [signal(0), signal(1), signal(2)];
+            let views = signals.each_ref().map(|s| s.iter().map(Vec::as_slice).collect::<Vec<_>>());
+            let block = States { q: &views[0], dq: &views[1], ddq: &views[2] };
             let stride = samples + 2;
             let check = |count: usize,
                          write: &dyn Fn(&mut [f64]),
