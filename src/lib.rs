@@ -10,5 +10,6 @@ pub mod models;
 pub mod motions;
 pub mod output;
 pub mod pages;
+pub mod paper_tables;
 pub mod recorded;
 pub mod robots;

@@ -4,6 +4,7 @@ mod demo;
 mod diagnose;
 mod excite;
 mod identify;
+mod paper;
 mod robots;
 mod show;
 mod simulate;
@@ -38,6 +39,8 @@ enum Command {
     Validate(validate::Arguments),
     /// Find out which physics is missing, where, and whether adding it helps on motion that was held back
     Diagnose(diagnose::Arguments),
+    /// Tables II, III and IV of the power-model paper, ours beside theirs
+    Paper(paper::Arguments),
     /// Simulate a robot in closed loop and write a recording
     Simulate(simulate::Arguments),
     /// Show a robot: its table, its base parameters, its operation counts
@@ -60,6 +63,7 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Robots => robots::run(),
         Command::Excite(arguments) => excite::run(&arguments),
+        Command::Paper(arguments) => paper::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),

@@ -56,8 +56,8 @@ impl Default for Campaign {
     fn default() -> Self {
         Self {
             rate: 5000.0,
-            single: points(14),
-            sets: points(8),
+            single: Self::points(14),
+            sets: Self::points(12),
             starts: 1,
             evaluations: 200,
             single_evaluations: 0,
@@ -66,11 +66,6 @@ impl Default for Campaign {
             seed: 1,
         }
     }
-}
-
-/// Point-to-point motions with trapezoidal acceleration, as industrial controllers make them.
-fn points(points: usize) -> MotionKind {
-    MotionKind::PointToPoint { points, profile: Profile::TrapezoidalAcceleration, pause: 0.1 }
 }
 
 /// The planned motions of a campaign.
@@ -85,6 +80,11 @@ pub struct Motions {
 }
 
 impl Campaign {
+    /// Point-to-point motions with trapezoidal acceleration, as industrial controllers make them.
+    pub fn points(points: usize) -> MotionKind {
+        MotionKind::PointToPoint { points, profile: Profile::TrapezoidalAcceleration, pause: 0.1 }
+    }
+
     /// Searches the motions: the single one for the IDIM, the sets for the PIM.
     ///
     /// # Errors

@@ -85,6 +85,15 @@ pub struct CaseResult {
     pub per_joint: Vec<f64>,
 }
 
+impl CaseResult {
+    /// Parameters of the whole model, before any is cancelled, whose relative standard deviation is at most
+    /// `percent`.
+    pub fn known_to(&self, percent: f64) -> usize {
+        let known = |sigma: Option<f64>| sigma.is_some_and(|s| s <= percent);
+        self.estimate.parameters.iter().filter(|p| known(p.relative_sigma_percent)).count()
+    }
+}
+
 /// Runs the cases. `single` is the motion (or motions) with all joints moving; without `sets` only Cases 1, 3 and 5
 /// are run. Torques are reconstructed on `single` for every case.
 ///
