@@ -37,6 +37,8 @@ pub(super) struct Candidate {
     pub trials: Vec<Trial>,
     /// The amplitude, where the effect's law leaves none free.
     pub fixed: Option<f64>,
+    /// Whether a negative amplitude is something else.
+    pub only_positive: bool,
 }
 
 /// Columns of an effect on the rows of a design. Motions of a baseline are left at zero where `change` is set.
@@ -161,10 +163,10 @@ pub(super) fn proposals(
         }
         match effect.form() {
             Form::Joint(law) => {
-                for j in 0..n {
+                for (j, seen) in orders.iter().enumerate() {
                     let mut shapes = law.shapes(&context.scales[j]);
                     if effect == EffectKind::TorqueRipple {
-                        shapes.extend(orders[j].iter().map(|&o| vec![o]));
+                        shapes.extend(seen.iter().map(|&o| vec![o]));
                     }
                     list.push((effect, Place::Joint(j), shapes));
                 }
@@ -255,5 +257,6 @@ pub(super) fn make(
         _ => (0..design.joints).collect(),
     };
     let fixed = matches!(effect.form(), Form::Compliance(_)).then_some(1.0);
-    Candidate { effect, place, own, trials, fixed }
+    let only_positive = matches!(effect.form(), Form::Joint(law) if law.only_positive());
+    Candidate { effect, place, own, trials, fixed, only_positive }
 }

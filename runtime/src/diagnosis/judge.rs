@@ -85,8 +85,8 @@ fn own_part(design: &Design, fit: &Fit, sigma: &[f64], trial: &Trial, train: &[b
 
 impl Own {
     /// Amplitudes and in-sample gain.
-    fn solve(&self, fixed: Option<f64>) -> Option<(DVector<f64>, f64)> {
-        if let Some(value) = fixed {
+    fn solve(&self, candidate: &Candidate) -> Option<(DVector<f64>, f64)> {
+        if let Some(value) = candidate.fixed {
             let a = DVector::from_element(self.b.len(), value);
             let gain = 2.0 * a.dot(&self.b) - a.dot(&(&self.s * &a));
             return Some((a, gain));
@@ -98,9 +98,34 @@ impl Own {
             self.s[(i, j)] * scale[i] * scale[j] + if i == j { 1e-7 } else { 0.0 }
         });
         let a = m.cholesky()?.solve(&self.b.component_mul(&scale)).component_mul(&scale);
+        if candidate.only_positive && a.iter().any(|x| *x < 0.0) {
+            return None;
+        }
         let gain = 2.0 * a.dot(&self.b) - a.dot(&(&self.s * &a));
         Some((a, gain))
     }
+}
+
+/// In-sample gain of a candidate's first shape over all motion; negative infinity where it has none.
+pub(super) fn whole_gain(design: &Design, fit: &Fit, sigma: &[f64], candidate: &Candidate) -> f64 {
+    let everything = vec![true; design.segments.len()];
+    candidate
+        .trials
+        .first()
+        .and_then(|t| own_part(design, fit, sigma, t, &everything))
+        .and_then(|own| own.solve(candidate))
+        .map_or(f64::NEG_INFINITY, |(_, gain)| gain)
+}
+
+/// The shape with the largest in-sample gain over all motion, however small.
+pub(super) fn best_trial(design: &Design, fit: &Fit, sigma: &[f64], candidate: &Candidate) -> Option<usize> {
+    let everything = vec![true; design.segments.len()];
+    let gains = candidate.trials.iter().map(|t| {
+        own_part(design, fit, sigma, t, &everything)
+            .and_then(|own| own.solve(candidate))
+            .map_or(f64::NEG_INFINITY, |(_, gain)| gain)
+    });
+    gains.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
 }
 
 /// Judges a candidate: the best shape is chosen anew on each fold's own training motion.
@@ -116,7 +141,7 @@ pub(super) fn judge(
         let mut best: Option<(f64, usize, DVector<f64>, Own)> = None;
         for (k, trial) in candidate.trials.iter().enumerate() {
             let Some(own) = own_part(design, fit, sigma, trial, train) else { continue };
-            let Some((a, gain)) = own.solve(candidate.fixed) else { continue };
+            let Some((a, gain)) = own.solve(candidate) else { continue };
             if best.as_ref().is_none_or(|b| gain > b.0) {
                 best = Some((gain, k, a, own));
             }
@@ -134,9 +159,14 @@ pub(super) fn judge(
         // Where only one motion is there, refitting all standard parameters to a part of it would drown every
         // candidate in their extrapolation: the candidate's own part is then taken over the whole motion, and only
         // its amplitude is fitted to the rest.
-        let (k, a, x) = if single {
+        // A law without free amplitudes has nothing to fit but its shape, which needs all of the motion.
+        let (k, a, x) = if candidate.fixed.is_some() && !single {
+            let own = own_part(design, &fold.fit, sigma, &candidate.trials[trial], &fold.train)?;
+            let (a, _) = own.solve(candidate)?;
+            (trial, a, own.x)
+        } else if single {
             let own = rest_of_motion(design, whole, sigma, &candidate.trials[trial], &whole_own, &fold.train);
-            let (a, _) = own.solve(candidate.fixed)?;
+            let (a, _) = own.solve(candidate)?;
             (trial, a, whole_own.x.clone())
         } else {
             let (_, k, a, own) = best(&fold.fit, &fold.train)?;
@@ -262,7 +292,7 @@ pub(super) fn significance(
         let Some(own) = own_part(design, fit, sigma, trial, train) else { return 0.0 };
         let fitted =
             if single { rest_of_motion(design, whole, sigma, trial, &own, &fold.train) } else { own };
-        let Some((a, _)) = fitted.solve(candidate.fixed) else { return 0.0 };
+        let Some((a, _)) = fitted.solve(candidate) else { return 0.0 };
         let d = -(&fitted.x * &a);
         for (j, &s) in sigma.iter().enumerate() {
             for g in (0..design.segments.len()).filter(|&g| fold.test[g]) {

@@ -8,6 +8,11 @@
 //!    parameters, and judged on motion that was held back; the best that holds becomes part of the model; then again.
 //! 4. What was accepted is reconsidered, pruned and explained.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "joints, segments and matrix entries are numbered as in the equations"
+)]
+
 mod candidate;
 mod contact_search;
 mod context;
@@ -89,9 +94,12 @@ fn examine(
     let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
     let chunks = if trajectories.len() == 1 && !change { STRETCHES } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
+    // The narrower window needs less margin to a standstill.
+    let slow_limits = slowest.clone();
+    let fast_limits: Vec<f64> = slowest.iter().map(|v| v / 1.5).collect();
     let plan = |half: f64, excluded| Plan {
         half,
-        slowest: &slowest,
+        slowest: if half < settings.slow_window { &fast_limits } else { &slow_limits },
         directions: &forms,
         chunks,
         block: settings.block,
@@ -141,6 +149,16 @@ fn examine(
     let diagnosis = explain::explain(model, search, &bare, contacts.as_ref(), delay, settings)?;
     progress.at(1.0, "done");
     Ok(diagnosis)
+}
+
+/// Speeds below which a joint counts as standing still in a recording, rad/s or m/s.
+pub fn slowest_speeds(
+    model: &dyn Model,
+    trajectories: &[Trajectory],
+    settings: &Settings,
+) -> Result<Vec<f64>, DiagnosisError> {
+    let signals = prepare_all(&[], trajectories, 0.0)?;
+    Ok(top_speeds(&signals, model.robot().joints()).iter().map(|v| settings.standstill * v).collect())
 }
 
 /// Baseline first, then the recording that is diagnosed.

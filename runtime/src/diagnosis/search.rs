@@ -7,7 +7,7 @@ use super::candidate::{Candidate, Pace, Trial, build, columns, make, pace, propo
 use super::context::Context;
 use super::design::Design;
 use super::fit::{Fit, fit_weighted};
-use super::judge::{Fold, Verdict, folds, judge, significance, single_motion};
+use super::judge::{Fold, Verdict, best_trial, folds, judge, significance, single_motion, whole_gain};
 use super::outcome::OrderSpectrum;
 use super::settings::{Progress, Settings};
 use super::spectrum::{order_spectrum, peaks};
@@ -162,8 +162,52 @@ impl<'c, 'a> Search<'c, 'a> {
             progress.at(0.2 + 0.15 * done, "slow effects");
         });
         self.fast.candidates = build(context, &self.fast.design, &fast, change, threads, &|done| {
-            progress.at(0.35 + 0.25 * done, "fast effects");
+            progress.at(0.35 + 0.2 * done, "fast effects");
         });
+        progress.at(0.56, "resonances");
+        self.polish(threads);
+    }
+
+    /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
+    /// refined before it is judged.
+    fn polish(&mut self, threads: usize) {
+        let next = std::sync::atomic::AtomicUsize::new(0);
+        let (this, fast) = (&*self, &self.fast);
+        let mut polished: Vec<(usize, Trial)> = std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..threads.max(1))
+                .map(|_| {
+                    scope.spawn(|| {
+                        let mut mine = Vec::new();
+                        loop {
+                            let k = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                            let Some(candidate) = fast.candidates.get(k) else { break mine };
+                            if candidate.fixed.is_none() {
+                                continue;
+                            }
+                            let Some(start) = best_trial(&fast.design, &fast.fit, &fast.sigma, candidate)
+                            else {
+                                continue;
+                            };
+                            let shape = this.refined(fast, candidate, &candidate.trials[start].shape);
+                            let columns = columns(
+                                this.context,
+                                &fast.design,
+                                candidate.effect,
+                                candidate.place,
+                                &shape,
+                                this.change,
+                            );
+                            mine.push((k, Trial::new(&fast.design, shape, columns)));
+                        }
+                    })
+                })
+                .collect();
+            workers.into_iter().filter_map(|w| w.join().ok()).flatten().collect()
+        });
+        polished.sort_by_key(|(k, _)| *k);
+        for (k, trial) in polished {
+            self.fast.candidates[k].trials.push(trial);
+        }
     }
 
     fn order_spectra(&self) -> Vec<OrderSpectrum> {
@@ -287,7 +331,7 @@ impl<'c, 'a> Search<'c, 'a> {
         for (k, (which, index, verdict)) in ranked.iter().enumerate() {
             let side = self.side(*which);
             let candidate = &side.candidates[*index];
-            if !self.holds(side, verdict, settings) {
+            if !self.holds(side, candidate, verdict, settings) {
                 continue;
             }
             checked += 1;
@@ -295,7 +339,9 @@ impl<'c, 'a> Search<'c, 'a> {
                 break;
             }
             let z = significance(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict);
-            if z < settings.least_significance {
+            // A law without free amplitudes cannot adapt to noise: chance makes the fit worse with it.
+            let least = settings.least_significance * if candidate.fixed.is_some() { 0.65 } else { 1.0 };
+            if z < least {
                 continue;
             }
             let rivals = ranked
@@ -327,11 +373,17 @@ impl<'c, 'a> Search<'c, 'a> {
         })
     }
 
-    fn holds(&self, side: &Side, verdict: &Verdict, settings: &Settings) -> bool {
+    fn holds(&self, side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
         let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
         let folds = verdict.held_out.len();
         // Of many stretches of one motion a few may be untouched by an effect.
-        let needed = if single_motion(&side.design) { folds - folds / 4 } else { folds - folds / 6 };
+        let needed = if candidate.fixed.is_some() {
+            folds / 2 + 1
+        } else if single_motion(&side.design) {
+            folds - folds / 4
+        } else {
+            folds - folds / 6
+        };
         verdict.share >= settings.least_share && positive >= needed
     }
 
@@ -361,7 +413,7 @@ impl<'c, 'a> Search<'c, 'a> {
                 &[shape.to_vec()],
                 self.change,
             );
-            judge(&side.design, &side.fit, &[], &side.sigma, &one).map_or(f64::NEG_INFINITY, |v| v.gain)
+            whole_gain(&side.design, &side.fit, &side.sigma, &one)
         };
         let steps: Vec<Step> = match candidate.effect.form() {
             Form::Joint(_) if candidate.effect == EffectKind::TorqueRipple => {
@@ -370,31 +422,47 @@ impl<'c, 'a> Search<'c, 'a> {
             }
             Form::Joint(law) => law.refinement().iter().map(|&f| Step::Times(f)).collect(),
             Form::Compliance(_) => {
-                vec![Step::Times(1.2), Step::Times(1.9), Step::Add(0.2), Step::Times(1.4)]
+                vec![Step::Times(1.12), Step::Times(1.9), Step::Add(0.15), Step::Times(1.4)]
             }
             Form::Coupled => vec![Step::Times(1.4)],
             _ => Vec::new(),
         };
+        // Pattern search (Hooke and Jeeves 1961): one parameter at a time, and frequency with rotor, which trade
+        // against each other along the ridge of one stiffness.
+        let mut moves: Vec<Vec<(usize, f64)>> = Vec::new();
+        for k in 0..steps.len().min(start.len()) {
+            moves.extend([vec![(k, 1.0)], vec![(k, -1.0)]]);
+        }
+        if matches!(candidate.effect.form(), Form::Compliance(_)) {
+            moves.extend([vec![(0, 0.4), (2, 1.0)], vec![(0, -0.4), (2, -1.0)]]);
+        }
         let mut shape = start.to_vec();
         let mut value = gain(&shape);
-        for round in 0..5 {
-            for (k, step) in steps.iter().enumerate().take(shape.len()) {
-                for direction in [1.0, -1.0] {
-                    let mut next = shape.clone();
-                    let size = direction * 0.5_f64.powi(round);
-                    match step {
-                        Step::Times(f) => next[k] *= f.powf(size),
-                        Step::Add(d) => next[k] = (next[k] + d * size).max(0.0),
-                    }
-                    if next[k] == shape[k] {
-                        continue;
-                    }
-                    let tried = gain(&next);
-                    if tried > value {
-                        (shape, value) = (next, tried);
-                        break;
+        let mut size = 1.0;
+        while size > 0.02 {
+            let mut better = false;
+            for directions in &moves {
+                let mut next = shape.clone();
+                for &(k, direction) in directions {
+                    match steps[k] {
+                        Step::Times(f) => next[k] *= f.powf(direction * size),
+                        Step::Add(d) => next[k] = (next[k] + d * direction * size).max(0.0),
                     }
                 }
+                if matches!(candidate.effect.form(), Form::Compliance(_)) {
+                    // The rotor is a part of the inertia that the motor sees.
+                    next[2] = next[2].min(0.95);
+                }
+                if next == shape {
+                    continue;
+                }
+                let tried = gain(&next);
+                if tried > value {
+                    (shape, value, better) = (next, tried, true);
+                }
+            }
+            if !better {
+                size *= 0.5;
             }
         }
         shape

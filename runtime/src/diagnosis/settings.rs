@@ -26,7 +26,7 @@ impl Default for Settings {
         Self {
             slow_window: 0.045,
             fast_window: 0.020,
-            standstill: 0.01,
+            standstill: 0.015,
             least_share: 0.12,
             least_significance: 3.0,
             most_effects: 8,

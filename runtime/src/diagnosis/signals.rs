@@ -23,6 +23,8 @@ pub(super) struct Signals {
 
 /// Highest cut-off of the position filter, Hz.
 const CUTOFF: f64 = 60.0;
+/// Samples a second that a cut-off of [`CUTOFF`] needs.
+const ENOUGH: f64 = 500.0;
 
 impl Signals {
     pub fn new(trajectory: &Trajectory, fresh: bool, delay: f64) -> Result<Self, DiagnosisError> {
@@ -47,17 +49,22 @@ impl Signals {
             .iter()
             .map(|x| Ok(filter.zero_phase(&shifted(x, delay * rate))?))
             .collect::<Result<Vec<_>, DiagnosisError>>()?;
+        // All signals are limited to the cut-off: rows beyond ENOUGH a second say nothing more.
+        let stride = (rate / ENOUGH).floor().max(1.0) as usize;
+        let thin = |x: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
+            x.into_iter().map(|v| v.into_iter().step_by(stride).collect()).collect()
+        };
         Ok(Self {
             name: motion.name,
             fresh,
-            rate,
+            rate: rate / stride as f64,
             start: motion.start,
-            q: motion.q,
-            dq: motion.dq,
-            ddq: motion.ddq,
-            jerk,
-            torque,
-            spoiled: motion.spoiled,
+            q: thin(motion.q),
+            dq: thin(motion.dq),
+            ddq: thin(motion.ddq),
+            jerk: thin(jerk),
+            torque: thin(torque),
+            spoiled: motion.spoiled.div_ceil(stride),
         })
     }
 

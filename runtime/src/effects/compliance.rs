@@ -54,8 +54,8 @@ const STEPS_PER_SECOND: f64 = 2000.0;
 
 /// -M ddx for every sample: what the motor feels beyond the rigid model.
 ///
-/// `load[t]` and `inertia[t]` belong to the links alone (no rotor). Semi-implicit steps: the spring of the step to
-/// come and the damper act on the new velocity, which is stable for every stiffness.
+/// `load[t]` and `inertia[t]` belong to the links alone (no rotor). Semi-implicit (symplectic) steps, which neither add
+/// nor take energy; where the step is too long for the spring, implicit ones, which are stable for every stiffness.
 pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, out: &mut [f64]) {
     let Some(&first) = load.first() else { return };
     let steps = (STEPS_PER_SECOND / rate).ceil().max(1.0);
@@ -67,7 +67,8 @@ pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, ou
     for (k, (&now, &m)) in load.iter().zip(inertia).enumerate() {
         let mut sum = 0.0;
         let m_free = 1.0 / m;
-        let m_held = 1.0 / (m + h * t.damping + h * h * t.stiffness);
+        let stiff = h * h * t.stiffness;
+        let m_held = 1.0 / (m + h * t.damping + if stiff > 0.3 * m { stiff } else { 0.0 });
         let slope = (now - before) / steps;
         for step in 1..=steps as usize {
             let force = before + slope * step as f64;

@@ -19,8 +19,9 @@ pub(super) struct JointElasticity;
 impl Compliance for JointElasticity {
     fn shapes(&self) -> Vec<[f64; 4]> {
         let mut shapes = Vec::new();
-        for frequency in [3.0, 4.0, 5.5, 7.0, 9.0, 11.5, 15.0, 19.0, 24.0] {
-            for damping in [0.03, 0.12] {
+        for k in 0..18 {
+            let frequency = 3.0 * 1.13_f64.powi(k);
+            for damping in [0.05, 0.2] {
                 for rotor in [0.0, 0.4, 0.8] {
                     shapes.push([frequency, damping, rotor, 0.0]);
                 }

@@ -69,6 +69,11 @@ pub trait JointLaw: Sync {
         &[]
     }
 
+    /// Whether only a positive amplitude is this effect: a negative one is something else.
+    fn only_positive(&self) -> bool {
+        false
+    }
+
     /// Values of the columns at an instant.
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, memory: f64, out: &mut [f64]);
 

@@ -25,6 +25,10 @@ impl JointLaw for LoadDependentFriction {
         vec![vec![]]
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn law(&self, _: &Scale, _: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = at.load.abs() * at.sign;
     }

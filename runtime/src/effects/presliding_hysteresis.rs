@@ -29,6 +29,10 @@ impl JointLaw for PreslidingHysteresis {
         &[1.6]
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     /// The memory z in [-1, 1] is the fraction of the friction that has built up; sign v is taken off because the
     /// standard model has it, so that the column is what builds up late.
     fn law(&self, _: &Scale, _: &[f64], at: &At, memory: f64, out: &mut [f64]) {

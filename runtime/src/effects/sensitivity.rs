@@ -222,7 +222,7 @@ mod tests {
                         }
                         EffectKind::GeometryError => {
                             let row = &mut robot.frames.to_mut()[variant.index / 2];
-                            if variant.index % 2 == 0 { row.d += e } else { row.r += e }
+                            if variant.index.is_multiple_of(2) { row.d += e } else { row.r += e }
                         }
                         _ => {
                             let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]][variant.index];

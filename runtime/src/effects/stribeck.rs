@@ -29,6 +29,10 @@ impl JointLaw for Stribeck {
         &[1.45]
     }
 
+    fn only_positive(&self) -> bool {
+        true
+    }
+
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = (-(at.dq / shape[0]).powi(2)).exp() * at.sign;
     }
