@@ -8,6 +8,7 @@ mod cholesky;
 mod closed_loop;
 mod consistency;
 mod controller;
+mod didim;
 mod drive;
 mod effect;
 mod error;
@@ -23,6 +24,7 @@ mod sensors;
 pub use closed_loop::{LoopSettings, Simulation, simulate};
 pub use consistency::check_standard;
 pub use controller::ControllerSettings;
+pub use didim::{DidimError, DidimEstimate, DidimSettings, Experiment, didim, simulated_motions};
 pub use effect::SimulatedEffects;
 pub use error::SimulationError;
 pub use extra::{ExtraTorque, Instant};
@@ -31,6 +33,8 @@ pub use reference::{Reference, SampledReference};
 pub use residue::Residue;
 pub use sensors::SensorSettings;
 
+#[cfg(test)]
+mod recovery_tests;
 #[cfg(test)]
 pub(crate) mod testing;
 #[cfg(test)]

@@ -81,6 +81,24 @@ impl<'a> Sensors<'a> {
     }
 }
 
+/// The recording that other noise would have made of the same run.
+#[cfg(test)]
+pub(crate) fn measured(
+    settings: &SensorSettings,
+    truth: &crate::signal::Motion,
+    recorded: &crate::recording::Trajectory,
+) -> crate::recording::Trajectory {
+    let mut sensors = Sensors::new(settings);
+    let mut again = recorded.clone();
+    for t in 0..again.time.len() {
+        for j in 0..truth.q.len() {
+            again.position[j][t] = sensors.position(j, truth.q[j][t]);
+            again.torque[j][t] = sensors.torque(j, truth.torque[j][t]);
+        }
+    }
+    again
+}
+
 fn noise(sigma: &[f64], j: usize, stream: &mut Pcg64) -> f64 {
     match sigma.get(j) {
         Some(&sigma) if sigma > 0.0 => {
