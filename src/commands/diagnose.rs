@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
+use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose, term_torques};
 use dynid_runtime::estimation::{Identified, NamedParameter};
-use dynid_runtime::model::Robot;
+use dynid_runtime::model::{Model, Robot};
+use dynid_runtime::recording::Trajectory;
 use dynid_runtime::report::{percent, significant};
+use dynid_runtime::signal::Motion;
 
-use super::validate::prediction;
+use super::validate::{known_parameters, prediction, read_model};
 use crate::failure::Failure;
 use crate::output::{Bar, print, table, write, write_json};
 use crate::pages::diagnosis::{KeptApart, joint_words, page};
@@ -22,6 +24,9 @@ pub(super) struct Arguments {
     /// A recording of the same robot before it changed: only what changed is looked for
     #[arg(long)]
     baseline: Option<PathBuf>,
+    /// A model of the same robot before it changed, saved by `identify` or `diagnose`: only what changed is looked for
+    #[arg(long, conflicts_with = "baseline")]
+    reference: Option<PathBuf>,
     /// A recording that takes no part in the diagnosis: the errors on it are reported before and after
     #[arg(long)]
     test: Option<PathBuf>,
@@ -43,11 +48,12 @@ const BAND: f64 = 25.0;
 /// Diagnoses, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let measured = measure(&arguments.recording)?;
-    let baseline = match &arguments.baseline {
-        Some(path) => measure(&other(&arguments.recording, path))?.trajectories,
-        None => Vec::new(),
-    };
     let model = measured.dynamics.model();
+    let baseline = match (&arguments.baseline, &arguments.reference) {
+        (Some(path), _) => measure(&other(&arguments.recording, path))?.trajectories,
+        (None, Some(path)) => as_the_reference(path, &arguments.recording)?,
+        (None, None) => Vec::new(),
+    };
     let bar = Bar::new("diagnosis");
     let outcome = diagnose(model, &measured.trajectories, &baseline, &Settings::default(), &bar);
     drop(bar);
@@ -74,6 +80,51 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         )?;
     }
     Ok(())
+}
+
+/// The motions of the recording with the torques that a reference model gives them: what the robot would have been
+/// recorded with before it changed.
+fn as_the_reference(path: &Path, options: &RecordingOptions) -> Result<Vec<Trajectory>, Failure> {
+    let reference = read_model(path)?;
+    let recorded = read(options)?;
+    let model = recorded.dynamics.model();
+    let chi = known_parameters(&reference, model, path)?;
+    recorded
+        .motions
+        .iter()
+        .map(|motion| {
+            let effects = term_torques(model, &chi, &reference.effects, motion)
+                .map_err(|error| diagnosis_failure(path, &error))?;
+            Ok(predicted(model, &chi, motion, effects))
+        })
+        .collect()
+}
+
+/// A motion with the torques of chi added to `torque`.
+fn predicted(model: &dyn Model, chi: &[f64], motion: &Motion, mut torque: Vec<Vec<f64>>) -> Trajectory {
+    let pattern = model.pattern();
+    let n = motion.q.len();
+    let samples = motion.q.first().map_or(0, Vec::len);
+    let mut entries = vec![0.0; pattern.columns.len()];
+    let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    for t in 0..samples {
+        for j in 0..n {
+            (q[j], dq[j], ddq[j]) = (motion.q[j][t], motion.dq[j][t], motion.ddq[j][t]);
+        }
+        model.idm(&q, &dq, &ddq, &mut entries);
+        for (j, torque) in torque.iter_mut().enumerate() {
+            let row = pattern.rows[j]..pattern.rows[j + 1];
+            torque[t] += row.map(|e| entries[e] * chi[pattern.columns[e]]).sum::<f64>();
+        }
+    }
+    Trajectory {
+        name: format!("{} as the reference model has it", motion.name),
+        time: (0..samples).map(|t| motion.start + t as f64 / motion.rate).collect(),
+        position: motion.q.clone(),
+        velocity: None,
+        torque,
+        fixed: motion.fixed.clone(),
+    }
 }
 
 /// The same options for another recording of the robot, over all of its time.

@@ -14,7 +14,8 @@ use dynid_runtime::simulation::{
     check_standard, simulate,
 };
 
-use crate::failure::{Failure, file_failure};
+use super::validate::read_model;
+use crate::failure::Failure;
 use crate::motions::{MotionOptions, read as read_motions};
 use crate::output::{Bar, print, table};
 use crate::robots::resolve;
@@ -113,10 +114,7 @@ fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
     if path.extension().is_none_or(|extension| extension != "json") {
         return Ok(None);
     }
-    let text = std::fs::read_to_string(path).map_err(|error| file_failure("read the model", path, &error))?;
-    serde_json::from_str(&text)
-        .map(Some)
-        .map_err(|error| Failure::Input(format!("{name}:{}:{}: {error}", error.line(), error.column())))
+    read_model(path).map(Some)
 }
 
 fn parameters(robot: &Robot, saved: Option<&Identified>, name: &str) -> Result<Parameters, Failure> {

@@ -6,6 +6,7 @@ use clap::Args;
 use dynid_runtime::diagnosis::term_torques;
 use dynid_runtime::estimation::observe::{Equations, Observation, observe};
 use dynid_runtime::estimation::{Identified, Observed, errors_against, per_equation, relative_error};
+use dynid_runtime::model::Model;
 use dynid_runtime::report::{percent, significant};
 use dynid_runtime::signal::Motion;
 
@@ -86,13 +87,7 @@ pub(super) fn prediction(
     model_path: &Path,
 ) -> Result<Prediction, Failure> {
     let model = recorded.dynamics.model();
-    let chi = identified.chi(model.robot()).map_err(|missing| {
-        Failure::Input(format!(
-            "{}: it has no {missing}, which {} needs: it was identified for another robot",
-            model_path.display(),
-            model.robot().name
-        ))
-    })?;
+    let chi = known_parameters(identified, model, model_path)?;
     let bar = Bar::new("samples");
     let observed = |motions: &[Motion]| {
         let progress = |done, all| bar.at(done, all);
@@ -118,6 +113,24 @@ pub(super) fn prediction(
     let unexplained = observed(&rest)?;
     let errors = errors_against(&unexplained, &observation, &chi);
     Ok(Prediction { observation, errors })
+}
+
+/// chi of a saved model for a robot.
+///
+/// # Errors
+/// [`Failure::Input`] with the parameter that the model does not have.
+pub(super) fn known_parameters(
+    identified: &Identified,
+    model: &dyn Model,
+    path: &Path,
+) -> Result<Vec<f64>, Failure> {
+    identified.chi(model.robot()).map_err(|missing| {
+        Failure::Input(format!(
+            "{}: it has no {missing}, which {} needs: it was identified for another robot",
+            path.display(),
+            model.robot().name
+        ))
+    })
 }
 
 /// Reads a saved model.
