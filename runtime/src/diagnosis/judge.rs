@@ -270,6 +270,38 @@ fn change(
     2.0 * linear - square
 }
 
+/// Whether a candidate improves later time of a single motion when everything, standard parameters included, is fitted
+/// to the time before: on its own joints by at least `least` of their squares, and not at the cost of the others.
+pub(super) fn holds_forward(
+    design: &Design,
+    sigma: &[f64],
+    candidate: &Candidate,
+    trial: usize,
+    least: f64,
+) -> bool {
+    let segments = design.segments.len();
+    let (mut own_gain, mut before, mut total) = (0.0, 0.0, 0.0);
+    for cut in [segments * 5 / 8, segments * 3 / 4] {
+        let train: Vec<bool> = (0..segments).map(|g| g < cut).collect();
+        let fit = Fit::new(design, sigma, |g| train[g]);
+        let trial = &candidate.trials[trial];
+        let Some(own) = own_part(design, &fit, sigma, trial, &train) else { return false };
+        let Some((a, _)) = own.solve(candidate) else { return false };
+        let d = -(&own.x * &a);
+        for (j, &s) in sigma.iter().enumerate() {
+            for g in cut..segments {
+                let gain = change(design, &fit, trial, &a, &d, j, g) / (s * s);
+                total += gain;
+                if candidate.own.contains(&j) {
+                    own_gain += gain;
+                    before += fit.squares(design, j, g) / (s * s);
+                }
+            }
+        }
+    }
+    total > 0.0 && own_gain > least * before
+}
+
 /// Significance of the held-out gain in standard errors over blocks of motion, whatever depends on what in a block.
 ///
 /// Gains of blocks are heavy-tailed, so their signed square roots are compared with zero.

@@ -7,7 +7,9 @@ use super::candidate::{Candidate, Pace, Trial, build, columns, make, pace, propo
 use super::context::Context;
 use super::design::Design;
 use super::fit::{Fit, fit_weighted};
-use super::judge::{Fold, Verdict, best_trial, folds, judge, significance, single_motion, whole_gain};
+use super::judge::{
+    Fold, Verdict, best_trial, folds, holds_forward, judge, significance, single_motion, whole_gain,
+};
 use super::outcome::OrderSpectrum;
 use super::settings::{Progress, Settings};
 use super::spectrum::{order_spectrum, peaks};
@@ -335,13 +337,18 @@ impl<'c, 'a> Search<'c, 'a> {
                 continue;
             }
             checked += 1;
-            if checked > 12 {
+            if checked > 30 {
                 break;
             }
             let z = significance(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict);
             // A law without free amplitudes cannot adapt to noise: chance makes the fit worse with it.
             let least = settings.least_significance * if candidate.fixed.is_some() { 0.65 } else { 1.0 };
             if z < least {
+                continue;
+            }
+            if single_motion(&side.design)
+                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial, settings.least_share)
+            {
                 continue;
             }
             let rivals = ranked
