@@ -74,7 +74,7 @@ fn tell(folder: &std::path::Path, robot: &str) -> Result<(), Failure> {
         let before = predict_errors(model, &d.standard, &[], d.delay, &test, &slowest, &settings)?;
         let after = predict_errors(model, &d.model, &d.terms(), d.delay, &test, &slowest, &settings)?;
         println!(
-            "  test, 25 Hz, {rows}: {:.2} % -> {:.2} % (ratio {:.2}); joints {:.1?} -> {:.1?} %",
+            "  test, {rows}: {:.2} % -> {:.2} % (ratio {:.2}); joints {:.1?} -> {:.1?} %",
             100.0 * before.relative_error,
             100.0 * after.relative_error,
             after.relative_error / before.relative_error,

@@ -90,7 +90,9 @@ fn examine(
     let forms = directions(model.robot());
     let change = !baseline.is_empty();
     let mut delay = 0.0;
-    let mut signals = prepare_all(baseline, trajectories, delay)?;
+    let (cutoff, settings) = settings::fitted_to(settings, trajectories)?;
+    let settings = &settings;
+    let mut signals = prepare_all(baseline, trajectories, delay, cutoff)?;
     let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
     let chunks = if trajectories.len() == 1 && !change { STRETCHES } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
@@ -124,7 +126,7 @@ fn examine(
             break;
         }
         delay += found;
-        signals = prepare_all(baseline, trajectories, delay)?;
+        signals = prepare_all(baseline, trajectories, delay, cutoff)?;
     }
     progress.at(0.05, "contacts");
     let mut context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
@@ -157,7 +159,8 @@ pub fn slowest_speeds(
     trajectories: &[Trajectory],
     settings: &Settings,
 ) -> Result<Vec<f64>, DiagnosisError> {
-    let signals = prepare_all(&[], trajectories, 0.0)?;
+    let (cutoff, settings) = settings::fitted_to(settings, trajectories)?;
+    let signals = prepare_all(&[], trajectories, 0.0, cutoff)?;
     Ok(top_speeds(&signals, model.robot().joints()).iter().map(|v| settings.standstill * v).collect())
 }
 
@@ -166,9 +169,10 @@ fn prepare_all(
     baseline: &[Trajectory],
     trajectories: &[Trajectory],
     delay: f64,
+    cutoff: f64,
 ) -> Result<Vec<Signals>, DiagnosisError> {
-    let old = baseline.iter().map(|t| Signals::new(t, false, delay));
-    old.chain(trajectories.iter().map(|t| Signals::new(t, true, delay))).collect()
+    let old = baseline.iter().map(|t| Signals::new(t, false, delay, cutoff));
+    old.chain(trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff))).collect()
 }
 
 /// Refuses motions that leave a joint without rows.

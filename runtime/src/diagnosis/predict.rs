@@ -68,7 +68,7 @@ fn torques_on(
 }
 
 /// Relative errors of a model with terms on other recordings: rows where joints move, smoothed with the fast window
-/// (25 Hz with the default settings). `delay` is the skew of the torques that is known, s.
+/// (25 Hz with the default settings, less where the recording holds less). `delay` is the skew of the torques that is known, s.
 pub fn predict_errors(
     model: &dyn Model,
     parameters: &Estimated,
@@ -78,8 +78,9 @@ pub fn predict_errors(
     slowest: &[f64],
     settings: &Settings,
 ) -> Result<Errors, DiagnosisError> {
+    let (cutoff, settings) = super::settings::fitted_to(settings, trajectories)?;
     let signals: Vec<Signals> =
-        trajectories.iter().map(|t| Signals::new(t, true, delay)).collect::<Result<_, _>>()?;
+        trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff)).collect::<Result<_, _>>()?;
     let forms = directions(model.robot());
     let nothing = vec![Vec::new(); signals.len()];
     let plan = Plan {

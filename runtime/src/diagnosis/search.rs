@@ -157,7 +157,11 @@ impl<'c, 'a> Search<'c, 'a> {
         self.spectra = self.order_spectra();
         let orders: Vec<Vec<f64>> = self.spectra.iter().map(|s| peaks(s, 2)).collect();
         let slow = proposals(self.context, Pace::Slow, self.change, &orders);
-        let fast = proposals(self.context, Pace::Fast, self.change, &orders);
+        let mut fast = proposals(self.context, Pace::Fast, self.change, &orders);
+        if settings.fast_window >= settings.slow_window {
+            // The recording is too slow to hold the ringing and the bursts of compliant transmissions.
+            fast.retain(|(effect, ..)| !matches!(effect.form(), Form::Compliance(_)));
+        }
         self.tried = slow.iter().chain(&fast).map(|p| p.2.len()).sum();
         let (context, change, threads) = (&*self.context, self.change, settings.threads);
         self.slow.candidates = build(context, &self.slow.design, &slow, change, threads, &|done| {

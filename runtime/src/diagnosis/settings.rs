@@ -1,5 +1,9 @@
 //! What a diagnosis can be told, and what it tells while it works.
 
+use super::signals::CUTOFF;
+use crate::estimation::choose_bandwidth;
+use crate::recording::Trajectory;
+
 /// Settings of a diagnosis. None of them knows a robot: speeds and travels count relative to the joint's own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -19,6 +23,20 @@ pub struct Settings {
     pub block: f64,
     /// Threads.
     pub threads: usize,
+}
+
+/// Cut-off of the position filter, and settings whose windows let through no more than the recording's band.
+pub(super) fn fitted_to(
+    settings: &Settings,
+    trajectories: &[Trajectory],
+) -> Result<(f64, Settings), DiagnosisError> {
+    let band = choose_bandwidth(trajectories)?;
+    // A Hann window of half-width T lets half of the amplitude through at 1 / (2 T).
+    let least = 0.5 / band.band.max(1e-6);
+    let mut fitted = settings.clone();
+    fitted.slow_window = fitted.slow_window.max(least);
+    fitted.fast_window = fitted.fast_window.max(least);
+    Ok((band.cutoff.min(CUTOFF), fitted))
 }
 
 impl Default for Settings {

@@ -22,19 +22,24 @@ pub(super) struct Signals {
 }
 
 /// Highest cut-off of the position filter, Hz.
-const CUTOFF: f64 = 60.0;
+pub(super) const CUTOFF: f64 = 60.0;
 /// Samples a second that a cut-off of [`CUTOFF`] needs.
 const ENOUGH: f64 = 500.0;
 
 impl Signals {
-    pub fn new(trajectory: &Trajectory, fresh: bool, delay: f64) -> Result<Self, DiagnosisError> {
+    pub fn new(
+        trajectory: &Trajectory,
+        fresh: bool,
+        delay: f64,
+        cutoff: f64,
+    ) -> Result<Self, DiagnosisError> {
         let stamps = trajectory.time.len().max(2) - 1;
         let span = trajectory.time.last().unwrap_or(&0.0) - trajectory.time.first().unwrap_or(&0.0);
         let rate = if span > 0.0 { stamps as f64 / span } else { 1.0 };
-        let settings = Preparation { cutoff: Some((rate / 5.0).min(CUTOFF)), ..Preparation::default() };
+        let settings = Preparation { cutoff: Some((rate / 5.0).min(cutoff)), ..Preparation::default() };
         let motion = prepare(trajectory, &settings)?;
         let rate = motion.rate;
-        let filter = Butterworth::low_pass(settings.order, (rate / 5.0).min(CUTOFF), rate)?;
+        let filter = Butterworth::low_pass(settings.order, (rate / 5.0).min(cutoff), rate)?;
         let jerk = motion
             .ddq
             .iter()
