@@ -220,7 +220,7 @@ fn dash() -> String {
 fn with_spread(value: Option<Spread>, digits: usize) -> String {
     match value {
         None => dash(),
-        Some(Spread { mean, deviation }) if deviation == 0.0 => significant(mean, digits),
+        Some(Spread { mean, deviation: 0.0 }) => significant(mean, digits),
         Some(Spread { mean, deviation }) => {
             format!("{} ±{}", significant(mean, digits), significant(deviation, 2))
         }
