@@ -3,12 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dynid_runtime::estimation::observe::{ObserveError, ObserveSettings, Standstill};
-use dynid_runtime::estimation::{Bandwidth, choose_bandwidth};
-use dynid_runtime::recording::{Manifest, RecordingError, RowReport, Trajectory, load};
+use dynid_runtime::estimation::observe::{
+    Equations, Observation, ObserveError, ObserveSettings, Standstill, observe,
+};
+use dynid_runtime::estimation::{Bandwidth, Piecewise, choose_bandwidth};
+use dynid_runtime::recording::{Loader, Manifest, RecordingError, RowReport, Trajectory, load};
 use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare_all};
 
 use crate::failure::Failure;
+use crate::output::Bar;
 use crate::robots::{Dynamics, resolve};
 
 /// Which recording is read, and how it is sampled. The defaults are the same for every robot and recording.
@@ -114,11 +117,7 @@ pub struct Recorded {
 /// # Errors
 /// [`Failure::Input`] for what is wrong in a file, [`Failure::Data`] where the rows cannot support an answer.
 pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
-    let manifest = Manifest::read(&options.recording).map_err(recording_failure)?;
-    let dynamics = match &options.robot {
-        Some(name) => resolve(name, None)?,
-        None => resolve(&manifest.robot, Some(&manifest.folder))?,
-    };
+    let (manifest, dynamics) = opened(options)?;
     let window = window(options.from, options.to)?;
     let recording = load(&manifest, dynamics.model().robot()).map_err(recording_failure)?;
     let trajectories: Vec<Trajectory> = match window {
@@ -126,10 +125,7 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
         None => recording.trajectories,
     };
     if trajectories.is_empty() {
-        return Err(Failure::Data(format!(
-            "{}: no row lies between --from and --to",
-            options.recording.display()
-        )));
+        return Err(nothing_in_window(options));
     }
     let rows = LeftOut { rows: recording.rows, too_short: Vec::new() };
     Ok(Measured { dynamics, title: manifest.title, trajectories, rows })
@@ -141,18 +137,11 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
 /// [`Failure::Data`] where no motion can be prepared.
 pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Recorded, Failure> {
     let Measured { dynamics, title, trajectories, mut rows } = measured;
-    let failure = |error: &SignalError| Failure::Data(in_recording(&options.recording, error));
-    let (band, cutoff) = match options.sampling.band {
-        Some(band) => (band, cutoff_of(band, &trajectories)),
-        None => {
-            let chosen = choose_bandwidth(&trajectories).map_err(|error| failure(&error))?;
-            (chosen.band, Some(chosen.cutoff))
-        }
-    };
-    let preparation = Preparation { cutoff: options.sampling.cutoff.or(cutoff), ..Preparation::default() };
-    let (motions, too_short) = prepare_all(&trajectories, &preparation).map_err(|error| failure(&error))?;
+    let joints = dynamics.model().robot().joints();
+    let (preparation, settings) = bandwidth(options, &trajectories, joints)?;
+    let (motions, too_short) = prepare_all(&trajectories, &preparation)
+        .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
     rows.too_short = too_short.iter().map(SignalError::to_string).collect();
-    let settings = options.sampling.settings(dynamics.model().robot().joints(), band);
     Ok(Recorded { dynamics, title, motions, rows, settings })
 }
 
@@ -162,6 +151,125 @@ pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Record
 /// As theirs.
 pub fn read(options: &RecordingOptions) -> Result<Recorded, Failure> {
     prepared(measure(options)?, options)
+}
+
+/// Rows of a piece of a long recording: what is in memory at once is a few times as much.
+pub const PIECE: usize = 100_000;
+
+/// A recording that was observed.
+pub struct Observed {
+    /// The recording; of a long one the motions of its first pieces only.
+    pub recorded: Recorded,
+    /// One observation of the whole recording for each kind of equations that was asked for.
+    pub observations: Vec<Observation>,
+    /// Whether the motions are the whole recording.
+    pub whole: bool,
+}
+
+/// Reads and observes a recording. One of more than [`PIECE`] rows is read, prepared, observed and dropped piece by
+/// piece; the band and the speeds of standstill then are those of its first pieces.
+///
+/// # Errors
+/// As of [`read`] and of the observation.
+pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Result<Observed, Failure> {
+    let failure = |error: ObserveError| observe_failure(&options.recording, &error);
+    let (manifest, dynamics) = opened(options)?;
+    let window = window(options.from, options.to)?;
+    let model = dynamics.model();
+    let mut loader = Loader::new(&manifest, model.robot(), PIECE).map_err(recording_failure)?;
+    let mut first = Vec::new();
+    let mut names = vec![None; manifest.trajectories.len()];
+    let (mut rows, mut long) = (0, false);
+    while let Some(piece) = next_piece(&mut loader, window)? {
+        rows += piece.time.len();
+        first.push((loader.window(), piece));
+        long = rows > PIECE;
+        if long {
+            break;
+        }
+    }
+    if first.is_empty() {
+        return Err(nothing_in_window(options));
+    }
+    if !long {
+        let rows = LeftOut { rows: loader.into_report(), too_short: Vec::new() };
+        let trajectories = first.into_iter().map(|(_, piece)| piece).collect();
+        let measured = Measured { dynamics, title: manifest.title, trajectories, rows };
+        let recorded = prepared(measured, options)?;
+        let bar = Bar::new("samples");
+        let progress = |done, all| bar.at(done, all);
+        let model = recorded.dynamics.model();
+        let observations = equations
+            .iter()
+            .map(|&e| observe(model, &recorded.motions, e, None, &recorded.settings, Some(&progress)))
+            .collect::<Result<_, _>>()
+            .map_err(failure)?;
+        return Ok(Observed { recorded, observations, whole: true });
+    }
+    // Pieces of one window of the recording are one trajectory: they get its first piece's name.
+    let mut named = |window: usize, mut piece: Trajectory| {
+        if let Some(name) = names.get_mut(window) {
+            piece.name = name.get_or_insert(piece.name).clone();
+        }
+        piece
+    };
+    let first: Vec<Trajectory> = first.into_iter().map(|(window, piece)| named(window, piece)).collect();
+    let (preparation, settings) = bandwidth(options, &first, model.robot().joints())?;
+    let (mut all, motions) =
+        Piecewise::new(model, equations, first, preparation, settings.clone()).map_err(failure)?;
+    while let Some(piece) = next_piece(&mut loader, window)? {
+        all.add(&named(loader.window(), piece)).map_err(failure)?;
+    }
+    let (observations, too_short) = all.finish().map_err(failure)?;
+    let rows = LeftOut { rows: loader.into_report(), too_short };
+    let recorded = Recorded { title: manifest.title.clone(), motions, rows, settings, dynamics };
+    Ok(Observed { recorded, observations, whole: false })
+}
+
+/// The next piece that has rows within the window.
+fn next_piece(loader: &mut Loader<'_>, window: Option<[f64; 2]>) -> Result<Option<Trajectory>, Failure> {
+    while let Some(piece) = loader.next_trajectory().map_err(recording_failure)? {
+        let inside = match window {
+            Some(window) => cropped(&piece, window),
+            None => Some(piece),
+        };
+        if inside.is_some() {
+            return Ok(inside);
+        }
+    }
+    Ok(None)
+}
+
+/// The manifest and the robot that is meant.
+fn opened(options: &RecordingOptions) -> Result<(Manifest, Dynamics), Failure> {
+    let manifest = Manifest::read(&options.recording).map_err(recording_failure)?;
+    let dynamics = match &options.robot {
+        Some(name) => resolve(name, None)?,
+        None => resolve(&manifest.robot, Some(&manifest.folder))?,
+    };
+    Ok((manifest, dynamics))
+}
+
+fn nothing_in_window(options: &RecordingOptions) -> Failure {
+    Failure::Data(format!("{}: no row lies between --from and --to", options.recording.display()))
+}
+
+/// How a recording is filtered and sampled, by the rule or as asked for.
+fn bandwidth(
+    options: &RecordingOptions,
+    trajectories: &[Trajectory],
+    joints: usize,
+) -> Result<(Preparation, ObserveSettings), Failure> {
+    let (band, cutoff) = match options.sampling.band {
+        Some(band) => (band, cutoff_of(band, trajectories)),
+        None => {
+            let chosen = choose_bandwidth(trajectories)
+                .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
+            (chosen.band, Some(chosen.cutoff))
+        }
+    };
+    let preparation = Preparation { cutoff: options.sampling.cutoff.or(cutoff), ..Preparation::default() };
+    Ok((preparation, options.sampling.settings(joints, band)))
 }
 
 /// The rows of a trajectory within a window of time; `None` where there is none.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dynid_runtime::estimation::observe::{Equations, Observation, observe};
+use dynid_runtime::estimation::observe::{Equations, Observation};
 use dynid_runtime::estimation::{
     Estimate, EstimateSettings, Identified, Method, NamedParameter, Observed, estimate, per_equation,
     relative_error,
@@ -11,8 +11,8 @@ use dynid_runtime::estimation::{
 use dynid_runtime::report::{percent, significant};
 
 use crate::failure::Failure;
-use crate::output::{Bar, print, table, write, write_json};
-use crate::recorded::{Recorded, RecordingOptions, left_out_words, observe_failure, read};
+use crate::output::{print, table, write, write_json};
+use crate::recorded::{self, Recorded, RecordingOptions, left_out_words, observe_failure};
 
 /// What to identify and where to put it.
 #[derive(Debug, Args)]
@@ -50,8 +50,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.r_sigma
         )));
     }
-    let recorded = read(&arguments.recording)?;
-    let (identified, estimate) = identify(&recorded, arguments)?;
+    let power = Equations::Power { closed_form: arguments.closed_form };
+    let equations: &[Equations] =
+        if arguments.method.is_power() { &[power, Equations::Torque] } else { &[Equations::Torque] };
+    let recorded::Observed { recorded, observations, whole } =
+        recorded::read_observed(&arguments.recording, equations)?;
+    let (identified, estimate) = identify(&recorded, &observations, arguments)?;
     if arguments.json.as_deref() != Some(Path::new("-")) {
         print(&summary(&recorded, &identified, &estimate, arguments));
     }
@@ -62,29 +66,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         write_json(path, &identified)?;
     }
     if let Some(path) = &arguments.report {
-        let page = crate::pages::identification::page(&recorded, &identified)
+        let page = crate::pages::identification::page(&recorded, whole, &identified)
             .map_err(|error| observe_failure(&arguments.recording.recording, &error))?;
         write(path, &page)?;
     }
     Ok(())
 }
 
-fn identify(recorded: &Recorded, arguments: &Arguments) -> Result<(Identified, Estimate), Failure> {
+/// Identifies from the observation of the method's equations; the last one is of the torques.
+fn identify(
+    recorded: &Recorded,
+    observations: &[Observation],
+    arguments: &Arguments,
+) -> Result<(Identified, Estimate), Failure> {
     let model = recorded.dynamics.model();
     let settings = &recorded.settings;
-    let observed = |equations: Equations| -> Result<Observation, Failure> {
-        let bar = Bar::new("samples");
-        observe(model, &recorded.motions, equations, None, settings, Some(&|done, all| bar.at(done, all)))
-            .map_err(|error| observe_failure(&arguments.recording.recording, &error))
+    let [observation, ..] = observations else {
+        return Err(Failure::Data("nothing was observed".to_owned()));
     };
-    let equations = if arguments.method.is_power() {
-        Equations::Power { closed_form: arguments.closed_form }
-    } else {
-        Equations::Torque
-    };
-    let observation = observed(equations)?;
+    let torques = observations.last().unwrap_or(observation);
     let estimate = estimate(
-        &observation,
+        observation,
         &EstimateSettings {
             r_sigma: Some(arguments.r_sigma),
             ..EstimateSettings::for_method(arguments.method)
@@ -99,10 +101,8 @@ fn identify(recorded: &Recorded, arguments: &Arguments) -> Result<(Identified, E
             model.robot().base.len(),
         )));
     }
-    let torques =
-        if arguments.method.is_power() { observed(Equations::Torque)? } else { observation.clone() };
     let chi = estimate.chi();
-    let errors = (relative_error(&torques, &chi), per_equation(&torques, &chi));
+    let errors = (relative_error(torques, &chi), per_equation(torques, &chi));
     let robot_name = arguments.recording.robot.as_deref().unwrap_or(&model.robot().name);
     let identified = Identified::new(
         model.robot(),

@@ -7,11 +7,12 @@ use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use crate::recorded::{Recorded, left_out_words};
 
-/// The whole page.
+/// The whole page. Where the recording is too long for its motions to be the whole of it, the torques are those of
+/// the first pieces.
 ///
 /// # Errors
 /// What the observation refuses.
-pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, ObserveError> {
+pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result<String, ObserveError> {
     let model = recorded.dynamics.model();
     let robot = model.robot();
     let settings = ObserveSettings { keep_rows: true, ..recorded.settings.clone() };
@@ -26,6 +27,11 @@ pub fn page(recorded: &Recorded, identified: &Identified) -> Result<String, Obse
     for rows in observation.rows.iter().flatten() {
         let name = &observation.trajectories[rows.trajectory];
         page.plot(&torque_plot(rows, &chi, name, observation.trajectories.len() > 1));
+    }
+    if !whole {
+        page.note(
+            "The recording is long: only its beginning is drawn. The parameters are those of all of it.",
+        );
     }
     page.note(&format!(
         "Both are seen through the same filter of {} Hz bandwidth. Gaps are rows that were left out.",

@@ -10,6 +10,7 @@ mod identified;
 mod instrumental;
 pub mod observe;
 mod outcome;
+mod piecewise;
 mod robust;
 mod solve;
 mod total;
@@ -23,4 +24,5 @@ pub use instrumental::{InstrumentalEstimate, Instruments, instrumental_variables
 pub use outcome::{
     BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,
 };
+pub use piecewise::Piecewise;
 pub use solve::{RANK_TOLERANCE, Solution};

@@ -93,6 +93,11 @@ impl<'a> Loader<'a> {
         }
     }
 
+    /// Index in the manifest of the trajectory that the last motion came from.
+    pub fn window(&self) -> usize {
+        self.window.saturating_sub(1)
+    }
+
     /// The rows left out so far, of the trajectories that have been read to their end.
     pub fn into_report(self) -> RowReport {
         self.report

@@ -1,5 +1,6 @@
 //! Observation: from motions to orthogonal factors of [W Y], one for each trajectory, block of time and equation.
 
+mod merge;
 mod rows;
 mod select;
 mod source;

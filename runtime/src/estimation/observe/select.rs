@@ -13,6 +13,8 @@ pub enum Standstill {
     /// turns within the reach of the row: [`crate::signal::Standstill`].
     #[default]
     Automatic,
+    /// The same with speeds that were detected before: on the first piece of a long recording.
+    Detected(DetectedStandstill),
     /// Every row is used.
     Keep,
     /// Rows where the joint is slower than this share of its fastest speed in the motion are left out.
@@ -111,6 +113,12 @@ fn moving(
     let n = motion.dq.len();
     let speeds: Vec<f64> = match policy {
         Standstill::Automatic => return Ok(detected.moving(motion, &grid, decimator.factor() / 2)),
+        Standstill::Detected(before) if before.thresholds.len() == n => {
+            return Ok(before.moving(motion, &grid, decimator.factor() / 2));
+        }
+        Standstill::Detected(before) => {
+            return Err(ObserveError::StandstillSpeeds { found: before.thresholds.len(), expected: n });
+        }
         Standstill::Keep => vec![0.0; n],
         Standstill::Below(speeds) if speeds.len() == n => speeds.clone(),
         Standstill::Below(speeds) => {

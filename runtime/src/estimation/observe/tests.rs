@@ -259,3 +259,32 @@ fn pieces_observed_one_by_one_are_the_motions_observed_together() {
     let power = run(&motions[..1], Equations::Power { closed_form: true }, &settings);
     assert_eq!(pieces.append(power), Err(ObserveError::OtherUnknowns));
 }
+
+#[test]
+fn pieces_of_one_trajectory_are_one_trajectory_with_the_same_normal_equations() {
+    let pieces = [motion(40.0, 0.3), motion(40.0, 2.0), motion(40.0, 1.0)];
+    let settings = ObserveSettings { keep_rows: false, standstill: Standstill::Keep, ..settings() };
+    let apart = run(&pieces, Equations::Torque, &settings);
+    let mut merged = run(&pieces[..1], Equations::Torque, &settings);
+    for piece in &pieces[1..] {
+        merged.merge(run(std::slice::from_ref(piece), Equations::Torque, &settings)).unwrap();
+    }
+    assert_eq!(merged.trajectories.len(), 1);
+    assert_eq!(merged.samples, apart.samples);
+    assert!(merged.blocks.len() > 40 && merged.blocks.len() <= 128, "{}", merged.blocks.len());
+    for (group, count) in merged.groups.iter().zip(&merged.left_out) {
+        let mut expected = Factor::new(group.columns.len());
+        for part in apart.groups.iter().filter(|g| g.equation == group.equation) {
+            expected.merge(&part.factor);
+        }
+        let normal = |f: &Factor| {
+            let r = DMatrix::from_fn(f.unknowns() + 1, f.unknowns() + 1, |i, l| f.r(i, l));
+            r.transpose() * r
+        };
+        let (own, expected_normal) = (normal(&group.factor), normal(&expected));
+        assert!((own - &expected_normal).norm() < 1e-12 * expected_normal.norm());
+        assert_eq!(count.used, expected.rows());
+        let in_blocks: usize = merged.blocks.iter().map(|b| b.equations[group.equation].factor.rows()).sum();
+        assert_eq!(in_blocks, expected.rows());
+    }
+}
