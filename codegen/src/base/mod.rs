@@ -25,7 +25,7 @@ pub struct BaseParameter {
     pub name: String,
     /// Index of the kept parameter in `BaseSet::standard`.
     pub standard: usize,
-    /// chi = sum of coefficient * chi_st[index], ascending index, the kept one with coefficient 1.
+    /// chi = sum of coefficient * `chi_st[index]`, ascending index, the kept one with coefficient 1.
     pub combination: Vec<(usize, f64)>,
     /// The same in symbols of the table: `ZZ1 + Ia1 + d3^2*M3`.
     pub relation: String,

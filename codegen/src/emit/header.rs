@@ -45,7 +45,7 @@ pub fn header(robot: &Robot, set: &BaseSet, equations: &Equations) -> String {
     line(&format!("Base parameters ({} of {} standard parameters):", set.base.len(), set.standard.len()));
     line("");
     for parameter in &set.base {
-        line(&format!("- `{}` = {} [{}]", parameter.name, parameter.relation, parameter.unit));
+        line(&format!("- `{}` = {}, {}", parameter.name, parameter.relation, parameter.unit));
     }
     text
 }

@@ -95,7 +95,7 @@ impl Drive {
     /// joint torques and Ia_j * dqT A_j dq / 2 to the energy.
     ///
     /// Rotor m has the inertia Ja_m and the speed N_m dq (row m of the gear). As in (26), Ia_j = sum_m N_mj^2 Ja_m, so
-    /// A_j = sum_m (inverse of (N o N)^T)[m][j] N_m^T N_m. Where N o N is singular (a differential), Ia_m stands
+    /// A_j = sum_m `(inverse of (N o N)^T)[m][j]` N_m^T N_m. Where N o N is singular (a differential), Ia_m stands
     /// for N_mm^2 Ja_m alone and A_m = N_m^T N_m / N_mm^2.
     pub fn rotor_matrices(&self) -> Vec<Vec<Vec<BigRational>>> {
         let gear = exact(&self.gear);

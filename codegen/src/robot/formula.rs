@@ -1,4 +1,4 @@
-//! Reading the expressions of a table: numbers, pi, q<j>, constants, + - * / and parentheses.
+//! Reading the expressions of a table: numbers, pi, `q<j>`, constants, + - * / and parentheses.
 
 use super::Expression;
 

@@ -20,19 +20,19 @@
 //!
 //! Base parameters (13 of 28 standard parameters):
 //!
-//! - `ZZ1R` = ZZ1 + Ia1 + d2^2*M2 [kg.m2]
-//! - `MX1R` = MX1 + d2*M2 [kg.m]
-//! - `MY1` = MY1 [kg.m]
-//! - `Fv1` = Fv1 [N.m.s/rad]
-//! - `Fc1` = Fc1 [N.m]
-//! - `off1` = off1 [N.m]
-//! - `ZZ2` = ZZ2 [kg.m2]
-//! - `MX2` = MX2 [kg.m]
-//! - `MY2` = MY2 [kg.m]
-//! - `Ia2` = Ia2 [kg.m2]
-//! - `Fv2` = Fv2 [N.m.s/rad]
-//! - `Fc2` = Fc2 [N.m]
-//! - `off2` = off2 [N.m]
+//! - `ZZ1R` = ZZ1 + Ia1 + d2^2*M2, kg.m2
+//! - `MX1R` = MX1 + d2*M2, kg.m
+//! - `MY1` = MY1, kg.m
+//! - `Fv1` = Fv1, N.m.s/rad
+//! - `Fc1` = Fc1, N.m
+//! - `off1` = off1, N.m
+//! - `ZZ2` = ZZ2, kg.m2
+//! - `MX2` = MX2, kg.m
+//! - `MY2` = MY2, kg.m
+//! - `Ia2` = Ia2, kg.m2
+//! - `Fv2` = Fv2, N.m.s/rad
+//! - `Fc2` = Fc2, N.m
+//! - `off2` = off2, N.m
 
 #![allow(non_snake_case, unused_variables, clippy::all)]
 use dynid_runtime::model::{

@@ -14,7 +14,7 @@ pub fn array<const K: usize>(values: &[f64]) -> &[f64; K] {
     }
 }
 
-/// [`array`] for a result.
+/// [`array()`] for a result.
 ///
 /// # Panics
 /// Where the length is another one: a bug of the caller.

@@ -125,7 +125,7 @@ pub struct BaseParameter {
     pub name: Cow<'static, str>,
     /// Index in `Robot::standard` of the parameter whose column of IDM_st is kept.
     pub standard: usize,
-    /// chi = sum of coefficient * chi_st[index]; the kept parameter itself has coefficient 1.
+    /// chi = sum of coefficient * `chi_st[index]`; the kept parameter itself has coefficient 1.
     pub combination: Cow<'static, [(usize, f64)]>,
     /// The relation in symbols of the table: `ZZ1 + Ia1 + d3^2*M3 + ...`.
     pub relation: Cow<'static, str>,

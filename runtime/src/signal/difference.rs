@@ -15,7 +15,7 @@ pub enum Stencil {
 }
 
 impl Stencil {
-    /// Weights of x[k] - x[-k] for k = 1, 2, ... in units of 1/h (Fornberg 1988).
+    /// Weights of `x[k] - x[-k]` for k = 1, 2, ... in units of 1/h (Fornberg 1988).
     pub fn weights(self) -> &'static [f64] {
         match self {
             Self::Three => &[0.5],
