@@ -102,7 +102,7 @@ fn what_is_no_manifest_is_told() {
         (&b""[..], "empty"),
         (b"# only a comment\n", "empty"),
         (b"robot: \xff\xfe", "UTF-8"),
-        (b"- a\n- b\n", "expected"),
+        (b"- a\n- b\n", "not a recording YAML"),
         (b"robot: a\n", "missing field"),
         (b"time: {rate: 0}", "missing field"),
     ] {
