@@ -13,7 +13,7 @@ use dynid_runtime::signal::Motion;
 use super::validate::{known_parameters, prediction, read_model};
 use crate::failure::Failure;
 use crate::output::{Bar, print, table, write, write_json};
-use crate::pages::diagnosis::{KeptApart, joint_words, page};
+use crate::pages::diagnosis::{KeptApart, confidence_words, joint_words, page};
 use crate::recorded::{Measured, RecordingOptions, left_out_words, measure, read};
 
 /// What to diagnose and where to put it.
@@ -260,10 +260,10 @@ fn summary(measured: &Measured, diagnosis: &Diagnosis, kept_apart: Option<&KeptA
             .collect();
         text.push_str(&format!("  {}\n", numbers.join(", ")));
         text.push_str(&format!(
-            "  held-out error of its joints {} -> {}, confidence {}",
+            "  held-out error of its joints {} -> {}, {}",
             percent(finding.held_out_before),
             percent(finding.held_out_after),
-            significant(finding.confidence, 4)
+            confidence_words(finding.confidence)
         ));
     }
     for c in &diagnosis.cannot_tell {

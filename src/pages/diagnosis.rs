@@ -116,6 +116,13 @@ pub(crate) fn joint_words(joints: &[usize]) -> String {
     }
 }
 
+/// The confidence, and a warning where it is too low to build on.
+pub(crate) fn confidence_words(confidence: f64) -> String {
+    const PROVEN: f64 = 0.95;
+    let doubt = if confidence < PROVEN { " (weak: record more motion before you build on it)" } else { "" };
+    format!("confidence {}{doubt}", significant(confidence, 4))
+}
+
 fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
     let words = EffectKind::from_id(&finding.effect).map(EffectKind::words);
     let title = words.map_or(finding.effect.as_str(), |w| w.title);
@@ -152,10 +159,10 @@ fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
         .collect();
     page.table(&["parameter", "value", "sigma", "unit"], &parameters);
     page.paragraph(&format!(
-        "On held-back motion its joints' error falls from {} to {}; confidence {}.",
+        "On held-back motion its joints' error falls from {} to {}; {}.",
         percent(finding.held_out_before),
         percent(finding.held_out_after),
-        significant(finding.confidence, 4)
+        confidence_words(finding.confidence)
     ));
     if !finding.alternatives.is_empty() {
         page.subheading("Other explanations");
