@@ -2,14 +2,22 @@
 //!
 //! `cargo run --release --example concealment -- --out docs/concealment.md`
 //!
-//! Every run is a closed-loop simulation of three random motions of 8 s at 500 Hz, with the robot's nominal noise. The
-//! diagnosis gets the recorded motions alone. Runs without any effect give the rate of false alarms.
+//! Every run is a closed-loop simulation of one to three random motions at 500 Hz, with the robot's nominal noise, on
+//! a random joint. The diagnosis gets the recorded motions alone. Runs without any effect give the rate of false
+//! alarms. With `--dump` the recordings are written as folders of a challenge, and nothing is diagnosed.
 
+mod dump;
 mod hide;
+mod motions;
 mod page;
+mod random;
+mod secret;
+mod size;
 mod torques;
+mod visible;
+mod world;
 
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,14 +25,15 @@ use std::time::Instant;
 
 use clap::Parser;
 use dynid::models;
-use dynid_runtime::diagnosis::{Settings, Silent, diagnose};
+use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
 use dynid_runtime::effects::EffectKind;
+
+use hide::{Hidden, recordings};
+use random::Random;
+use size::SIZES;
 
 /// Anything that ends a run.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
-
-/// Sizes: barely visible, clear, obvious.
-pub const SIZES: [&str; 3] = ["small", "medium", "large"];
 
 /// What to hide, and where the table goes.
 #[derive(Debug, Parser)]
@@ -38,15 +47,24 @@ pub struct Options {
     /// Sizes
     #[arg(long, value_delimiter = ',', default_value = "small,medium,large")]
     sizes: Vec<String>,
-    /// How many seeds; each has its own motions, joint, phases and noise
+    /// How many seeds; each has its own motions, joint, shape and noise
     #[arg(long, default_value_t = 5)]
     seeds: u64,
+    /// The first seed
+    #[arg(long, default_value_t = 1)]
+    first_seed: u64,
+    /// Hide two effects at once: each effect with another one of the list
+    #[arg(long)]
+    pairs: bool,
     /// Threads; the result does not depend on them
     #[arg(long, default_value_t = 2)]
     threads: usize,
     /// Markdown file for the tables [default: standard output]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Write the cases to this folder as a challenge, instead of diagnosing them
+    #[arg(long, conflicts_with = "out")]
+    dump: Option<PathBuf>,
 }
 
 /// One simulation and one diagnosis.
@@ -54,38 +72,88 @@ pub struct Options {
 pub struct Case {
     /// Name of the robot.
     pub robot: String,
-    /// What is hidden; `None` for nothing.
-    pub effect: Option<EffectKind>,
+    /// What is hidden; empty for nothing.
+    pub effects: Vec<EffectKind>,
     /// Index in [`SIZES`].
     pub size: usize,
     /// Seed.
     pub seed: u64,
 }
 
+impl Case {
+    /// What its folder is called.
+    pub fn name(&self) -> String {
+        let hidden: Vec<&str> = self.effects.iter().map(|e| e.id()).collect();
+        let hidden = if hidden.is_empty() { "none".to_owned() } else { hidden.join("+") };
+        format!("{}_{hidden}_{}_{}", self.robot, self.size_name(), self.seed)
+    }
+
+    fn size_name(&self) -> &'static str {
+        SIZES[self.size]
+    }
+}
+
 /// How a case ended.
 #[derive(Debug, Clone, Default)]
 pub struct Score {
-    /// Number of the joint that hid the effect, where it has one.
-    pub joint: Option<usize>,
+    /// What was hidden, and whether it was found: something on its joint, itself on its joint, or among what cannot
+    /// be told apart there.
+    pub hidden: Vec<(Hidden, Outcome)>,
+    /// Findings that are none of the hidden effects on its joint.
+    pub others: Vec<(String, Vec<usize>)>,
+    /// Effects found anywhere, each once.
+    pub found: Vec<String>,
+    /// Why there is no diagnosis.
+    pub refused: Option<String>,
+    /// Time of the diagnosis, s.
+    pub seconds: f64,
+}
+
+impl Score {
+    fn not_simulated() -> Self {
+        Self { refused: Some("it could not be simulated".to_owned()), ..Self::default() }
+    }
+
+    /// Whether everything hidden was named, and nothing else.
+    pub fn solved(&self) -> bool {
+        self.refused.is_none() && self.others.is_empty() && self.hidden.iter().all(|(_, o)| o.named)
+    }
+}
+
+/// What became of a hidden effect.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Outcome {
     /// Something was found on the joint.
     pub detected: bool,
     /// The effect itself was found on its joint.
     pub named: bool,
     /// The effect is among those that the diagnosis says it cannot tell apart there.
     pub cannot_tell: bool,
-    /// Findings that are not the hidden effect on its joint.
-    pub others: Vec<(String, Vec<usize>)>,
-    /// Effects found anywhere, each once.
-    pub found: Vec<String>,
-    /// Why there is no diagnosis.
-    pub refused: Option<String>,
 }
 
 fn main() -> Result<(), Failure> {
     let options = Options::parse();
     let cases = cases(&options)?;
     let start = Instant::now();
-    let scores = run(&cases, options.threads);
+    if let Some(folder) = &options.dump {
+        let failed = in_parallel(&cases, options.threads, |case| {
+            let model = models::find(&case.robot).ok_or("no such robot")?;
+            let recordings = recordings(model, case, true)?;
+            dump::write(folder, model.robot(), case, &recordings)?;
+            Ok((page::hidden_in_words(&recordings.hidden), ()))
+        });
+        let failed = failed.into_iter().filter(Option::is_none).count();
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{} of {} cases written in {seconds:.0} s", cases.len() - failed, cases.len());
+        return Ok(());
+    }
+    let scores: Vec<Score> = in_parallel(&cases, options.threads, |case| {
+        let score = score(case)?;
+        Ok((page::in_a_line(&score), score))
+    })
+    .into_iter()
+    .map(|score| score.unwrap_or_else(Score::not_simulated))
+    .collect();
     let minutes = start.elapsed().as_secs_f64() / 60.0;
     let text = page::markdown(&cases, &scores, &options, minutes);
     match &options.out {
@@ -96,29 +164,34 @@ fn main() -> Result<(), Failure> {
 }
 
 fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
-    let mut effects: Vec<Option<EffectKind>> = Vec::new();
+    let mut effects: Vec<Vec<EffectKind>> = Vec::new();
     for id in &options.effects {
         let known = EffectKind::from_id(id);
         if known.is_none() && id != "none" {
             return Err(format!("--effects {id}: the catalogue has no such effect").into());
         }
-        effects.push(known);
+        effects.push(known.into_iter().collect());
     }
     if effects.is_empty() {
-        effects = EffectKind::ALL.into_iter().map(Some).chain([None]).collect();
+        effects = EffectKind::ALL.into_iter().map(|e| vec![e]).chain([Vec::new()]).collect();
     }
     let mut cases = Vec::new();
-    for seed in 1..=options.seeds {
+    for seed in options.first_seed..options.first_seed + options.seeds {
         for robot in &options.robots {
             models::find(robot).ok_or_else(|| format!("--robots {robot}: robots/ has no such robot"))?;
-            for &effect in &effects {
+            for hidden in &effects {
                 for name in &options.sizes {
                     let size = SIZES
                         .iter()
                         .position(|s| s == name)
                         .ok_or_else(|| format!("--sizes {name}: one of {}", SIZES.join(", ")))?;
+                    let mut hidden = hidden.clone();
+                    if options.pairs {
+                        let Some(&first) = hidden.first() else { continue };
+                        hidden.extend(partner(first, &effects, robot, name, seed));
+                    }
                     // Without an effect a size is only another run.
-                    cases.push(Case { robot: robot.clone(), effect, size, seed });
+                    cases.push(Case { robot: robot.clone(), effects: hidden, size, seed });
                 }
             }
         }
@@ -126,69 +199,99 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
     Ok(cases)
 }
 
-/// Runs the cases on several threads; the order of the result is that of the cases.
-fn run(cases: &[Case], threads: usize) -> Vec<Score> {
+/// Another effect of the list that can be hidden with `first`: both are changes, or none is.
+fn partner(
+    first: EffectKind,
+    effects: &[Vec<EffectKind>],
+    robot: &str,
+    size: &str,
+    seed: u64,
+) -> Option<EffectKind> {
+    let possible: Vec<EffectKind> = effects
+        .iter()
+        .flatten()
+        .copied()
+        .filter(|&e| e != first && secret::is_change(e) == secret::is_change(first))
+        .collect();
+    let drawn = Random::of(&["partner", robot, size, first.id()], seed).below(possible.len());
+    possible.get(drawn).copied()
+}
+
+/// Does something with every case, on several threads; the order of the results is that of the cases. Each is told on
+/// standard error as it ends; one that fails gives `None`.
+fn in_parallel<T: Send>(
+    cases: &[Case],
+    threads: usize,
+    work: impl Fn(&Case) -> Result<(String, T), Failure> + Sync,
+) -> Vec<Option<T>> {
     let next = AtomicUsize::new(0);
-    let scores: Mutex<Vec<Score>> = Mutex::new(vec![Score::default(); cases.len()]);
     let done = AtomicUsize::new(0);
-    let watched = std::io::stderr().is_terminal();
+    let results: Mutex<Vec<Option<T>>> = Mutex::new(cases.iter().map(|_| None).collect());
     std::thread::scope(|scope| {
         for _ in 0..threads.max(1) {
             scope.spawn(|| {
                 while let Some((k, case)) =
                     Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, cases.get(k)?)))
                 {
-                    let score = score(case).unwrap_or_else(|error| Score {
-                        refused: Some(error.to_string()),
-                        ..Score::default()
-                    });
+                    let (words, result) = match work(case) {
+                        Ok((words, result)) => (words, Some(result)),
+                        Err(error) => (error.to_string(), None),
+                    };
                     let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    if watched {
-                        eprint!("\r{finished} of {} runs", cases.len());
-                    }
-                    if let Ok(mut all) = scores.lock() {
-                        all[k] = score;
+                    eprintln!("{finished}/{} {}: {words}", cases.len(), case.name());
+                    if let Ok(mut all) = results.lock() {
+                        all[k] = result;
                     }
                 }
             });
         }
     });
-    if watched {
-        eprintln!();
-    }
-    scores.into_inner().unwrap_or_default()
+    results.into_inner().unwrap_or_default()
 }
 
 /// Simulates, diagnoses, and only then compares.
 fn score(case: &Case) -> Result<Score, Failure> {
     let model = models::find(&case.robot).ok_or("no such robot")?;
-    let hidden = hide::recorded(model, case)?;
+    let recordings = recordings(model, case, false)?;
     let settings = Settings { threads: 1, ..Settings::default() };
-    let found = match diagnose(model, &hidden.motions, &hidden.baseline, &settings, &Silent) {
-        Ok(found) => found,
+    let start = Instant::now();
+    let found = diagnose(model, &recordings.motions, &recordings.baseline, &settings, &Silent);
+    let mut score = Score { seconds: start.elapsed().as_secs_f64(), ..Score::default() };
+    match found {
+        Ok(found) => compare(&found, recordings.hidden, &mut score),
         Err(refusal) => {
-            return Ok(Score { joint: hidden.joint, refused: Some(refusal.to_string()), ..Score::default() });
+            score.hidden = recordings.hidden.into_iter().map(|h| (h, Outcome::default())).collect();
+            score.refused = Some(refusal.to_string());
         }
+    }
+    Ok(score)
+}
+
+fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
+    let here = |hidden: &Hidden, joints: &[usize]| {
+        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&(joint + 1)))
     };
-    let here =
-        |joints: &[usize]| joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&joint));
-    let id = case.effect.map(EffectKind::id);
-    let right = |effect: &str, joints: &[usize]| Some(effect) == id && here(joints);
-    let mut score = Score { joint: hidden.joint, ..Score::default() };
     for finding in &found.findings {
         if !score.found.contains(&finding.effect) {
             score.found.push(finding.effect.clone());
         }
-        if right(&finding.effect, &finding.joints) {
-            score.named = true;
-        } else {
+        if !hidden.iter().any(|h| finding.effect == h.effect.id() && here(h, &finding.joints)) {
             score.others.push((finding.effect.clone(), finding.joints.clone()));
         }
-        score.detected |= case.effect.is_some() && here(&finding.joints);
     }
-    score.cannot_tell = found
-        .cannot_tell
-        .iter()
-        .any(|c| here(&c.joints) && c.between.iter().any(|effect| Some(effect.as_str()) == id));
-    Ok(score)
+    score.hidden = hidden
+        .into_iter()
+        .map(|h| {
+            let id = h.effect.id();
+            let outcome = Outcome {
+                detected: found.findings.iter().any(|f| here(&h, &f.joints)),
+                named: found.findings.iter().any(|f| f.effect == id && here(&h, &f.joints)),
+                cannot_tell: found
+                    .cannot_tell
+                    .iter()
+                    .any(|c| here(&h, &c.joints) && c.between.iter().any(|effect| effect == id)),
+            };
+            (h, outcome)
+        })
+        .collect();
 }

@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use dynid_runtime::effects::EffectKind;
 
-use crate::{Case, Options, SIZES, Score, hide};
+use crate::hide::Hidden;
+use crate::size::{SIZES, VISIBLE, magnitude};
+use crate::{Case, Options, Outcome, Score};
 
 /// One row of input to the tables.
 type Pair<'a> = (&'a Case, &'a Score);
@@ -13,15 +15,71 @@ type Pair<'a> = (&'a Case, &'a Score);
 pub fn markdown(cases: &[Case], scores: &[Score], options: &Options, minutes: f64) -> String {
     let all: Vec<Pair<'_>> = cases.iter().zip(scores).collect();
     let effects: Vec<EffectKind> =
-        EffectKind::ALL.into_iter().filter(|&e| cases.iter().any(|c| c.effect == Some(e))).collect();
+        EffectKind::ALL.into_iter().filter(|e| cases.iter().any(|c| c.effects.contains(e))).collect();
     let mut text = String::from("# Concealment test\n\n");
     introduction(&mut text, &all, options, minutes);
     rates(&mut text, &all, &effects);
+    by_visibility(&mut text, &all);
     robots(&mut text, &all, options);
     confusion(&mut text, &all, &effects);
     what_is_hidden(&mut text, &effects);
     every_run(&mut text, &all);
     text
+}
+
+/// What was hidden, with its magnitude and how much of it can be seen.
+pub fn hidden_in_words(hidden: &[Hidden]) -> String {
+    let words = |h: &Hidden| {
+        format!("{} {:.3} (visible {:.1})", at(h.effect.id(), &joints_of(h)), h.magnitude, h.visible)
+    };
+    if hidden.is_empty() {
+        "nothing".to_owned()
+    } else {
+        hidden.iter().map(words).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// A finished run in a line.
+pub fn in_a_line(score: &Score) -> String {
+    let hidden: Vec<String> = score
+        .hidden
+        .iter()
+        .map(|(h, outcome)| {
+            format!("{} (visible {:.1}) {}", at(h.effect.id(), &joints_of(h)), h.visible, outcome.word())
+        })
+        .collect();
+    let mut line = hidden.join(", ");
+    if let Some(reason) = &score.refused {
+        let _ = write!(line, " refused: {reason}");
+    }
+    if !score.others.is_empty() {
+        let _ = write!(line, " besides: {}", others(score));
+    }
+    let _ = write!(line, " ({:.1} s)", score.seconds);
+    line
+}
+
+impl Outcome {
+    fn word(self) -> &'static str {
+        match self {
+            Outcome { named: true, .. } => "named",
+            Outcome { cannot_tell: true, .. } => "cannot tell",
+            _ => "missed",
+        }
+    }
+}
+
+fn joints_of(hidden: &Hidden) -> Vec<usize> {
+    hidden.joint.map(|j| j + 1).into_iter().collect()
+}
+
+fn at(effect: &str, joints: &[usize]) -> String {
+    let on: Vec<String> = joints.iter().map(ToString::to_string).collect();
+    if on.is_empty() { effect.to_owned() } else { format!("{effect}@{}", on.join("+")) }
+}
+
+fn others(score: &Score) -> String {
+    score.others.iter().map(|(effect, joints)| at(effect, joints)).collect::<Vec<_>>().join(" ")
 }
 
 fn line(text: &mut String, words: &str) {
@@ -31,11 +89,13 @@ fn line(text: &mut String, words: &str) {
 
 fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes: f64) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    line(
+    let how = if options.pairs { "two at a time" } else { "one at a time" };
+    let _ = writeln!(
         text,
-        "Every effect of the catalogue is hidden in simulated robots, one at a time, and diagnosed without being told. \
-         A run is three random Fourier motions of 8 s at 500 Hz in closed loop, with the nominal noise of the robot. \
-         Only after the diagnosis is it compared with what was hidden.\n",
+        "Every effect of the catalogue is hidden in simulated robots, {how}, and diagnosed without being told. A run is \
+         one to three random motions, 16 to 24 s together (Fourier series of 4 to 12 harmonics, or points joined by a \
+         profile), at 500 Hz in closed loop, with the nominal noise of the robot. Joint, shape and motions are drawn \
+         for each run. Only after the diagnosis is it compared with what was hidden.\n"
     );
     let mut command = format!(
         "cargo run --release --example concealment -- --robots {} --sizes {} --seeds {}",
@@ -43,25 +103,29 @@ fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes:
         options.sizes.join(","),
         options.seeds
     );
+    if options.first_seed != 1 {
+        let _ = write!(command, " --first-seed {}", options.first_seed);
+    }
     if !options.effects.is_empty() {
         let _ = write!(command, " --effects {}", options.effects.join(","));
+    }
+    if options.pairs {
+        command.push_str(" --pairs");
     }
     if let Some(path) = &options.out {
         let _ = write!(command, " --out {}", path.display());
     }
     let _ = writeln!(text, "```\n{command}\n```\n");
-    let full = 3 * 5 * SIZES.len() * (EffectKind::ALL.len() + 1);
-    let each = minutes / all.len().max(1) as f64;
     let _ = writeln!(
         text,
-        "{} runs took {minutes:.1} minutes on {} threads of a machine with {cores} cores. The full test (three robots, \
-         three sizes, five seeds: {full} runs) would take {:.0} minutes at this pace.\n",
+        "{} runs took {minutes:.1} minutes on {} threads of a machine with {cores} cores; the median diagnosis took \
+         {:.1} s on one thread.\n",
         all.len(),
         options.threads,
-        each * full as f64
+        median(all.iter().map(|(_, s)| s.seconds).collect())
     );
     let plain: Vec<&Pair<'_>> =
-        all.iter().filter(|(c, s)| c.effect.is_none() && s.refused.is_none()).collect();
+        all.iter().filter(|(c, s)| c.effects.is_empty() && s.refused.is_none()).collect();
     if !plain.is_empty() {
         let alarms = plain.iter().filter(|(_, s)| !s.others.is_empty()).count();
         let _ = writeln!(
@@ -70,15 +134,34 @@ fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes:
             plain.len()
         );
     }
+    let _ = writeln!(
+        text,
+        "The sizes are relative to what can be seen. *Visible* is the torque of the effect that no refit of the standard \
+         parameters can take over, relative to the noise: sqrt(r² - r0²)/r0 of the residuals of the standard model \
+         with and without the effect, on the same motion with the same noise, in a band of 25 Hz or 100 Hz, where it \
+         shows more, on the joint where it shows most (a contact: while it lasts). `small` aims at {}, `medium` at {}, \
+         `large` at {}; where no robot has that much of an effect, at the most that it may have, and the column says \
+         what was seen.\n",
+        VISIBLE[0], VISIBLE[1], VISIBLE[2]
+    );
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// In how many of the runs something holds.
-fn share(runs: &[Pair<'_>], holds: impl Fn(&Score) -> bool) -> String {
+fn share<T>(runs: &[T], holds: impl Fn(&T) -> bool) -> String {
     if runs.is_empty() {
         return "-".to_owned();
     }
-    let count = runs.iter().filter(|(_, s)| holds(s)).count();
-    format!("{count}/{}", runs.len())
+    format!("{}/{}", runs.iter().filter(|run| holds(run)).count(), runs.len())
+}
+
+/// Every hidden effect with its run.
+fn hidden_of<'a>(all: &[Pair<'a>]) -> Vec<(&'a Case, &'a Score, &'a Hidden, Outcome)> {
+    all.iter().flat_map(|&(c, s)| s.hidden.iter().map(move |(h, o)| (c, s, h, *o))).collect()
 }
 
 fn rates(text: &mut String, all: &[Pair<'_>], effects: &[EffectKind]) {
@@ -86,56 +169,86 @@ fn rates(text: &mut String, all: &[Pair<'_>], effects: &[EffectKind]) {
     line(
         text,
         "Detected: something was found on the joint. Named: the effect itself, on its joint. Cannot tell: the effect is \
-         among those that the diagnosis says the motion cannot tell apart. Others: findings beside it or instead of it.\n",
+         among those that the diagnosis says the motion cannot tell apart. Others: findings beside it or instead of it. \
+         Visible: median, and least to most.\n",
     );
-    line(text, "| effect | size | detected | named | named or cannot tell | runs with others | refused |");
-    line(text, "|---|---|---|---|---|---|---|");
-    let mut row = |name: &str, size: &str, runs: &[Pair<'_>]| {
-        let _ = writeln!(
-            text,
-            "| {name} | {size} | {} | {} | {} | {} | {} |",
-            share(runs, |s| s.detected),
-            share(runs, |s| s.named),
-            share(runs, |s| s.named || s.cannot_tell),
-            share(runs, |s| !s.others.is_empty()),
-            share(runs, |s| s.refused.is_some())
-        );
-    };
-    for &effect in effects {
+    line(
+        text,
+        "| effect | size | visible | detected | named | named or cannot tell | runs with others | refused |",
+    );
+    line(text, "|---|---|---|---|---|---|---|---|");
+    let every = hidden_of(all);
+    let kinds = effects.iter().map(|&e| Some(e)).chain([None]);
+    for kind in kinds {
         for (size, name) in SIZES.iter().enumerate() {
-            let runs: Vec<Pair<'_>> =
-                all.iter().filter(|(c, _)| c.effect == Some(effect) && c.size == size).copied().collect();
-            if !runs.is_empty() {
-                row(effect.id(), name, &runs);
+            let runs: Vec<_> =
+                every.iter().filter(|r| kind.is_none_or(|k| r.2.effect == k) && r.0.size == size).collect();
+            if runs.is_empty() {
+                continue;
             }
+            let visible: Vec<f64> = runs.iter().map(|r| r.2.visible).collect();
+            let (least, most) =
+                visible.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
+            let _ = writeln!(
+                text,
+                "| {} | {name} | {:.1} ({least:.1} to {most:.1}) | {} | {} | {} | {} | {} |",
+                kind.map_or("all", EffectKind::id),
+                median(visible),
+                share(&runs, |r| r.3.detected),
+                share(&runs, |r| r.3.named),
+                share(&runs, |r| r.3.named || r.3.cannot_tell),
+                share(&runs, |r| !r.1.others.is_empty()),
+                share(&runs, |r| r.1.refused.is_some())
+            );
         }
     }
-    for (size, name) in SIZES.iter().enumerate() {
-        let runs: Vec<Pair<'_>> =
-            all.iter().filter(|(c, _)| c.effect.is_some() && c.size == size).copied().collect();
-        if !runs.is_empty() {
-            row("all", name, &runs);
-        }
+    text.push('\n');
+}
+
+fn by_visibility(text: &mut String, all: &[Pair<'_>]) {
+    line(text, "## By what can be seen\n");
+    line(text, "| visible | detected | named | named or cannot tell |");
+    line(text, "|---|---|---|---|");
+    let every = hidden_of(all);
+    let edges = [0.0, 0.5, 1.5, 4.0, f64::INFINITY];
+    for edge in edges.windows(2) {
+        let runs: Vec<_> = every.iter().filter(|r| (edge[0]..edge[1]).contains(&r.2.visible)).collect();
+        let words = if edge[1].is_finite() {
+            format!("{} to {}", edge[0], edge[1])
+        } else {
+            format!("{} and more", edge[0])
+        };
+        let _ = writeln!(
+            text,
+            "| {words} | {} | {} | {} |",
+            share(&runs, |r| r.3.detected),
+            share(&runs, |r| r.3.named),
+            share(&runs, |r| r.3.named || r.3.cannot_tell)
+        );
     }
     text.push('\n');
 }
 
 fn robots(text: &mut String, all: &[Pair<'_>], options: &Options) {
     line(text, "## By robot\n");
-    line(text, "| robot | detected | named | runs with others | false alarms without effect |");
+    line(
+        text,
+        "| robot | detected | named | runs with all named and nothing else | false alarms without effect |",
+    );
     line(text, "|---|---|---|---|---|");
     for robot in &options.robots {
         let of = |hidden: bool| -> Vec<Pair<'_>> {
-            all.iter().filter(|(c, _)| c.robot == *robot && c.effect.is_some() == hidden).copied().collect()
+            all.iter().filter(|(c, _)| c.robot == *robot && c.effects.is_empty() != hidden).copied().collect()
         };
         let (runs, plain) = (of(true), of(false));
+        let hidden = hidden_of(&runs);
         let _ = writeln!(
             text,
             "| {robot} | {} | {} | {} | {} |",
-            share(&runs, |s| s.detected),
-            share(&runs, |s| s.named),
-            share(&runs, |s| !s.others.is_empty()),
-            share(&plain, |s| !s.others.is_empty())
+            share(&hidden, |r| r.3.detected),
+            share(&hidden, |r| r.3.named),
+            share(&runs, |(_, s)| s.solved()),
+            share(&plain, |(_, s)| !s.others.is_empty())
         );
     }
     text.push('\n');
@@ -154,11 +267,11 @@ fn confusion(text: &mut String, all: &[Pair<'_>], effects: &[EffectKind]) {
     }
     line(text, &format!("{header} nothing |"));
     line(text, &format!("|---|{}", "---|".repeat(EffectKind::ALL.len() + 1)));
-    let rows =
-        effects.iter().map(|&e| Some(e)).chain(all.iter().any(|(c, _)| c.effect.is_none()).then_some(None));
-    for hidden in rows {
+    let plain = all.iter().any(|(c, _)| c.effects.is_empty());
+    for hidden in effects.iter().map(|&e| Some(e)).chain(plain.then_some(None)) {
+        let here = |c: &Case| hidden.map_or(c.effects.is_empty(), |e| c.effects.contains(&e));
         let runs: Vec<Pair<'_>> =
-            all.iter().filter(|(c, s)| c.effect == hidden && s.refused.is_none()).copied().collect();
+            all.iter().filter(|(c, s)| here(c) && s.refused.is_none()).copied().collect();
         match hidden {
             Some(effect) => {
                 let number = EffectKind::ALL.iter().position(|&e| e == effect).map_or(0, |k| k + 1);
@@ -180,47 +293,38 @@ fn confusion(text: &mut String, all: &[Pair<'_>], effects: &[EffectKind]) {
 
 fn what_is_hidden(text: &mut String, effects: &[EffectKind]) {
     line(text, "## What is hidden\n");
-    line(text, "| effect | small | medium | large | of |");
-    line(text, "|---|---|---|---|---|");
+    line(text, "| effect | magnitude | most |");
+    line(text, "|---|---|---|");
     for &effect in effects {
-        let ([small, medium, large], of) = hide::sizes(effect);
-        let _ = writeln!(text, "| {} | {small} | {medium} | {large} | {of} |", effect.id());
+        let (what, _, most) = magnitude(effect);
+        let _ = writeln!(text, "| {} | {what} | {most} |", effect.id());
     }
     text.push('\n');
 }
 
 fn every_run(text: &mut String, all: &[Pair<'_>]) {
-    line(text, "## Runs in which the effect was not named, or more was\n");
-    line(text, "| robot | hidden | joint | size | seed | outcome | found besides |");
-    line(text, "|---|---|---|---|---|---|---|");
+    line(text, "## Runs in which an effect was not named, or more was\n");
+    line(text, "| robot | size | seed | hidden, with magnitude | outcome | found besides |");
+    line(text, "|---|---|---|---|---|---|");
     for (case, score) in all {
-        if score.refused.is_none() && score.others.is_empty() && (score.named || case.effect.is_none()) {
+        if score.solved() {
             continue;
         }
-        let outcome = match (&score.refused, score.named, score.cannot_tell) {
-            (Some(reason), ..) => format!("refused: {reason}"),
-            (_, true, _) => "named".to_owned(),
-            (_, _, true) => "cannot tell".to_owned(),
-            _ if case.effect.is_none() => "false alarm".to_owned(),
-            _ => "missed".to_owned(),
+        let hidden: Vec<Hidden> = score.hidden.iter().map(|(h, _)| h.clone()).collect();
+        let outcomes: Vec<&str> = score.hidden.iter().map(|(_, o)| o.word()).collect();
+        let outcome = match &score.refused {
+            Some(reason) => format!("refused: {reason}"),
+            None if outcomes.is_empty() => "false alarm".to_owned(),
+            None => outcomes.join(", "),
         };
-        let others: Vec<String> = score
-            .others
-            .iter()
-            .map(|(effect, joints)| {
-                let on: Vec<String> = joints.iter().map(ToString::to_string).collect();
-                if on.is_empty() { effect.clone() } else { format!("{effect}@{}", on.join("+")) }
-            })
-            .collect();
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {outcome} | {} |",
+            "| {} | {} | {} | {} | {outcome} | {} |",
             case.robot,
-            case.effect.map_or("nothing", EffectKind::id),
-            score.joint.map_or_else(|| "-".to_owned(), |j| j.to_string()),
             SIZES[case.size],
             case.seed,
-            others.join(" ")
+            hidden_in_words(&hidden),
+            others(score)
         );
     }
 }

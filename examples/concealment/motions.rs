@@ -1,0 +1,77 @@
+//! The motions of a case, and how they are recorded.
+
+use dynid_runtime::model::Model;
+use dynid_runtime::recording::Trajectory;
+use dynid_runtime::simulation::excitation::{
+    ExcitationSettings, ExcitingMotion, Identification, MotionKind, Profile, excite,
+};
+use dynid_runtime::simulation::{LoopSettings, simulate};
+
+use crate::Failure;
+use crate::random::Random;
+use crate::secret::Secret;
+use crate::world::{World, distort};
+use dynid_runtime::effects::EffectKind;
+
+/// Share of the limits that the motions use.
+pub const SHARE: f64 = 0.8;
+/// Control rate, Hz, and control samples for each recorded row.
+const RATE: f64 = 2000.0;
+const RECORD_EVERY: usize = 4;
+
+/// Random motions within the robot's limits, about `length` seconds each: Fourier series of 4 to 12 harmonics, or
+/// points that are joined by one of two profiles.
+pub fn planned(
+    model: &dyn Model,
+    count: usize,
+    length: f64,
+    random: &mut Random,
+) -> Result<Vec<ExcitingMotion>, Failure> {
+    let robot = model.robot();
+    let chi = robot.nominal.as_ref().map(|nominal| robot.base_from_standard(&nominal.standard));
+    let mut motions = Vec::new();
+    for _ in 0..count {
+        let kind = match random.below(4) {
+            0 | 1 => MotionKind::Fourier { harmonics: 4 + random.below(9), period: length, periods: 1 },
+            draw => MotionKind::PointToPoint {
+                points: (length * (0.8 + 0.6 * random.share())) as usize,
+                profile: if draw == 2 { Profile::Quintic } else { Profile::TrapezoidalAcceleration },
+                pause: 0.05,
+            },
+        };
+        let settings = ExcitationSettings {
+            kind,
+            identification: Identification::Idim,
+            sets: 1,
+            starts: 1,
+            evaluations: 0,
+            share: SHARE,
+            seed: random.bits(),
+        };
+        motions.extend(excite(model, chi.as_deref(), &settings, &|_| {})?.motions);
+    }
+    Ok(motions)
+}
+
+/// Records a world on planned motions. Motions that are recorded with the same `noise` seed have the same noise.
+pub fn recorded(
+    world: &World,
+    motions: &[ExcitingMotion],
+    secrets: &[(Secret, f64)],
+    noise: u64,
+) -> Result<Vec<Trajectory>, Failure> {
+    let late = secrets.iter().any(|(s, _)| s.effect == EffectKind::TimeDelay);
+    let mut all = Vec::new();
+    for (k, motion) in motions.iter().enumerate() {
+        let mut settings =
+            LoopSettings::nominal(world.model(), &world.known(), motion, RATE, noise.wrapping_add(k as u64));
+        settings.record_every = if late { 1 } else { RECORD_EVERY };
+        settings.name = format!("motion {}", k + 1);
+        let mut trajectory = simulate(&mut world.plant(k)?, motion, &settings, &mut |_| {})?.recorded;
+        for (secret, magnitude) in secrets {
+            distort(&mut trajectory, secret, *magnitude, RATE, RECORD_EVERY);
+        }
+        all.push(trajectory);
+    }
+    Ok(all)
+}
