@@ -13,3 +13,4 @@ pub mod pages;
 pub mod paper_tables;
 pub mod recorded;
 pub mod robots;
+pub mod scoring;

@@ -322,7 +322,8 @@ fn window(from: Option<f64>, to: Option<f64>) -> Result<Option<[f64; 2]>, Failur
     }
 }
 
-fn recording_failure(error: RecordingError) -> Failure {
+/// What reading a recording refuses, as the end of a command.
+pub fn recording_failure(error: RecordingError) -> Failure {
     if error.is_about_data() { Failure::Data(error.to_string()) } else { Failure::Input(error.to_string()) }
 }
 

@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod challenge;
 mod demo;
 mod diagnose;
 mod excite;
@@ -39,6 +40,8 @@ enum Command {
     Validate(validate::Arguments),
     /// Find out which physics is missing, where, and whether adding it helps on motion that was held back
     Diagnose(diagnose::Arguments),
+    /// Diagnose recordings with hidden effects, then read what was hidden and keep score
+    Challenge(challenge::Arguments),
     /// Tables II, III and IV of the power-model paper, ours beside theirs
     Paper(paper::Arguments),
     /// Simulate a robot in closed loop and write a recording
@@ -65,6 +68,7 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Excite(arguments) => excite::run(&arguments),
         Command::Paper(arguments) => paper::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Challenge(arguments) => challenge::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),

@@ -1,0 +1,336 @@
+//! `dynid challenge DIR`: diagnoses recordings with hidden effects, and only then reads what was hidden.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use dynid_runtime::diagnosis::{
+    Diagnosis, Estimated, Progress, Settings, diagnose, fit_known, predict_errors, slowest_speeds,
+};
+use dynid_runtime::effects::{EffectKind, EffectTerm};
+use dynid_runtime::model::Model;
+use dynid_runtime::recording::{Manifest, Trajectory, load};
+use dynid_runtime::report::{percent, significant};
+
+use super::diagnose::diagnosis_failure;
+use crate::failure::{Failure, file_failure};
+use crate::output::{Bar, print, table, write_json};
+use crate::recorded::recording_failure;
+use crate::robots::{Dynamics, resolve};
+use crate::scoring::{Hidden, LEAST_GAP, Naming, Scored, TestErrors, joint_index, label, read_truth};
+
+/// Which cases, and where the score goes.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of cases: each a folder with recording.yaml, test.yaml, truth.yaml, and baseline.yaml where the robot
+    /// was recorded before it changed
+    folder: PathBuf,
+    /// Only the cases whose names start so
+    cases: Vec<String>,
+    /// Print what was found in each case, and what was considered
+    #[arg(long)]
+    details: bool,
+    /// Write the score for other programs; `-` is standard output
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+/// A case as it is known without its truth.
+struct Case {
+    folder: PathBuf,
+    name: String,
+    dynamics: Dynamics,
+}
+
+/// The diagnosis of a case, or why there is none.
+struct Diagnosed {
+    outcome: Result<Diagnosis, String>,
+    seconds: f64,
+}
+
+/// Diagnoses all cases, then keeps score.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let cases = cases(arguments)?;
+    let settings = Settings::default();
+    let bar = Bar::new("diagnosis");
+    let diagnosed = cases
+        .iter()
+        .enumerate()
+        .map(|(k, case)| {
+            let share = Share { bar: &bar, case: &case.name, done: k, all: cases.len() };
+            case.diagnosed(&settings, &share)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    drop(bar);
+    // From here on the truth is known; no diagnosis is left to be made.
+    let bar = Bar::new("score");
+    let mut scores = Vec::new();
+    for (k, (case, diagnosed)) in cases.iter().zip(&diagnosed).enumerate() {
+        bar.at(k, cases.len());
+        scores.push(case.scored(diagnosed, &settings)?);
+    }
+    drop(bar);
+    if arguments.json.as_deref() != Some(Path::new("-")) {
+        print(&summary(&scores));
+        if arguments.details {
+            for (case, diagnosed) in cases.iter().zip(&diagnosed) {
+                print(&details(&case.name, diagnosed));
+            }
+        }
+    }
+    if let Some(path) = &arguments.json {
+        write_json(path, &for_programs(&scores))?;
+    }
+    Ok(())
+}
+
+/// One case's share of the bar.
+struct Share<'a> {
+    bar: &'a Bar,
+    case: &'a str,
+    done: usize,
+    all: usize,
+}
+
+impl Progress for Share<'_> {
+    fn at(&self, done: f64, what: &str) {
+        self.bar.share((self.done as f64 + done) / self.all as f64, &format!("{}: {what}", self.case));
+    }
+}
+
+/// The folders that hold a recording, by name.
+fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
+    let entries = std::fs::read_dir(&arguments.folder)
+        .map_err(|error| file_failure("read the folder of cases", &arguments.folder, &error))?;
+    let mut folders: Vec<(String, PathBuf)> = entries
+        .filter_map(|entry| entry.ok().map(|e| e.path()))
+        .filter(|path| path.join("recording.yaml").is_file())
+        .filter_map(|path| Some((path.file_name()?.to_string_lossy().into_owned(), path)))
+        .collect();
+    folders.sort();
+    if let Some(none) = arguments.cases.iter().find(|w| !folders.iter().any(|(n, _)| n.starts_with(*w))) {
+        let known: Vec<&str> = folders.iter().map(|(name, _)| name.as_str()).collect();
+        return Err(Failure::Input(format!(
+            "no case starts with {none}: {} has {}",
+            arguments.folder.display(),
+            known.join(", ")
+        )));
+    }
+    folders.retain(|(name, _)| {
+        arguments.cases.is_empty() || arguments.cases.iter().any(|w| name.starts_with(w.as_str()))
+    });
+    if folders.is_empty() {
+        return Err(Failure::Input(format!(
+            "{}: no folder in it holds a recording.yaml",
+            arguments.folder.display()
+        )));
+    }
+    folders
+        .into_iter()
+        .map(|(name, folder)| {
+            let manifest = Manifest::read(&folder.join("recording.yaml")).map_err(recording_failure)?;
+            let dynamics = resolve(&manifest.robot, Some(&folder))?;
+            Ok(Case { folder, name, dynamics })
+        })
+        .collect()
+}
+
+impl Case {
+    fn model(&self) -> &dyn Model {
+        self.dynamics.model()
+    }
+
+    /// The motions of one of its recordings.
+    fn motions(&self, file: &str) -> Result<Vec<Trajectory>, Failure> {
+        let manifest = Manifest::read(&self.folder.join(file)).map_err(recording_failure)?;
+        Ok(load(&manifest, self.model().robot()).map_err(recording_failure)?.trajectories)
+    }
+
+    fn baseline(&self) -> Result<Vec<Trajectory>, Failure> {
+        let there = self.folder.join("baseline.yaml").is_file();
+        if there { self.motions("baseline.yaml") } else { Ok(Vec::new()) }
+    }
+
+    fn diagnosed(&self, settings: &Settings, progress: &dyn Progress) -> Result<Diagnosed, Failure> {
+        let (motions, baseline) = (self.motions("recording.yaml")?, self.baseline()?);
+        let start = Instant::now();
+        let outcome = diagnose(self.model(), &motions, &baseline, settings, progress);
+        let seconds = start.elapsed().as_secs_f64();
+        Ok(Diagnosed { outcome: outcome.map_err(|error| error.to_string()), seconds })
+    }
+
+    /// Reads the truth, and compares.
+    fn scored(&self, diagnosed: &Diagnosed, settings: &Settings) -> Result<Scored, Failure> {
+        let truth = self.folder.join("truth.yaml");
+        let hidden = if truth.is_file() { Some(read_truth(&truth, self.model().robot())?) } else { None };
+        let known = hidden.as_deref().unwrap_or(&[]);
+        let mut score = Scored {
+            case: self.name.clone(),
+            robot: self.model().robot().name.to_string(),
+            seconds: diagnosed.seconds,
+            naming: Naming::of(known, &[]),
+            test: None,
+            gap_closed: None,
+            refused: None,
+            solved: None,
+        };
+        match &diagnosed.outcome {
+            Err(reason) => score.refused = Some(reason.clone()),
+            Ok(found) => {
+                score.naming = Naming::of(known, &found.findings);
+                if self.folder.join("test.yaml").is_file() {
+                    score.test = Some(self.errors(found, known, settings)?);
+                }
+            }
+        }
+        Ok(score.judge(hidden.is_some()))
+    }
+
+    /// Errors on the motion that was kept apart.
+    fn errors(
+        &self,
+        found: &Diagnosis,
+        hidden: &[Hidden],
+        settings: &Settings,
+    ) -> Result<TestErrors, Failure> {
+        let model = self.model();
+        let (motions, baseline) = (self.motions("recording.yaml")?, self.baseline()?);
+        let test = self.motions("test.yaml")?;
+        let failed = |error| diagnosis_failure(&self.folder.join("test.yaml"), &error);
+        let slowest = slowest_speeds(model, &motions, settings).map_err(failed)?;
+        let error = |parameters: &Estimated, terms: &[EffectTerm], delay: f64| {
+            predict_errors(model, parameters, terms, delay, &test, &slowest, settings)
+                .map(|errors| errors.relative_error)
+        };
+        let before = error(&found.standard, &[], found.delay).map_err(failed)?;
+        let after = error(&found.model, &found.terms(), found.delay).map_err(failed)?;
+        let true_effect = if hidden.is_empty() {
+            None
+        } else {
+            // Effects that cannot be fitted leave the case to be judged by naming.
+            let joint = |h: &Hidden| joint_index(model.robot(), *h.joints.first()?);
+            let effects: Vec<(EffectKind, Option<usize>)> =
+                hidden.iter().map(|h| (h.effect, joint(h))).collect();
+            fit_known(model, &motions, &baseline, &effects, settings)
+                .and_then(|known| error(&known.model, &known.terms(), known.delay))
+                .ok()
+        };
+        Ok(TestErrors { before, after, true_effect })
+    }
+}
+
+fn summary(scores: &[Scored]) -> String {
+    let words = |list: &[String]| list.join(" ");
+    let rows = scores
+        .iter()
+        .map(|s| {
+            let error = |get: fn(&TestErrors) -> Option<f64>| {
+                s.test.as_ref().and_then(get).map_or("-".into(), percent)
+            };
+            let verdict = match (s.solved, s.gap_closed) {
+                (None, _) => "no truth",
+                (Some(true), Some(_)) => "solved",
+                (Some(true), None) => "solved, by naming",
+                (Some(false), _) => "not solved",
+            };
+            vec![
+                s.case.clone(),
+                words(&s.naming.named),
+                words(&s.naming.missed),
+                words(&s.naming.false_alarms),
+                error(|t| Some(t.before)),
+                error(|t| Some(t.after)),
+                error(|t| t.true_effect),
+                s.gap_closed.map_or_else(|| "-".to_owned(), percent),
+                significant(s.seconds, 2),
+                verdict.to_owned(),
+            ]
+        })
+        .collect();
+    let header = [
+        "<case",
+        "<named",
+        "<missed",
+        "<false alarms",
+        "before",
+        "after",
+        "true effect",
+        "gap closed",
+        "s",
+        "<",
+    ];
+    let mut text = table(&header, rows);
+    for s in scores {
+        if let Some(reason) = &s.refused {
+            text.push_str(&format!("\n{}: no diagnosis: {reason}", s.case));
+        }
+    }
+    let judged = |by_naming: bool| {
+        let of: Vec<bool> =
+            scores.iter().filter(|s| s.gap_closed.is_none() == by_naming).filter_map(|s| s.solved).collect();
+        (of.iter().filter(|solved| **solved).count(), of.len())
+    };
+    let ((naming, by_naming), (test, by_test)) = (judged(true), judged(false));
+    text.push_str(&format!(
+        "\n\n{} of {} cases solved: {test} of {by_test} judged by naming and by the error on test.yaml, {naming} of \
+         {by_naming} by naming only (nothing hidden, or a gap on test.yaml below {} of the error)",
+        naming + test,
+        by_naming + by_test,
+        percent(LEAST_GAP)
+    ));
+    text
+}
+
+fn details(name: &str, diagnosed: &Diagnosed) -> String {
+    let mut text = format!("\n{name}");
+    let Ok(found) = &diagnosed.outcome else { return text };
+    for line in &found.verdict {
+        text.push_str(&format!("\n  {line}"));
+    }
+    for f in &found.findings {
+        let numbers: Vec<String> = f
+            .parameters
+            .iter()
+            .map(|(name, p)| {
+                format!("{name} {} +- {} {}", significant(p.value, 4), significant(p.sigma, 2), p.unit)
+            })
+            .collect();
+        text.push_str(&format!(
+            "\n  {}: share {}, confidence {:.4}; {}",
+            label(&f.effect, &f.joints),
+            percent(f.share),
+            f.confidence,
+            numbers.join(", ")
+        ));
+        for a in &f.alternatives {
+            text.push_str(&format!("\n    not {}: {}", label(&a.effect, &a.joints), a.why_not));
+        }
+    }
+    for c in &found.cannot_tell {
+        text.push_str(&format!("\n  cannot tell {}", label(&c.between.join(" from "), &c.joints)));
+    }
+    for m in &found.mismatch {
+        text.push_str(&format!("\n  joint {}: {} of the mismatch, {}", m.joint, percent(m.share), m.where_));
+    }
+    text.push_str(&format!(
+        "\n  held back ({}) {} -> {}, skew {} ms, unexplained {}",
+        found.held_out.how,
+        percent(found.held_out.before),
+        percent(found.held_out.after),
+        significant(1e3 * found.delay, 3),
+        percent(found.unexplained.share)
+    ));
+    text
+}
+
+fn for_programs(scores: &[Scored]) -> serde_json::Value {
+    let count = |holds: &dyn Fn(&Scored) -> bool| scores.iter().filter(|s| holds(s)).count();
+    let judged = |s: &Scored| s.solved.is_some();
+    serde_json::json!({
+        "cases": scores,
+        "solved": count(&|s| s.solved == Some(true)),
+        "judged": count(&judged),
+        "judged_by_naming_only": count(&|s| judged(s) && s.gap_closed.is_none()),
+        "solved_by_naming_only": count(&|s| s.solved == Some(true) && s.gap_closed.is_none()),
+    })
+}
