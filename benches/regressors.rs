@@ -1,11 +1,13 @@
-//! Generated against recursive regressors, measured side by side in one run: `cargo bench --bench regressors`.
+//! Generated against recursive regressors, measured side by side in one run:
+//! `cargo bench --bench regressors [-- ROBOT ...] [--write FILE]`.
 //!
 //! Each figure is the fastest of many short rounds, in which the contenders take turns, so that another load on the
-//! machine hurts them alike.
+//! machine hurts them alike. `--write` writes the states, the regressor and the times of the last robot as JSON, for
+//! `benches/peers/compare.py`.
 
 use comfy_table::{CellAlignment, Table, presets};
 use dynid::models;
-use dynid_runtime::model::{Model, RecursiveModel, States};
+use dynid_runtime::model::{LINE, Lanes, Line, Model, ParameterKind, RecursiveModel, States};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -14,23 +16,38 @@ const SAMPLES: usize = 64;
 const STRIDE: usize = 72;
 const ROUNDS: usize = 300;
 
-const HEADER: [&str; 9] = [
+const HEADER: [&str; 11] = [
     "robot",
-    "IDM operations",
+    "entries",
     "IDM recursive ns",
     "scalar ns",
     "batch ns",
+    "batch by columns ns",
     "recursive : scalar",
     "recursive : batch",
     "dh recursive ns",
     "dh batch ns",
+    "recursive : dh batch",
 ];
 
 fn main() {
+    // Cargo itself hands in `--bench`.
+    let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
+    let (mut wanted, mut file) = (Vec::new(), None);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--write" => file = arguments.next(),
+            _ => wanted.push(argument),
+        }
+    }
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN).set_header(HEADER);
+    let mut last = None;
     for &model in models::all() {
         let robot = model.robot();
+        if !wanted.is_empty() && wanted.iter().all(|name| *name != robot.name) {
+            continue;
+        }
         let times = match RecursiveModel::new(robot.clone()) {
             Ok(recursive) => measure(model, &recursive),
             Err(error) => {
@@ -38,52 +55,108 @@ fn main() {
                 continue;
             }
         };
-        let operations: usize = models::operations(&robot.name)
-            .and_then(|list| list.iter().find(|o| o.function == "IDM"))
-            .map_or(0, |o| o.multiplications + o.additions);
         table.add_row([
             robot.name.to_string(),
-            operations.to_string(),
+            model.pattern().columns.len().to_string(),
             format!("{:.0}", times.recursive),
             format!("{:.0}", times.scalar),
             format!("{:.1}", times.batch),
+            format!("{:.1}", times.columns),
             format!("{:.1}", times.recursive / times.scalar),
             format!("{:.1}", times.recursive / times.batch),
             format!("{:.0}", times.recursive_power),
             format!("{:.1}", times.power),
+            format!("{:.1}", times.recursive_power / times.power),
         ]);
+        last = Some((model, times));
     }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     println!("Base regressor IDM and power row dh, one sample:\n{table}");
+    if let (Some(path), Some((model, times))) = (file, last) {
+        let text = document(model, &times).to_string();
+        if let Err(error) = std::fs::write(&path, text) {
+            eprintln!("{path}: {error}");
+            std::process::exit(2);
+        }
+    }
+}
+
+/// States, dense regressor of the inertial columns, and times, for a comparison with other tools.
+fn document(model: &dyn Model, times: &Times) -> serde_json::Value {
+    let (robot, pattern) = (model.robot(), model.pattern());
+    let inertial: Vec<usize> = (0..robot.base.len())
+        .filter(|&k| robot.standard[robot.base[k].standard].kind <= ParameterKind::M)
+        .collect();
+    let names: Vec<&str> =
+        inertial.iter().map(|&k| robot.standard[robot.base[k].standard].name.as_ref()).collect();
+    let signals = signals(robot.joints());
+    let mut entries = vec![0.0; pattern.columns.len()];
+    let states: Vec<serde_json::Value> = (0..SAMPLES)
+        .map(|t| {
+            let [q, dq, ddq] = state(&signals, t);
+            model.idm(&q, &dq, &ddq, &mut entries);
+            let mut dense = vec![vec![0.0; robot.base.len()]; robot.joints()];
+            for (i, row) in dense.iter_mut().enumerate() {
+                for e in pattern.rows[i]..pattern.rows[i + 1] {
+                    row[pattern.columns[e]] = entries[e];
+                }
+            }
+            let rows: Vec<Vec<f64>> =
+                dense.iter().map(|row| inertial.iter().map(|&k| row[k]).collect()).collect();
+            serde_json::json!({"q": q, "dq": dq, "ddq": ddq, "regressor": rows})
+        })
+        .collect();
+    serde_json::json!({
+        "robot": robot.name,
+        "columns": names,
+        "states": states,
+        "base_parameters": robot.base.len(),
+        "entries": pattern.columns.len(),
+        "ns": {"recursive": times.recursive, "scalar": times.scalar, "batch": times.batch},
+    })
 }
 
 /// Nanoseconds a sample.
 struct Times {
     recursive: f64,
     scalar: f64,
+    /// In the order of evaluation, as the observation takes them.
     batch: f64,
+    /// Column by column.
+    columns: f64,
     power: f64,
     recursive_power: f64,
 }
 
-fn measure(model: &dyn Model, recursive: &dyn Model) -> Times {
-    let (n, nb) = (model.robot().joints(), model.robot().base.len());
-    let signal = |phase: f64| -> Vec<Vec<f64>> {
+type Signals = [Vec<Vec<f64>>; 3];
+
+/// q, dq and ddq, joint by joint.
+fn signals(joints: usize) -> Signals {
+    [0.0, 1.0, 2.0].map(|phase: f64| {
         let value = |j: usize, t: usize| 2.0 * (0.37 * (7 * t + 13 * j) as f64 + phase).sin();
-        (0..n).map(|j| (0..SAMPLES).map(|t| value(j, t)).collect()).collect()
-    };
-    let signals = [signal(0.0), signal(1.0), signal(2.0)];
-    let at = |s: usize, t: usize| -> Vec<f64> { signals[s].iter().map(|x| x[t]).collect() };
-    let states: Vec<[Vec<f64>; 3]> = (0..SAMPLES).map(|t| [at(0, t), at(1, t), at(2, t)]).collect();
+        (0..joints).map(|j| (0..SAMPLES).map(|t| value(j, t)).collect()).collect()
+    })
+}
+
+fn state(signals: &Signals, t: usize) -> [Vec<f64>; 3] {
+    signals.each_ref().map(|signal| signal.iter().map(|x| x[t]).collect())
+}
+
+fn measure(model: &dyn Model, recursive: &dyn Model) -> Times {
+    let nb = model.robot().base.len();
+    let signals = signals(model.robot().joints());
+    let states: Vec<[Vec<f64>; 3]> = (0..SAMPLES).map(|t| state(&signals, t)).collect();
     let slices = signals.each_ref().map(|s| s.iter().map(Vec::as_slice).collect::<Vec<_>>());
     let block = States { q: &slices[0], dq: &slices[1], ddq: &slices[2] };
     // The recursive engine keeps entries that it cannot know to vanish.
     let most = |m: &dyn Model| m.pattern().columns.len();
     let values = most(model).max(most(recursive)).max(nb);
     let (mut row, mut out) = (vec![0.0; values], vec![0.0; values * STRIDE]);
-    let mut best = [f64::INFINITY; 5];
+    let width = most(model);
+    let mut lines: Vec<Line> = vec![[Lanes::splat(0.0); 2]; width * SAMPLES / LINE];
+    let mut best = [f64::INFINITY; 6];
     let mut one = |model: &dyn Model, best: &mut f64| {
         let entries = most(model);
         let start = Instant::now();
@@ -105,7 +178,11 @@ fn measure(model: &dyn Model, recursive: &dyn Model) -> Times {
         many(&|out| model.idm_block(block, STRIDE, out), &mut best[2]);
         many(&|out| model.power_block(block, STRIDE, out), &mut best[3]);
         many(&|out| recursive.power_block(block, STRIDE, out), &mut best[4]);
+        let start = Instant::now();
+        model.idm_lines(block, width, &mut lines);
+        black_box(&lines);
+        best[5] = best[5].min(start.elapsed().as_secs_f64());
     }
-    let [recursive, scalar, batch, power, recursive_power] = best.map(|s| s / SAMPLES as f64 * 1e9);
-    Times { recursive, scalar, batch, power, recursive_power }
+    let [recursive, scalar, columns, power, recursive_power, batch] = best.map(|s| s / SAMPLES as f64 * 1e9);
+    Times { recursive, scalar, batch, columns, power, recursive_power }
 }

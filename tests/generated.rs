@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use dynid::models;
-use dynid_runtime::model::{JointKind, Model, ParameterKind, RecursiveModel, States};
+use dynid_runtime::model::{JointKind, LINE, Lanes, Model, ParameterKind, RecursiveModel, States};
 
 /// A small linear congruential generator, so that the states never change.
 struct Random(u64);
@@ -220,10 +220,43 @@ fn blocks_give_what_single_samples_give() {
                 values
             };
             check(entries, &|out| model.idm_block(block, stride, out), &single_idm, "IDM");
+            let width = entries + 1;
+            let mut lines = vec![[Lanes::splat(0.0); 2]; width * samples.div_ceil(LINE)];
+            model.idm_lines(block, width, &mut lines);
+            for (t, state) in states.iter().enumerate() {
+                let at = |e: usize| lines[t / LINE * width + e][t % LINE / 4].to_array()[t % 4];
+                let found: Vec<f64> = (0..entries).map(at).collect();
+                assert_close(&found, &single_idm(state), 1e-12, &format!("{} lines, sample {t}", robot.name));
+            }
             check(nb, &|out| model.power_block(block, stride, out), &|s| power(model, s), "dh");
             check(nb, &|out| model.energy_block(block, stride, out), &|s| energy(model, s), "h");
         }
     }
+}
+
+#[test]
+fn entries_that_are_said_to_repeat_others_are_their_digits() {
+    for &model in models::all() {
+        let pattern = model.pattern();
+        assert_eq!(pattern.same_as.len(), pattern.columns.len());
+        for state in states(model, 10) {
+            let mut entries = vec![0.0; pattern.columns.len()];
+            model.idm(&state[0], &state[1], &state[2], &mut entries);
+            for (e, &first) in pattern.same_as.iter().enumerate() {
+                assert!(first <= e && pattern.same_as[first] == first);
+                assert_eq!(
+                    entries[e].to_bits(),
+                    entries[first].to_bits(),
+                    "{} entry {e}",
+                    model.robot().name
+                );
+            }
+        }
+    }
+    let tx40 = models::find("tx40").unwrap().pattern();
+    // Couples of the links 3 to 6 on the parallel axes 2 and 3, five offsets beside the first, the coupled friction.
+    let repeated = (0..tx40.columns.len()).filter(|&e| tx40.same_as[e] != e).count();
+    assert_eq!(repeated, 20 + 5 + 2);
 }
 
 /// An entry of the pattern that were zero at every state would be computed and stored for nothing.

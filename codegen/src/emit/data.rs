@@ -120,9 +120,12 @@ fn pattern(equations: &Equations) -> TokenStream {
     let rows = (0..=equations.idm.len()).map(|i| index(entries.iter().filter(|e| e.0 < i).count()));
     let rows = borrowed(rows);
     let columns = borrowed(entries.iter().map(|e| index(e.1)));
+    let values: Vec<_> = entries.iter().map(|&(i, k)| equations.idm[i][k]).collect();
+    // The value itself is among the values, so that a position is always found.
+    let same_as = borrowed(values.iter().filter_map(|v| values.iter().position(|x| x == v)).map(index));
     quote! {
         /// The entries of IDM that are not identically zero.
-        pub static PATTERN: Pattern = Pattern { rows: #rows, columns: #columns };
+        pub static PATTERN: Pattern = Pattern { rows: #rows, columns: #columns, same_as: #same_as };
     }
 }
 

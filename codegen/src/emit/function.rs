@@ -32,8 +32,8 @@ pub struct Signature<'a> {
     pub arguments: &'a [(&'a str, &'a str)],
     /// Letters of names that belong to other functions: `dw` is no part of an energy.
     pub foreign: &'a [&'a str],
-    /// Results: name and length.
-    pub results: &'a [(&'a str, &'a str)],
+    /// Results: name and length; without a length, a place that takes values by their index.
+    pub results: &'a [(&'a str, Option<&'a str>)],
 }
 
 /// One statement, the values it uses and the value it defines.
@@ -212,8 +212,11 @@ fn write_parts(
         .results
         .iter()
         .map(|(name, length)| {
-            let (name, length) = (ident(name), length_tokens(length));
-            quote!(#name: &mut [T; #length])
+            let (name, length) = (ident(name), length.map(length_tokens));
+            match length {
+                Some(length) => quote!(#name: &mut [T; #length]),
+                None => quote!(#name: &mut impl IndexMut<usize, Output = T>),
+            }
         })
         .collect();
     let result_names: Vec<Ident> = signature.results.iter().map(|(name, _)| ident(name)).collect();

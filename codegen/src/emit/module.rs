@@ -30,10 +30,12 @@ fn tokens(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
         #![allow(non_snake_case, unused_variables, clippy::all)]
 
         use dynid_runtime::model::{
-            BaseParameter, Drive, Frame, JointKind, Limits, Model, Nominal, Number, Operations, ParameterKind, Pattern,
-            Robot, StandardParameter, States, array, array_mut, evaluate_block,
+            BaseParameter, Drive, Frame, JointKind, Limits, Line, LineStates, Model, Nominal, Number, Operations,
+            ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut, evaluate_block, evaluate_line,
+            evaluate_lines,
         };
         use std::borrow::Cow;
+        use std::ops::IndexMut;
 
         /// Number of joints.
         pub const N: usize = #n;
@@ -79,10 +81,10 @@ fn functions(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream
         &inputs,
         &Signature {
             name: "energy",
-            doc: "Energy row h(q, dq), J per unit parameter.",
+            doc: "Energy row h(q, dq): NB values, J per unit parameter.",
             arguments: &[("q", "N"), ("dq", "N")],
             foreign: &["dw", "a", "b", "u", "j", "ms", "f", "m"],
-            results: &[("h", "NB")],
+            results: &[("h", None)],
         },
         &row(robot, set, &equations.energy),
     );
@@ -91,10 +93,10 @@ fn functions(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream
         &inputs,
         &Signature {
             name: "power",
-            doc: "Power row dh(q, dq, ddq), W per unit parameter.",
+            doc: "Power row dh(q, dq, ddq): NB values, W per unit parameter.",
             arguments: &[("q", "N"), ("dq", "N"), ("ddq", "N")],
             foreign: &["u", "j", "ms", "f", "m"],
-            results: &[("dh", "NB")],
+            results: &[("dh", None)],
         },
         &row(robot, set, &equations.power),
     );
@@ -103,10 +105,10 @@ fn functions(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream
         &inputs,
         &Signature {
             name: "idm",
-            doc: "Entries of the inverse dynamic regressor IDM(q, dq, ddq), N.m or N per unit parameter.",
+            doc: "The ENTRIES of the inverse dynamic regressor IDM(q, dq, ddq), N.m or N per unit parameter.",
             arguments: &[("q", "N"), ("dq", "N"), ("ddq", "N")],
             foreign: &["b", "g", "j", "ms", "f", "m"],
-            results: &[("idm", "ENTRIES")],
+            results: &[("idm", None)],
         },
         &regressor(robot, set, equations),
     );
@@ -118,7 +120,7 @@ fn functions(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream
             doc: "Mass matrix M(q), row by row, and centrifugal, Coriolis and gravity torques N(q, dq).",
             arguments: &[("chi", "NB"), ("q", "N"), ("dq", "N")],
             foreign: &["b", "g"],
-            results: &[("mass", "N * N"), ("bias", "N")],
+            results: &[("mass", Some("N * N")), ("bias", Some("N"))],
         },
         &forward(equations),
     );
@@ -180,6 +182,18 @@ fn forward(equations: &Equations) -> Vec<Output> {
 
 fn model() -> TokenStream {
     quote! {
+        fn energy_line(states: &LineStates<N>, h: &mut [Line; NB]) {
+            evaluate_line(states, h, |[q, dq, _], h| energy(q, dq, h));
+        }
+
+        fn power_line(states: &LineStates<N>, dh: &mut [Line; NB]) {
+            evaluate_line(states, dh, |[q, dq, ddq], dh| power(q, dq, ddq, dh));
+        }
+
+        fn idm_line(states: &LineStates<N>, entries: &mut [Line; ENTRIES]) {
+            evaluate_line(states, entries, |[q, dq, ddq], entries| idm(q, dq, ddq, entries));
+        }
+
         /// The dynamics as a [`Model`].
         #[derive(Debug, Clone, Copy)]
         pub struct Dynamics;
@@ -194,27 +208,31 @@ fn model() -> TokenStream {
             }
 
             fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]) {
-                energy(array(q), array(dq), array_mut(h));
+                energy(array(q), array(dq), array_mut::<NB>(h));
             }
 
             fn power(&self, q: &[f64], dq: &[f64], ddq: &[f64], dh: &mut [f64]) {
-                power(array(q), array(dq), array(ddq), array_mut(dh));
+                power(array(q), array(dq), array(ddq), array_mut::<NB>(dh));
             }
 
             fn idm(&self, q: &[f64], dq: &[f64], ddq: &[f64], entries: &mut [f64]) {
-                idm(array(q), array(dq), array(ddq), array_mut(entries));
+                idm(array(q), array(dq), array(ddq), array_mut::<ENTRIES>(entries));
             }
 
             fn idm_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
-                evaluate_block::<N, ENTRIES>([states.q, states.dq, states.ddq], stride, out, |[q, dq, ddq], values| idm(q, dq, ddq, values));
+                evaluate_block([states.q, states.dq, states.ddq], stride, out, idm_line);
+            }
+
+            fn idm_lines(&self, states: States<'_>, width: usize, out: &mut [Line]) {
+                evaluate_lines([states.q, states.dq, states.ddq], width, out, idm_line);
             }
 
             fn power_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
-                evaluate_block::<N, NB>([states.q, states.dq, states.ddq], stride, out, |[q, dq, ddq], values| power(q, dq, ddq, values));
+                evaluate_block([states.q, states.dq, states.ddq], stride, out, power_line);
             }
 
             fn energy_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
-                evaluate_block::<N, NB>([states.q, states.dq, states.dq], stride, out, |[q, dq, _], values| energy(q, dq, values));
+                evaluate_block([states.q, states.dq, states.dq], stride, out, energy_line);
             }
 
             fn mass_and_bias(&self, chi: &[f64], q: &[f64], dq: &[f64], mass: &mut [f64], bias: &mut [f64]) {

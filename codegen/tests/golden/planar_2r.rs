@@ -36,11 +36,12 @@
 
 #![allow(non_snake_case, unused_variables, clippy::all)]
 use dynid_runtime::model::{
-    BaseParameter, Drive, Frame, JointKind, Limits, Model, Nominal, Number, Operations,
-    ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut,
-    evaluate_block,
+    BaseParameter, Drive, Frame, JointKind, Limits, Line, LineStates, Model, Nominal,
+    Number, Operations, ParameterKind, Pattern, Robot, StandardParameter, States, array,
+    array_mut, evaluate_block, evaluate_line, evaluate_lines,
 };
 use std::borrow::Cow;
+use std::ops::IndexMut;
 /// Number of joints.
 pub const N: usize = 2;
 /// Number of base parameters.
@@ -376,6 +377,7 @@ pub static ROBOT: Robot = Robot {
 pub static PATTERN: Pattern = Pattern {
     rows: Cow::Borrowed(&[0, 9, 16]),
     columns: Cow::Borrowed(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 6, 7, 8, 9, 10, 11, 12]),
+    same_as: Cow::Borrowed(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 6, 10, 11, 12, 13, 14, 5]),
 };
 /// What one evaluation costs.
 pub static OPERATIONS: [Operations; 4] = [
@@ -404,8 +406,12 @@ pub static OPERATIONS: [Operations; 4] = [
         sine_cosine_pairs: 2,
     },
 ];
-/// Energy row h(q, dq), J per unit parameter.
-pub fn energy<T: Number>(q: &[T; N], dq: &[T; N], h: &mut [T; NB]) {
+/// Energy row h(q, dq): NB values, J per unit parameter.
+pub fn energy<T: Number>(
+    q: &[T; N],
+    dq: &[T; N],
+    h: &mut impl IndexMut<usize, Output = T>,
+) {
     let k = T::constant;
     let [q1, q2] = *q;
     let [dq1, dq2] = *dq;
@@ -434,8 +440,13 @@ pub fn energy<T: Number>(q: &[T; N], dq: &[T; N], h: &mut [T; NB]) {
     h[11] = k(0.0);
     h[12] = k(0.0);
 }
-/// Power row dh(q, dq, ddq), W per unit parameter.
-pub fn power<T: Number>(q: &[T; N], dq: &[T; N], ddq: &[T; N], dh: &mut [T; NB]) {
+/// Power row dh(q, dq, ddq): NB values, W per unit parameter.
+pub fn power<T: Number>(
+    q: &[T; N],
+    dq: &[T; N],
+    ddq: &[T; N],
+    dh: &mut impl IndexMut<usize, Output = T>,
+) {
     let k = T::constant;
     let [q1, q2] = *q;
     let [dq1, dq2] = *dq;
@@ -467,8 +478,13 @@ pub fn power<T: Number>(q: &[T; N], dq: &[T; N], ddq: &[T; N], dh: &mut [T; NB])
     dh[11] = dq2 * dq2.sign();
     dh[12] = dq2;
 }
-/// Entries of the inverse dynamic regressor IDM(q, dq, ddq), N.m or N per unit parameter.
-pub fn idm<T: Number>(q: &[T; N], dq: &[T; N], ddq: &[T; N], idm: &mut [T; ENTRIES]) {
+/// The ENTRIES of the inverse dynamic regressor IDM(q, dq, ddq), N.m or N per unit parameter.
+pub fn idm<T: Number>(
+    q: &[T; N],
+    dq: &[T; N],
+    ddq: &[T; N],
+    idm: &mut impl IndexMut<usize, Output = T>,
+) {
     let k = T::constant;
     let [q1, q2] = *q;
     let [dq1, dq2] = *dq;
@@ -548,6 +564,15 @@ pub fn mass_and_bias<T: Number>(
         .sub_product(k(0.5), (s2 * f2_x).add_product(c2, f2_y)) - m2_z;
     bias[0] = m1_z;
 }
+fn energy_line(states: &LineStates<N>, h: &mut [Line; NB]) {
+    evaluate_line(states, h, |[q, dq, _], h| energy(q, dq, h));
+}
+fn power_line(states: &LineStates<N>, dh: &mut [Line; NB]) {
+    evaluate_line(states, dh, |[q, dq, ddq], dh| power(q, dq, ddq, dh));
+}
+fn idm_line(states: &LineStates<N>, entries: &mut [Line; ENTRIES]) {
+    evaluate_line(states, entries, |[q, dq, ddq], entries| idm(q, dq, ddq, entries));
+}
 /// The dynamics as a [`Model`].
 #[derive(Debug, Clone, Copy)]
 pub struct Dynamics;
@@ -559,46 +584,25 @@ impl Model for Dynamics {
         &PATTERN
     }
     fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]) {
-        energy(array(q), array(dq), array_mut(h));
+        energy(array(q), array(dq), array_mut::<NB>(h));
     }
     fn power(&self, q: &[f64], dq: &[f64], ddq: &[f64], dh: &mut [f64]) {
-        power(array(q), array(dq), array(ddq), array_mut(dh));
+        power(array(q), array(dq), array(ddq), array_mut::<NB>(dh));
     }
     fn idm(&self, q: &[f64], dq: &[f64], ddq: &[f64], entries: &mut [f64]) {
-        idm(array(q), array(dq), array(ddq), array_mut(entries));
+        idm(array(q), array(dq), array(ddq), array_mut::<ENTRIES>(entries));
     }
     fn idm_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
-        evaluate_block::<
-            N,
-            ENTRIES,
-        >(
-            [states.q, states.dq, states.ddq],
-            stride,
-            out,
-            |[q, dq, ddq], values| idm(q, dq, ddq, values),
-        );
+        evaluate_block([states.q, states.dq, states.ddq], stride, out, idm_line);
+    }
+    fn idm_lines(&self, states: States<'_>, width: usize, out: &mut [Line]) {
+        evaluate_lines([states.q, states.dq, states.ddq], width, out, idm_line);
     }
     fn power_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
-        evaluate_block::<
-            N,
-            NB,
-        >(
-            [states.q, states.dq, states.ddq],
-            stride,
-            out,
-            |[q, dq, ddq], values| power(q, dq, ddq, values),
-        );
+        evaluate_block([states.q, states.dq, states.ddq], stride, out, power_line);
     }
     fn energy_block(&self, states: States<'_>, stride: usize, out: &mut [f64]) {
-        evaluate_block::<
-            N,
-            NB,
-        >(
-            [states.q, states.dq, states.dq],
-            stride,
-            out,
-            |[q, dq, _], values| energy(q, dq, values),
-        );
+        evaluate_block([states.q, states.dq, states.dq], stride, out, energy_line);
     }
     fn mass_and_bias(
         &self,

@@ -3,8 +3,9 @@
 use super::householder::reduce;
 use super::solve::{Solution, solve};
 
-/// Rows that are gathered before they are reduced.
-pub const BLOCK_ROWS: usize = 128;
+/// Rows that are gathered before they are reduced: columns an odd number of cache lines apart, so that a row does not
+/// crowd a few sets of the cache.
+pub const BLOCK_ROWS: usize = 120;
 
 /// Upper-triangular R of [W Y] = Q R, with the number of rows that went in.
 ///

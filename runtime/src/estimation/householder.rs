@@ -97,9 +97,9 @@ fn apply_panel(
                 sum[1] = v.mul_add(y, sum[1]);
             }
         }
-        let u = [0, 1].map(|side| {
+        let u: [[f64x4; PANEL]; 2] = std::array::from_fn(|side| {
             let top = &mut r[(l + side) * columns + j..][..PANEL];
-            update_top(top, sums.map(|s| s[side].reduce_add()), t)
+            update_top(top, std::array::from_fn(|i| sums[i][side].reduce_add()), t)
         });
         for at in (0..rows).step_by(4) {
             let (mut p, mut s) = (load(&x[at..at + 4]), load(&y[at..at + 4]));

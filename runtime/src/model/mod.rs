@@ -8,7 +8,9 @@ mod recursive;
 mod robot;
 mod standard;
 
-pub use block::{array, array_mut, evaluate_block};
+pub use block::{
+    InLines, LINE, Line, LineStates, array, array_mut, evaluate_block, evaluate_line, evaluate_lines,
+};
 pub use dual::Dual;
 pub use lanes::{LANES, Lanes};
 pub use number::Number;
@@ -27,6 +29,9 @@ pub struct Pattern {
     pub rows: std::borrow::Cow<'static, [usize]>,
     /// Base parameter (column) of each entry, ascending within a row.
     pub columns: std::borrow::Cow<'static, [usize]>,
+    /// The first entry that has the value of each entry at every state, itself where there is none before it:
+    /// parallel axes share the columns of their couples, and offsets are all 1.
+    pub same_as: std::borrow::Cow<'static, [usize]>,
 }
 
 /// Signals of many samples, joint by joint: `q[j][t]`. All slices have the same length.
@@ -77,6 +82,12 @@ pub trait Model: Send + Sync {
     ///
     /// Allocation-free; `stride` is at least the number of samples.
     fn idm_block(&self, states: States<'_>, stride: usize, out: &mut [f64]);
+
+    /// [`Model::idm`] for many samples in the order in which they are computed: entry e of the i-th [`Line`] of
+    /// samples is written to `out[i * width + e]`, what lies behind the last sample is of no meaning.
+    ///
+    /// About twice as fast as [`Model::idm_block`]. `width` is at least the number of entries.
+    fn idm_lines(&self, states: States<'_>, width: usize, out: &mut [Line]);
 
     /// [`Model::power`] for many samples: column k of sample t is written to `out[k * stride + t]`.
     fn power_block(&self, states: States<'_>, stride: usize, out: &mut [f64]);

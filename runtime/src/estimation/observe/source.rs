@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::stream::BLOCK;
 use super::{Equations, ExtraColumns, ObserveError};
-use crate::model::{Model, ParameterKind, States};
+use crate::model::{LINE, Lanes, Line, Model, ParameterKind, States};
 use crate::signal::Motion;
 
 /// Most joints that an observation can have.
@@ -11,25 +12,41 @@ const MAX_JOINTS: usize = 32;
 
 /// Columns at the full rate.
 pub(super) trait Source: Sync {
-    /// How many.
-    fn columns(&self) -> usize;
+    /// How many are computed.
+    fn width(&self) -> usize;
 
-    /// Writes sample `range.start + t` of column c to `out[c * stride + t]`. At most 254 samples; `scratch` is for
-    /// the source alone and is handed in again with the next range.
-    fn fill(&self, range: Range<usize>, stride: usize, out: &mut [f64], scratch: &mut Vec<f64>);
+    /// Those to be filtered: a column that repeats another one is computed and not filtered.
+    fn filtered(&self) -> &[usize];
 
-    /// For each equation, the columns of the source and the unknowns they belong to, ascending, and the column
-    /// of Y.
+    /// Writes the samples of a range, line by line: the i-th line of column c to `lines[i * width + c]`. At most
+    /// [`BLOCK`] samples; `scratch` is for the source alone and is handed in again with the next range.
+    fn fill(&self, range: Range<usize>, lines: &mut [Line], scratch: &mut Vec<f64>);
+
+    /// For each equation, where its columns are among the filtered ones.
     fn equations(&self) -> Vec<EquationColumns>;
 }
 
 /// Where one equation finds its row.
 #[derive(Debug, Clone)]
 pub(super) struct EquationColumns {
-    /// (column of the source, unknown).
+    /// (place among the filtered columns, unknown), unknowns ascending.
     pub unknowns: Vec<(usize, usize)>,
-    /// Column of the source that is Y.
+    /// Place of Y among the filtered columns.
     pub y: usize,
+}
+
+/// From one column to the next where a source's parts are computed column by column: not a power of two, which would
+/// send all columns to the same lines of the cache.
+const STRIDE: usize = BLOCK + LINE;
+
+/// Lays a column of at most [`BLOCK`] samples into the lines.
+fn lay(column: &[f64], place: usize, width: usize, lines: &mut [Line]) {
+    for (samples, line) in column.chunks(LINE).zip(lines.chunks_exact_mut(width)) {
+        let mut all = [0.0; LINE];
+        all[..samples.len()].copy_from_slice(samples);
+        let [a, b, c, d, e, f, g, h] = all;
+        line[place] = [Lanes::new([a, b, c, d]), Lanes::new([e, f, g, h])];
+    }
 }
 
 pub(super) fn source<'a>(
@@ -43,12 +60,13 @@ pub(super) fn source<'a>(
     check(n, motion)?;
     let signals = Signals::new(motion, n);
     Ok(match equations {
-        Equations::Torque => Box::new(Torque { model, trajectory, signals, extra, n }),
+        Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
         Equations::Power { closed_form } => {
             let inertial = (0..model.robot().base.len())
                 .map(|c| model.robot().standard[model.robot().base[c].standard].kind <= ParameterKind::Ia)
                 .collect();
-            Box::new(Power { model, signals, closed_form, inertial, n })
+            let filtered = (0..=model.robot().base.len()).collect();
+            Box::new(Power { model, signals, closed_form, inertial, filtered, n })
         }
     })
 }
@@ -88,10 +106,10 @@ type Slices<'s> = [[&'s [f64]; MAX_JOINTS]; 3];
 impl<'a> Signals<'a> {
     fn new(motion: &'a Motion, n: usize) -> Signals<'a> {
         let fixed = (0..n).map(|j| motion.fixed.contains(&j)).collect();
-        Signals { motion, fixed, zeros: vec![0.0; 256] }
+        Signals { motion, fixed, zeros: vec![0.0; STRIDE] }
     }
 
-    /// Positions, velocities and accelerations of a range of at most 256 samples.
+    /// Positions, velocities and accelerations of a range of at most [`BLOCK`] samples and one on each side.
     fn slices(&self, range: &Range<usize>) -> Slices<'_> {
         let mut slices: Slices<'_> = [[&[]; MAX_JOINTS]; 3];
         for (j, &fixed) in self.fixed.iter().enumerate() {
@@ -114,36 +132,69 @@ struct Torque<'a> {
     trajectory: usize,
     signals: Signals<'a>,
     extra: Option<&'a dyn ExtraColumns>,
+    filtered: Vec<usize>,
     n: usize,
 }
 
-impl Torque<'_> {
+impl<'a> Torque<'a> {
+    fn new(
+        model: &'a dyn Model,
+        trajectory: usize,
+        signals: Signals<'a>,
+        extra: Option<&'a dyn ExtraColumns>,
+        n: usize,
+    ) -> Torque<'a> {
+        let mut torque = Torque { model, trajectory, signals, extra, filtered: Vec::new(), n };
+        let same_as = &model.pattern().same_as;
+        let distinct = (0..same_as.len()).filter(|&e| same_as[e] == e);
+        torque.filtered = distinct.chain(same_as.len()..torque.width()).collect();
+        torque
+    }
+
     fn extra_of(&self, joint: usize) -> &[usize] {
         self.extra.map_or(&[], |e| e.columns(joint))
+    }
+
+    /// Place of a column among those that are filtered.
+    fn place(&self, column: usize) -> usize {
+        let column = self.model.pattern().same_as.get(column).copied().unwrap_or(column);
+        self.filtered.partition_point(|&c| c < column)
     }
 }
 
 impl Source for Torque<'_> {
-    fn columns(&self) -> usize {
+    fn width(&self) -> usize {
         let extra: usize = (0..self.n).map(|j| self.extra_of(j).len()).sum();
         self.model.pattern().columns.len() + extra + self.n
     }
 
-    fn fill(&self, range: Range<usize>, stride: usize, out: &mut [f64], _: &mut Vec<f64>) {
+    fn filtered(&self) -> &[usize] {
+        &self.filtered
+    }
+
+    fn fill(&self, range: Range<usize>, lines: &mut [Line], scratch: &mut Vec<f64>) {
         let slices = self.signals.slices(&range);
-        let (entries, mut rest) = out.split_at_mut(self.model.pattern().columns.len() * stride);
-        self.model.idm_block(states(&slices, self.n), stride, entries);
+        let width = self.width();
+        self.model.idm_lines(states(&slices, self.n), width, lines);
+        let mut next = self.model.pattern().columns.len();
         if let Some(extra) = self.extra {
             for joint in 0..self.n {
-                let (own, others) = rest.split_at_mut(extra.columns(joint).len() * stride);
-                if !own.is_empty() {
-                    extra.fill(self.trajectory, self.signals.motion, range.clone(), joint, stride, own);
+                let count = extra.columns(joint).len();
+                if count == 0 {
+                    continue;
                 }
-                rest = others;
+                scratch.resize(scratch.len().max(count * STRIDE), 0.0);
+                let own = &mut scratch[..count * STRIDE];
+                extra.fill(self.trajectory, self.signals.motion, range.clone(), joint, STRIDE, own);
+                for column in own.chunks_exact(STRIDE) {
+                    lay(&column[..range.len()], next, width, lines);
+                    next += 1;
+                }
             }
         }
-        for (torque, out) in self.signals.motion.torque.iter().zip(rest.chunks_exact_mut(stride)) {
-            out[..range.len()].copy_from_slice(&torque[range.clone()]);
+        for torque in &self.signals.motion.torque {
+            lay(&torque[range.clone()], next, width, lines);
+            next += 1;
         }
     }
 
@@ -154,16 +205,16 @@ impl Source for Torque<'_> {
         let mut equations: Vec<EquationColumns> = (0..self.n)
             .map(|j| {
                 let own = pattern.rows[j]..pattern.rows[j + 1];
-                let mut unknowns: Vec<_> = own.map(|e| (e, pattern.columns[e])).collect();
+                let mut unknowns: Vec<_> = own.map(|e| (self.place(e), pattern.columns[e])).collect();
                 for &column in self.extra_of(j) {
-                    unknowns.push((next, base + column));
+                    unknowns.push((self.place(next), base + column));
                     next += 1;
                 }
                 EquationColumns { unknowns, y: 0 }
             })
             .collect();
         for (j, equation) in equations.iter_mut().enumerate() {
-            equation.y = next + j;
+            equation.y = self.place(next + j);
         }
         equations
     }
@@ -176,24 +227,35 @@ struct Power<'a> {
     closed_form: bool,
     /// Columns that have an energy; the others are friction.
     inertial: Vec<bool>,
+    filtered: Vec<usize>,
     n: usize,
 }
 
 impl Source for Power<'_> {
-    fn columns(&self) -> usize {
+    fn width(&self) -> usize {
         self.inertial.len() + 1
     }
 
-    fn fill(&self, range: Range<usize>, stride: usize, out: &mut [f64], scratch: &mut Vec<f64>) {
-        let nb = self.inertial.len();
+    fn filtered(&self) -> &[usize] {
+        &self.filtered
+    }
+
+    fn fill(&self, range: Range<usize>, lines: &mut [Line], scratch: &mut Vec<f64>) {
+        let (nb, width) = (self.inertial.len(), self.width());
         let slices = self.signals.slices(&range);
-        let (dh, power) = out.split_at_mut(nb * stride);
-        self.model.power_block(states(&slices, self.n), stride, dh);
+        // The columns and the power; behind them the energies of one sample more on each side.
+        scratch.resize((width + nb) * STRIDE, 0.0);
+        let (columns, h) = scratch.split_at_mut(width * STRIDE);
+        let (dh, power) = columns.split_at_mut(nb * STRIDE);
+        self.model.power_block(states(&slices, self.n), STRIDE, dh);
         if !self.closed_form {
-            self.differentiate(&range, stride, dh, scratch);
+            self.differentiate(&range, dh, h);
         }
         for (t, p) in power[..range.len()].iter_mut().enumerate() {
             *p = (0..self.n).map(|j| slices[1][j][t] * self.signals.motion.torque[j][range.start + t]).sum();
+        }
+        for (place, column) in columns.chunks_exact(STRIDE).enumerate() {
+            lay(&column[..range.len()], place, width, lines);
         }
     }
 
@@ -205,20 +267,18 @@ impl Source for Power<'_> {
 
 impl Power<'_> {
     /// Replaces the inertial columns by central differences of h(q, dq), as in the paper.
-    fn differentiate(&self, range: &Range<usize>, stride: usize, dh: &mut [f64], h: &mut Vec<f64>) {
+    fn differentiate(&self, range: &Range<usize>, dh: &mut [f64], h: &mut [f64]) {
         let samples = self.signals.motion.q[0].len();
         let wide = range.start.saturating_sub(1)..(range.end + 1).min(samples);
         let slices = self.signals.slices(&wide);
-        let nb = self.inertial.len();
-        let width = wide.len();
-        h.resize(nb * width, 0.0);
-        self.model.energy_block(states(&slices, self.n), width, h);
+        self.model.energy_block(states(&slices, self.n), STRIDE, h);
         let rate = self.signals.motion.rate;
-        for (c, column) in h.chunks_exact(width).enumerate().filter(|&(c, _)| self.inertial[c]) {
-            for (t, value) in dh[c * stride..][..range.len()].iter_mut().enumerate() {
+        let columns = h.chunks_exact(STRIDE).zip(dh.chunks_exact_mut(STRIDE)).zip(&self.inertial);
+        for ((h, dh), _) in columns.filter(|&(_, &inertial)| inertial) {
+            for (t, value) in dh[..range.len()].iter_mut().enumerate() {
                 let centre = range.start + t - wide.start;
-                let (before, after) = (centre.saturating_sub(1), (centre + 1).min(width - 1));
-                *value = (column[after] - column[before]) * rate / (after - before) as f64;
+                let (before, after) = (centre.saturating_sub(1), (centre + 1).min(wide.len() - 1));
+                *value = (h[after] - h[before]) * rate / (after - before) as f64;
             }
         }
     }

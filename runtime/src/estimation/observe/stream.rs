@@ -6,15 +6,18 @@ use std::ops::Range;
 use wide::f64x4;
 
 use super::source::Source;
+use crate::model::{LINE, Line};
 use crate::signal::{Decimator, KeptRows};
 
-/// Samples that are evaluated at a time.
-const BLOCK: usize = 64;
-/// From one column to the next: at a power of two all columns would fall on the same lines of the cache.
-const STRIDE: usize = BLOCK + 8;
+/// Samples that are evaluated at a time, a whole number of lines.
+pub(super) const BLOCK: usize = 64;
+/// Columns that are filtered together.
+const QUAD: usize = 4;
+/// Rows that are: twelve sums, three taps and a sample are what sixteen registers hold.
+const TOGETHER: usize = 3;
 
 /// Calls `keep(row, values)` for each of the kept rows `rows` in ascending order; `values` has one number per
-/// column of the source.
+/// column that the source wants filtered.
 ///
 /// A row depends on nothing but its own window of samples: it has the same digits in whatever run it is computed
 /// that starts at the same row.
@@ -28,76 +31,153 @@ pub(super) fn decimate<S: Source + ?Sized>(
     if rows.is_empty() {
         return;
     }
-    let columns = source.columns();
-    let taps = decimator.taps();
+    let width = source.width();
+    let quads = quads(source.filtered());
+    let taps = Taps::new(decimator);
     let window = |row: usize| {
         let start = grid.first + row * grid.step - decimator.support();
-        start..start + taps.len()
+        start..start + taps.count
     };
-    let open = (taps.len() + BLOCK) / grid.step + 2;
-    let mut sums = vec![0.0; open * columns];
-    let mut values = vec![0.0; columns * STRIDE];
+    let open = (taps.count + BLOCK) / grid.step + 2;
+    let mut sums = vec![f64x4::ZERO; open * quads.len()];
+    let mut lines = vec![[f64x4::ZERO; 2]; width * (BLOCK / LINE)];
+    let mut values = vec![0.0; QUAD * quads.len()];
+    let mut passes = Vec::with_capacity(open);
     let mut scratch = Vec::new();
     let end = window(rows.end - 1).end;
-    let mut first_open = rows.start;
+    let mut touched = rows.start..rows.start;
     let mut at = window(rows.start).start;
     while at < end {
         let block = at..(at + BLOCK).min(end);
-        source.fill(block.clone(), STRIDE, &mut values, &mut scratch);
-        let mut finished = 0;
-        for row in first_open..rows.end {
-            let window = window(row);
-            if window.start >= block.end {
-                break;
-            }
-            let from = window.start.max(block.start);
-            let to = window.end.min(block.end);
-            let sum = &mut sums[row % open * columns..][..columns];
-            if from < to {
-                let taps = &taps[from - window.start..to - window.start];
-                accumulate(taps, &values, from - block.start, sum);
-            }
-            if window.end <= block.end {
-                keep(row, sum);
-                sum.fill(0.0);
-                finished += 1;
+        source.fill(block.clone(), &mut lines, &mut scratch);
+        while touched.end < rows.end && window(touched.end).start < block.end {
+            touched.end += 1;
+        }
+        passes.clear();
+        for first in touched.clone().step_by(TOGETHER) {
+            let count = TOGETHER.min(touched.end - first);
+            let from = window(first).start.max(block.start) - block.start;
+            let to = window(first + count - 1).end.min(block.end) - block.start;
+            let lines = from / LINE..to.div_ceil(LINE);
+            let start = block.start + lines.start * LINE;
+            let row = |k: usize| first + k.min(count - 1);
+            let taps = std::array::from_fn(|k| taps.of(start, window(row(k)).start, lines.len()));
+            let places = std::array::from_fn(|k| row(k) % open);
+            passes.push(Pass { lines: lines.start * width..lines.end * width, count, taps, places });
+        }
+        // Columns outermost: their samples and sums stay in the nearest cache while all rows pass.
+        for (columns, sums) in quads.iter().zip(sums.chunks_exact_mut(open)) {
+            for pass in &passes {
+                pass.add(&lines, width, *columns, sums);
             }
         }
-        first_open += finished;
+        while touched.start < touched.end && window(touched.start).end <= block.end {
+            let place = touched.start % open;
+            for (values, sums) in values.chunks_exact_mut(QUAD).zip(sums.chunks_exact_mut(open)) {
+                values.copy_from_slice(&sums[place].to_array());
+                sums[place] = f64x4::ZERO;
+            }
+            keep(touched.start, &values[..source.filtered().len()]);
+            touched.start += 1;
+        }
         at = block.end;
     }
 }
 
-/// Adds the products of the taps with each column's samples from `offset` on.
-fn accumulate(taps: &[f64], values: &[f64], offset: usize, sums: &mut [f64]) {
-    let whole = taps.len() / 4 * 4;
-    let mut groups = values.chunks_exact(4 * STRIDE);
-    let mut outs = sums.chunks_exact_mut(4);
-    for (group, out) in groups.by_ref().zip(outs.by_ref()) {
-        let x: [&[f64]; 4] = std::array::from_fn(|c| &group[c * STRIDE + offset..][..taps.len()]);
-        let mut lanes = [f64x4::ZERO; 4];
-        for i in (0..whole).step_by(4) {
-            let h = load(&taps[i..i + 4]);
-            for (lane, x) in lanes.iter_mut().zip(&x) {
-                *lane = h.mul_add(load(&x[i..i + 4]), *lane);
-            }
-        }
-        for ((out, lane), x) in out.iter_mut().zip(lanes).zip(&x) {
-            *out += lane.reduce_add() + plain(&taps[whole..], &x[whole..]);
+/// A few rows in sequence over the lines of a block that they reach.
+struct Pass<'a> {
+    /// Where the lines begin and end in the block.
+    lines: Range<usize>,
+    /// Rows.
+    count: usize,
+    /// The taps of each row; those of the last one again where there are fewer rows.
+    taps: [&'a [f64]; TOGETHER],
+    /// Where the sums of each row are.
+    places: [usize; TOGETHER],
+}
+
+impl Pass<'_> {
+    fn add(&self, lines: &[Line], width: usize, columns: [usize; QUAD], sums: &mut [f64x4]) {
+        let lines = &lines[self.lines.clone()];
+        let [a, b, c] = self.taps;
+        match self.count {
+            1 => self.store(products([a], lines, width, columns), sums),
+            2 => self.store(products([a, b], lines, width, columns), sums),
+            _ => self.store(products([a, b, c], lines, width, columns), sums),
         }
     }
-    for (column, out) in groups.remainder().chunks_exact(STRIDE).zip(outs.into_remainder()) {
-        let x = &column[offset..][..taps.len()];
-        let mut lane = f64x4::ZERO;
-        for i in (0..whole).step_by(4) {
-            lane = load(&taps[i..i + 4]).mul_add(load(&x[i..i + 4]), lane);
+
+    fn store<const R: usize>(&self, products: [f64x4; R], sums: &mut [f64x4]) {
+        for (product, &place) in products.iter().zip(&self.places) {
+            sums[place] += *product;
         }
-        *out += lane.reduce_add() + plain(&taps[whole..], &x[whole..]);
     }
 }
 
-fn plain(h: &[f64], x: &[f64]) -> f64 {
-    h.iter().zip(x).map(|(h, x)| h * x).sum()
+/// The columns four by four; the last ones are filled up with the first column.
+fn quads(columns: &[usize]) -> Vec<[usize; QUAD]> {
+    let quad = |part: &[usize]| std::array::from_fn(|k| part.get(k).copied().unwrap_or(columns[0]));
+    columns.chunks(QUAD).map(quad).collect()
+}
+
+/// The taps between zeros, so that a row can be given more samples than its window has.
+struct Taps {
+    padded: Vec<f64>,
+    count: usize,
+}
+
+impl Taps {
+    /// A row that is open reaches less than a block beyond its window.
+    const PADDING: usize = BLOCK + LINE;
+
+    fn new(decimator: &Decimator) -> Taps {
+        let taps = decimator.taps();
+        let mut padded = vec![0.0; taps.len() + 2 * Self::PADDING];
+        padded[Self::PADDING..][..taps.len()].copy_from_slice(taps);
+        Taps { padded, count: taps.len() }
+    }
+
+    /// For a number of lines from the sample `start` on: the taps of the row whose window starts at `window`.
+    fn of(&self, start: usize, window: usize, lines: usize) -> &[f64] {
+        &self.padded[start + Self::PADDING - window..][..lines * LINE]
+    }
+}
+
+/// Sums over samples of tap times value: one per row, for four columns side by side. Not inlined, so that the sums
+/// have the registers to themselves.
+#[inline(never)]
+fn products<const R: usize>(
+    taps: [&[f64]; R],
+    lines: &[Line],
+    width: usize,
+    [a, b, c, d]: [usize; QUAD],
+) -> [f64x4; R] {
+    assert!(a < width && b < width && c < width && d < width);
+    assert!(taps.iter().all(|taps| taps.len() >= lines.len() / width * LINE));
+    let zero = [f64x4::ZERO; R];
+    let (mut sum_a, mut sum_b, mut sum_c, mut sum_d) = (zero, zero, zero, zero);
+    let mut at = 0;
+    for line in lines.chunks_exact(width) {
+        for part in 0..2 {
+            let h: [f64x4; R] = std::array::from_fn(|r| load(&taps[r][at..at + 4]));
+            add_products(&mut sum_a, &h, line[a][part]);
+            add_products(&mut sum_b, &h, line[b][part]);
+            add_products(&mut sum_c, &h, line[c][part]);
+            add_products(&mut sum_d, &h, line[d][part]);
+            at += 4;
+        }
+    }
+    std::array::from_fn(|r| {
+        let [a, b, c, d] = f64x4::transpose([sum_a[r], sum_b[r], sum_c[r], sum_d[r]]);
+        (a + b) + (c + d)
+    })
+}
+
+#[inline(always)]
+fn add_products<const R: usize>(sums: &mut [f64x4; R], h: &[f64x4; R], x: f64x4) {
+    for (sum, h) in sums.iter_mut().zip(h) {
+        *sum = h.mul_add(x, *sum);
+    }
 }
 
 fn load(x: &[f64]) -> f64x4 {

@@ -176,7 +176,7 @@ fn run_chunk(p: &Prepared<'_>, chunk: &Chunk, keep_rows: bool) -> (Vec<TimeBlock
 
 fn gather(trajectory: usize, p: &Prepared<'_>, kept: &[Kept]) -> Vec<Rows> {
     let count = p.grid.count;
-    let width = p.source.columns();
+    let width = p.source.filtered().len();
     let sample: Vec<usize> = p.grid.centres().collect();
     let time: Vec<f64> = sample.iter().map(|&s| p.motion.start + s as f64 / p.motion.rate).collect();
     p.equations

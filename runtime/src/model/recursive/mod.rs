@@ -11,7 +11,7 @@ mod vector;
 pub use columns::{standard_energy, standard_idm, standard_power};
 pub use kinematics::{Link, Row};
 
-use super::{LANES, Lanes, Model, Number, Pattern, Robot, States};
+use super::{LANES, LINE, Lanes, Line, Model, Number, Pattern, Robot, States};
 use composite::Inertia;
 use drive::DriveEntry;
 use std::borrow::Cow;
@@ -106,6 +106,7 @@ impl RecursiveModel {
         let pattern = Pattern {
             rows: Cow::Owned((0..=n).map(|i| entry_of((i, 0))).collect()),
             columns: Cow::Owned(places.iter().map(|&(_, column)| column).collect()),
+            same_as: Cow::Owned((0..places.len()).collect()),
         };
         Ok(RecursiveModel { links, pattern, blocks, columns, drive, drive_places, robot })
     }
@@ -208,6 +209,16 @@ impl Model for RecursiveModel {
         self.each_group(states, |links, group, q, dq, ddq| {
             self.each_entry(links, gravity, q, dq, ddq, |entry, value| {
                 group.write(&mut out[entry * stride..], value);
+            });
+        });
+    }
+
+    fn idm_lines(&self, states: States<'_>, width: usize, out: &mut [Line]) {
+        let gravity = self.robot.gravity.map(Lanes::constant);
+        self.each_group(states, |links, group, q, dq, ddq| {
+            let (line, part) = (group.first / LINE, group.first % LINE / LANES);
+            self.each_entry(links, gravity, q, dq, ddq, |entry, value| {
+                out[line * width + entry][part] = value;
             });
         });
     }

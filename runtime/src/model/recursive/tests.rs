@@ -165,11 +165,14 @@ fn blocks_hold_the_same_numbers_as_single_samples() {
     model.idm_block(states, stride, &mut idm);
     model.power_block(states, stride, &mut power);
     model.energy_block(states, stride, &mut energy);
+    let mut lines = vec![[Lanes::constant(0.0); 2]; entries];
+    model.idm_lines(states, entries, &mut lines);
     for (t, [q, dq, ddq]) in samples.iter().enumerate().take(count) {
         let mut one = vec![0.0; entries];
         model.idm(q, dq, ddq, &mut one);
         for (e, value) in one.iter().enumerate() {
             assert_abs_diff_eq!(idm[e * stride + t], *value, epsilon = 1e-12 * (1.0 + value.abs()));
+            assert_eq!(lines[e][t / LANES].to_array()[t % LANES], idm[e * stride + t]);
         }
         let (mut dh, mut h) = (vec![0.0; nb], vec![0.0; nb]);
         model.power(q, dq, ddq, &mut dh);

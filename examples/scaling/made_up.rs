@@ -1,0 +1,50 @@
+//! Recordings that are made up as they are needed, of any length.
+
+use dynid_runtime::model::{Model, States};
+use dynid_runtime::recording::Trajectory;
+
+/// Samples a second, Hz.
+pub const RATE: f64 = 1000.0;
+/// Torque noise, N.m or N: evenly spread, this from end to end.
+const NOISE: f64 = 0.1;
+
+/// Samples `first..first + count` of a smooth motion, and the torques of the model with noise.
+pub fn trajectory(model: &dyn Model, chi: &[f64], first: usize, count: usize) -> Trajectory {
+    let n = model.robot().joints();
+    let mut signals = [vec![vec![0.0; count]; n], vec![vec![0.0; count]; n], vec![vec![0.0; count]; n]];
+    let time: Vec<f64> = (first..first + count).map(|k| k as f64 / RATE).collect();
+    let [q, dq, ddq] = &mut signals;
+    for j in 0..n {
+        for harmonic in 1..=4 {
+            let w = (1.1 + 0.37 * j as f64) * harmonic as f64;
+            let a = 1.2 / (harmonic * harmonic) as f64;
+            for (k, t) in time.iter().enumerate() {
+                let (s, c) = (w * t + harmonic as f64 * 0.7 * j as f64).sin_cos();
+                q[j][k] += a * s;
+                dq[j][k] += a * w * c;
+                ddq[j][k] -= a * w * w * s;
+            }
+        }
+    }
+    let pattern = model.pattern();
+    let (block, stride) = (64, 72);
+    let mut out = vec![0.0; pattern.columns.len() * stride];
+    let mut torque = vec![Vec::with_capacity(count); n];
+    let mut random = first as u64 ^ 0x9e37_79b9_7f4a_7c15;
+    for from in (0..count).step_by(block) {
+        let to = (from + block).min(count);
+        let slices = signals.each_ref().map(|s| s.iter().map(|x| &x[from..to]).collect::<Vec<_>>());
+        model.idm_block(States { q: &slices[0], dq: &slices[1], ddq: &slices[2] }, stride, &mut out);
+        for t in 0..to - from {
+            for (j, torque) in torque.iter_mut().enumerate() {
+                let entries = pattern.rows[j]..pattern.rows[j + 1];
+                let exact: f64 = entries.map(|e| out[e * stride + t] * chi[pattern.columns[e]]).sum();
+                random =
+                    random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                torque.push(exact + NOISE * ((random >> 11) as f64 / (1u64 << 53) as f64 - 0.5));
+            }
+        }
+    }
+    let [position, ..] = signals;
+    Trajectory { name: "made up".into(), time, position, velocity: None, torque, fixed: Vec::new() }
+}
