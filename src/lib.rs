@@ -4,6 +4,7 @@
 //! by name or by path; identification, simulation and diagnosis live in [`dynid_runtime`].
 #![deny(missing_docs)]
 
+pub mod closed_loop;
 pub mod commands;
 pub mod failure;
 pub mod models;

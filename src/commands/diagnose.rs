@@ -11,9 +11,10 @@ use dynid_runtime::report::{percent, significant};
 use dynid_runtime::signal::Motion;
 
 use super::validate::{known_parameters, prediction, read_model};
+use crate::closed_loop::{ClosedLoop, closed_loop};
 use crate::failure::Failure;
 use crate::output::{Bar, print, table, write, write_json};
-use crate::pages::diagnosis::{KeptApart, confidence_words, joint_words, page};
+use crate::pages::diagnosis::{Extras, KeptApart, confidence_words, joint_words, page};
 use crate::recorded::{Measured, RecordingOptions, left_out_words, measure, read};
 
 /// What to diagnose and where to put it.
@@ -30,6 +31,10 @@ pub(super) struct Arguments {
     /// A recording that takes no part in the diagnosis: the errors on it are reported before and after
     #[arg(long)]
     test: Option<PathBuf>,
+    /// Simulate the identified robot along the recorded motion without and with the findings, however long the
+    /// recording (up to 30 s of motion it is done anyway)
+    #[arg(long)]
+    closed_loop: bool,
     /// Save the model with the effects that were found
     #[arg(long)]
     out: Option<PathBuf>,
@@ -44,6 +49,9 @@ pub(super) struct Arguments {
 /// Band in which models with effects are compared on other recordings unless another is asked for, Hz: that of the
 /// diagnosis' faster rows.
 const BAND: f64 = 25.0;
+
+/// Motion that is simulated without being asked for, s.
+const QUICK: f64 = 30.0;
 
 /// Diagnoses, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -64,20 +72,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(path) => Some(tested(&other(&arguments.recording, path), &standard, &improved)?),
         None => None,
     };
+    let forward = simulated(&measured, &diagnosis, arguments.closed_loop);
+    let extras = Extras { kept_apart, forward };
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        print(&summary(&measured, &diagnosis, kept_apart.as_ref()));
+        print(&summary(&measured, &diagnosis, &extras));
     }
     if let Some(path) = &arguments.json {
-        write_json(path, &for_programs(&diagnosis, kept_apart.as_ref())?)?;
+        write_json(path, &for_programs(&diagnosis, &extras)?)?;
     }
     if let Some(path) = &arguments.out {
         write_json(path, &improved)?;
     }
     if let Some(path) = &arguments.report {
-        write(
-            path,
-            &page(&measured.title, &diagnosis, kept_apart.as_ref(), &left_out_words(&measured.rows)),
-        )?;
+        write(path, &page(&measured.title, &diagnosis, &extras, &left_out_words(&measured.rows)))?;
     }
     Ok(())
 }
@@ -125,6 +132,23 @@ fn predicted(model: &dyn Model, chi: &[f64], motion: &Motion, mut torque: Vec<Ve
         torque,
         fixed: motion.fixed.clone(),
     }
+}
+
+/// The recording by forward simulation, where there is something to compare and the recording is short or it was
+/// asked for; otherwise why not.
+fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<Result<ClosedLoop, String>> {
+    let duration: f64 =
+        measured.trajectories.iter().filter_map(|t| Some(t.time.last()? - t.time.first()?)).sum();
+    if diagnosis.findings.is_empty() || (duration > QUICK && !asked) {
+        return None;
+    }
+    let bar = Bar::new("simulation");
+    let progress = |done: f64| bar.share(done, "simulation");
+    let model = measured.dynamics.model();
+    Some(
+        closed_loop(model, &measured.title, &measured.trajectories, diagnosis, &progress)
+            .map_err(|error| error.to_string()),
+    )
 }
 
 /// The same options for another recording of the robot, over all of its time.
@@ -200,13 +224,13 @@ fn tested(
 }
 
 /// The JSON of the contract: everything but the curves that only a plot needs.
-fn for_programs(diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>) -> Result<serde_json::Value, Failure> {
+fn for_programs(diagnosis: &Diagnosis, extras: &Extras) -> Result<serde_json::Value, Failure> {
     let mut value = serde_json::to_value(diagnosis)
         .map_err(|error| Failure::Data(format!("the result cannot be written as JSON: {error}")))?;
     if let Some(object) = value.as_object_mut() {
         object.remove("series");
         object.remove("spectra");
-        if let Some(test) = kept_apart {
+        if let Some(test) = &extras.kept_apart {
             object.insert(
                 "test".to_owned(),
                 serde_json::json!({
@@ -216,11 +240,19 @@ fn for_programs(diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>) -> Result
                 }),
             );
         }
+        let forward = match &extras.forward {
+            Some(Ok(run)) => serde_json::to_value(run).ok(),
+            Some(Err(reason)) => Some(serde_json::json!({ "not_simulated": reason })),
+            None => None,
+        };
+        if let Some(forward) = forward {
+            object.insert("closed_loop".to_owned(), forward);
+        }
     }
     Ok(value)
 }
 
-fn summary(measured: &Measured, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>) -> String {
+fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> String {
     let mut text = format!("{}: {}\n", diagnosis.robot, measured.title);
     for line in left_out_words(&measured.rows) {
         text.push_str(&format!("{line}\n"));
@@ -241,11 +273,17 @@ fn summary(measured: &Measured, diagnosis: &Diagnosis, kept_apart: Option<&KeptA
             percent(diagnosis.held_out.after),
         ],
     ];
-    if let Some(test) = kept_apart {
+    if let Some(test) = &extras.kept_apart {
         rows.push(vec![format!("kept apart ({})", test.name), percent(test.before.0), percent(test.after.0)]);
+    }
+    if let Some(Ok(run)) = &extras.forward {
+        rows.push(vec!["by forward simulation".to_owned(), percent(run.before), percent(run.after)]);
     }
     text.push('\n');
     text.push_str(&table(&["<relative error of the torques", "before", "after"], rows));
+    if let Some(Err(reason)) = &extras.forward {
+        text.push_str(&format!("\n{reason}"));
+    }
     for finding in &diagnosis.findings {
         text.push_str(&format!("\n\n{} on {}\n", finding.effect, joint_words(&finding.joints)));
         text.push_str(&format!("  {}\n", finding.sentence));

@@ -1,6 +1,7 @@
 //! The report of `diagnose`: the verdict first, then for every finding where it was seen and what it changed.
 
-use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, HeldOut, OrderSpectrum, TorqueSeries};
+use crate::closed_loop::ClosedLoop;
+use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueSeries};
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, percent, significant};
 
@@ -15,14 +16,28 @@ pub struct KeptApart {
     pub after: (f64, Vec<f64>),
 }
 
+/// What a report has besides the diagnosis itself.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Extras {
+    /// Errors on a recording that took no part.
+    pub kept_apart: Option<KeptApart>,
+    /// The recording by forward simulation, or why it cannot be simulated; `None` where it was not asked for.
+    pub forward: Option<Result<ClosedLoop, String>>,
+}
+
 /// The whole page.
-pub fn page(title: &str, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>, notes: &[String]) -> String {
+pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {
     let mut page = Page::new(&format!("{}: {title}", diagnosis.robot));
     page.verdict(&diagnosis.verdict.join(" "));
-    page.list(notes);
-    errors(&mut page, diagnosis, kept_apart);
+    if !notes.is_empty() {
+        page.list(notes);
+    }
+    errors(&mut page, diagnosis, extras.kept_apart.as_ref());
     for finding in &diagnosis.findings {
         found(&mut page, diagnosis, finding);
+    }
+    if let Some(run) = &extras.forward {
+        forward(&mut page, diagnosis, run);
     }
     mismatch(&mut page, diagnosis);
     shifts(&mut page, diagnosis);
@@ -64,13 +79,24 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>
         ]);
     }
     page.table(&header, &rows);
-    let joint_rows: Vec<Vec<String>> =
-        joints.iter().enumerate().map(|(j, name)| joint_row(name, j, diagnosis, held, kept_apart)).collect();
-    let mut header = vec!["", "fitted, before", "after", "held back, before", "after"];
-    if kept_apart.is_some() {
+    let at = |errors: &[f64], j: usize| errors.get(j).map_or_else(|| "-".to_owned(), |e| percent(*e));
+    let per_joint = |columns: &[&[f64]]| -> Vec<Vec<String>> {
+        let row = |(j, name): (usize, &String)| {
+            std::iter::once(name.clone()).chain(columns.iter().map(|c| at(c, j))).collect()
+        };
+        joints.iter().enumerate().map(row).collect()
+    };
+    let mut header = vec!["", "held back, before", "after"];
+    let mut columns: Vec<&[f64]> = vec![&held.per_joint_before, &held.per_joint_after];
+    if let Some(test) = kept_apart {
         header.extend(["kept apart, before", "after"]);
+        columns.extend([&*test.before.1, &*test.after.1]);
     }
-    page.table(&header, &joint_rows);
+    page.table(&header, &per_joint(&columns));
+    page.details("Each joint on the fitted motion", |page| {
+        let columns: [&[f64]; 2] = [&diagnosis.before.per_joint, &diagnosis.after.per_joint];
+        page.table(&["", "before", "after"], &per_joint(&columns));
+    });
     if !held.by_motion.is_empty() {
         page.details("Each motion that was held back", |page| {
             let rows: Vec<Vec<String>> = held
@@ -81,27 +107,6 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, kept_apart: Option<&KeptApart>
             page.table(&["held back", "before", "after"], &rows);
         });
     }
-}
-
-fn joint_row(
-    name: &str,
-    j: usize,
-    diagnosis: &Diagnosis,
-    held: &HeldOut,
-    kept_apart: Option<&KeptApart>,
-) -> Vec<String> {
-    let at = |errors: &[f64]| errors.get(j).map_or_else(|| "-".to_owned(), |e| percent(*e));
-    let mut row = vec![
-        name.to_owned(),
-        at(&diagnosis.before.per_joint),
-        at(&diagnosis.after.per_joint),
-        at(&held.per_joint_before),
-        at(&held.per_joint_after),
-    ];
-    if let Some(test) = kept_apart {
-        row.extend([at(&test.before.1), at(&test.after.1)]);
-    }
-    row
 }
 
 /// `joints 2 and 3`, `the whole robot`.
@@ -133,7 +138,7 @@ fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
     }
     for spectrum in diagnosis.spectra.iter().filter(|s| finding.joints.contains(&s.joint)) {
         if finding.effect == EffectKind::TorqueRipple.id() {
-            page.plot(&orders(spectrum));
+            page.plot(&orders(spectrum, unit(finding)));
         }
     }
     // One motion shows it; the others are there for who wants to look.
@@ -191,7 +196,7 @@ fn revealing(curve: &Curve) -> Plot {
         curve.variable.clone(),
         format!("residual, {}", curve.unit),
     )
-    .with("mean residual", Role::Before, SeriesKind::Points, points);
+    .with("fitted law", Role::Law, SeriesKind::Line, law);
     if curve.error.iter().any(|e| *e > 0.0) {
         plot = plot.with("two standard errors", Role::Aside, SeriesKind::Line, bound(1.0)).with(
             "",
@@ -200,10 +205,10 @@ fn revealing(curve: &Curve) -> Plot {
             bound(-1.0),
         );
     }
-    plot.with("fitted law", Role::Law, SeriesKind::Line, law)
+    plot.with("mean residual", Role::Before, SeriesKind::Points, points)
 }
 
-fn orders(spectrum: &OrderSpectrum) -> Plot {
+fn orders(spectrum: &OrderSpectrum, unit: &str) -> Plot {
     let points = spectrum.order.iter().copied().zip(spectrum.amplitude.iter().copied()).collect();
     Plot::new(
         format!(
@@ -212,17 +217,37 @@ fn orders(spectrum: &OrderSpectrum) -> Plot {
             significant(1.0 / spectrum.gear, 3)
         ),
         "order, waves per joint turn",
-        "amplitude, N.m or N",
+        format!("amplitude, {unit}"),
     )
     .with("residual", Role::Before, SeriesKind::Line, points)
 }
 
+/// Unit of the torques of a finding's joints.
+fn unit(finding: &Finding) -> &'static str {
+    if finding.term.scale.is_some_and(|scale| scale.prismatic) { "N" } else { "N.m" }
+}
+
+/// A curve that is interrupted where rows were left out.
+fn with_gaps(time: &[f64], values: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let usual = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+    let mut points = Vec::with_capacity(time.len());
+    for (k, (&t, value)) in time.iter().zip(values).enumerate() {
+        if k > 0 && t - time[k - 1] > 3.5 * usual {
+            points.push((t, f64::NAN));
+        }
+        points.push((t, value));
+    }
+    points
+}
+
 fn torques(series: &TorqueSeries, finding: &Finding) -> Plot {
-    let curve = |values: &[f64]| series.time.iter().copied().zip(values.iter().copied()).collect();
+    let curve = |values: &[f64]| with_gaps(&series.time, values.iter().copied());
     let mut plot = Plot::new(
         format!("Torque of joint {}, {}", series.joint, series.motion),
         "time, s",
-        "torque, N.m or N",
+        format!("torque, {}", unit(finding)),
     )
     .with("measured", Role::Measured, SeriesKind::Line, curve(&series.measured))
     .with("model before", Role::Before, SeriesKind::Line, curve(&series.before))
@@ -232,14 +257,14 @@ fn torques(series: &TorqueSeries, finding: &Finding) -> Plot {
 }
 
 fn residuals(series: &TorqueSeries, finding: &Finding) -> Plot {
-    let left = |model: &[f64]| -> Vec<(f64, f64)> {
-        let rest = series.measured.iter().zip(model).map(|(y, m)| y - m);
-        series.time.iter().copied().zip(rest).collect()
-    };
-    let mut plot =
-        Plot::new(format!("What the model leaves of it, {}", series.motion), "time, s", "residual, N.m or N")
-            .with("before", Role::Before, SeriesKind::Line, left(&series.before))
-            .with("after", Role::After, SeriesKind::Line, left(&series.after));
+    let left = |model: &[f64]| with_gaps(&series.time, series.measured.iter().zip(model).map(|(y, m)| y - m));
+    let mut plot = Plot::new(
+        format!("What the model leaves of it, {}", series.motion),
+        "time, s",
+        format!("residual, {}", unit(finding)),
+    )
+    .with("before", Role::Before, SeriesKind::Line, left(&series.before))
+    .with("after", Role::After, SeriesKind::Line, left(&series.after));
     plot.height = 200.0;
     plot.bands = windows(series, finding);
     plot
@@ -253,6 +278,69 @@ fn windows(series: &TorqueSeries, finding: &Finding) -> Vec<Band> {
         .filter(|w| w.motion == series.motion)
         .map(|w| Band { from: w.window[0], to: w.window[1] })
         .collect()
+}
+
+/// Recorded and simulated torques.
+fn forward(page: &mut Page, diagnosis: &Diagnosis, run: &Result<ClosedLoop, String>) {
+    page.heading("The same by forward simulation");
+    let run = match run {
+        Ok(run) => run,
+        Err(reason) => {
+            page.paragraph(&format!("Not done: {reason}."));
+            return;
+        }
+    };
+    page.paragraph(&format!(
+        "The identified robot follows the recorded motion ({} s) in closed loop, once without and once with the \
+         findings. The error of its torques against the recorded ones falls from {} to {}.",
+        significant(run.duration, 3),
+        percent(run.before),
+        percent(run.after)
+    ));
+    if !run.left_out.is_empty() {
+        page.paragraph(&format!("Not part of the simulation: {}.", run.left_out.join(", ")));
+    }
+    let found = diagnosis.findings.iter().flat_map(|f| f.joints.iter().copied());
+    let mut joints = found.chain(diagnosis.mismatch.iter().map(|m| m.joint));
+    let left = |recorded: &[f64], simulated: &[f64]| -> Vec<(f64, f64)> {
+        let rest = recorded.iter().zip(simulated).map(|(y, m)| y - m);
+        run.first.time.iter().copied().zip(rest).collect()
+    };
+    let first = &run.first;
+    if let Some(j) = joints.find_map(|j| j.checked_sub(1).filter(|&j| j < first.recorded.len())) {
+        page.plot(
+            &Plot::new(
+                format!("Joint {}: recorded less simulated torque, first motion", j + 1),
+                "time, s",
+                "N.m or N",
+            )
+            .with(
+                "without the findings",
+                Role::Before,
+                SeriesKind::Line,
+                left(&first.recorded[j], &first.before[j]),
+            )
+            .with(
+                "with them",
+                Role::After,
+                SeriesKind::Line,
+                left(&first.recorded[j], &first.after[j]),
+            ),
+        );
+    }
+    let rows: Vec<Vec<String>> = (0..run.per_joint_before.len())
+        .map(|j| {
+            vec![
+                format!("joint {}", j + 1),
+                percent(run.per_joint_before[j]),
+                percent(run.per_joint_after[j]),
+                significant(1e3 * run.tracking_before[j], 2),
+                significant(1e3 * run.tracking_after[j], 2),
+            ]
+        })
+        .collect();
+    let header = ["", "torque error, without", "with", "off the motion, mrad or mm, without", "with"];
+    page.table(&header, &rows);
 }
 
 fn mismatch(page: &mut Page, diagnosis: &Diagnosis) {

@@ -115,7 +115,9 @@ impl Page {
     }
 
     fn element(&mut self, open: &str, close: &str, text: &str) -> &mut Self {
-        let _ = write!(self.body, "<{open}>{}</{close}>", escape(text));
+        // A number and its per cent sign stay on one line.
+        let text = escape(text).replace(" %", "\u{a0}%");
+        let _ = write!(self.body, "<{open}>{text}</{close}>");
         self
     }
 }

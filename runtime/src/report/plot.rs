@@ -6,13 +6,16 @@ use super::axis::Axis;
 use super::escape;
 
 const WIDTH: f64 = 720.0;
-const LEFT: f64 = 72.0;
+const LEFT: f64 = 84.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 10.0;
 const BOTTOM: f64 = 48.0;
 
 /// More points than this in a line are thinned to their extremes per pixel: the picture stays the same.
 const MOST_POINTS: usize = 1400;
+
+/// Up to so many points are drawn large.
+const FEW: usize = 120;
 
 /// What a series stands for; decides its colour on screen and its dash in print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -198,7 +201,7 @@ impl Plot {
         let middle = 0.5 * (TOP + floor);
         let _ = write!(
             out,
-            "<text x=\"12\" y=\"{middle:.1}\" text-anchor=\"middle\" class=\"name\" transform=\"rotate(-90 12 {middle:.1})\">{}</text>",
+            "<text x=\"19\" y=\"{middle:.1}\" text-anchor=\"middle\" class=\"name\" transform=\"rotate(-90 19 {middle:.1})\">{}</text>",
             escape(&self.y)
         );
     }
@@ -230,9 +233,11 @@ fn draw_series(out: &mut String, series: &Series, x: &Axis, y: &Axis) {
             for point in series.points.iter().step_by(step).filter(|p| finite(p)) {
                 let _ = write!(path, "M{:.1} {:.1}h0", x.pixel(point.0), y.pixel(point.1));
             }
+            // A few means stand out; a cloud does not hide what is in it.
+            let few = if series.points.len() <= FEW { " few" } else { "" };
             let _ = write!(
                 out,
-                "<path class=\"dots {class}\" fill=\"none\" stroke=\"currentColor\" stroke-linecap=\"round\" d=\"{path}\"/>"
+                "<path class=\"dots{few} {class}\" fill=\"none\" stroke=\"currentColor\" stroke-linecap=\"round\" d=\"{path}\"/>"
             );
         }
         SeriesKind::Stems => {
