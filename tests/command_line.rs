@@ -193,6 +193,30 @@ fn identify_writes_the_json_of_the_contract_and_a_model_that_validate_reads() {
 }
 
 #[test]
+fn a_challenge_tells_refused_cases_and_reads_the_truth_last() {
+    let folder = Folder::new("challenge");
+    let still: String = (0..900).map(|k| format!("{},0.3,0.4,1,1\n", k as f64 * 0.01)).collect();
+    for case in ["cases/a", "cases/b"] {
+        std::fs::create_dir_all(folder.0.join(case)).unwrap();
+        folder.write(&format!("{case}/recording.yaml"), MANIFEST);
+        folder.write(&format!("{case}/motion.csv"), &format!("t,q1,q2,u1,u2\n{still}"));
+    }
+    let truth = "effects:\n- effect: stribeck\n  fs: 4\n  joint: 2\n";
+    folder.write("cases/a/truth.yaml", truth);
+    folder.write("cases/b/truth.yaml", &truth.replace("stribeck", "gremlins"));
+    let output = folder.run(&["challenge", "cases", "a", "--json", "-"]);
+    assert!(output.status.success(), "{}", error_of(&output));
+    let json: serde_json::Value = serde_json::from_str(&words_of(&output)).unwrap();
+    let case = &json["cases"][0];
+    assert_eq!(case["missed"][0], "stribeck@2");
+    assert_eq!((&case["solved"], &json["solved"]), (&false.into(), &0.into()));
+    assert!(case["refused"].as_str().unwrap().contains("stands still"));
+    assert_refused(&folder.run(&["challenge", "cases", "b"]), 2, &["truth.yaml", "gremlins"]);
+    assert_refused(&folder.run(&["challenge", "cases", "c"]), 2, &["no case starts with c", "a, b"]);
+    assert_refused(&folder.run(&["challenge", "cases/a"]), 2, &["recording.yaml"]);
+}
+
+#[test]
 fn a_reader_that_goes_away_is_no_failure() {
     use std::process::Stdio;
     let mut child = Command::new(env!("CARGO_BIN_EXE_dynid"))

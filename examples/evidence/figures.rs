@@ -1,0 +1,72 @@
+//! Figures of the evidence, each a file that stands by itself.
+
+use dynid_runtime::diagnosis::{Diagnosis, Finding};
+use dynid_runtime::effects::EffectKind;
+use dynid_runtime::report::{Panel, Sheet};
+
+use crate::tested::Seen;
+
+/// What every finding rests on: the residual over the variable that reveals it, and the law.
+pub fn findings(robot: &str, found: &Diagnosis) -> Option<String> {
+    let panels: Vec<Panel> = found.findings.iter().filter_map(revealing).collect();
+    (!panels.is_empty()).then(|| {
+        Sheet {
+            title: format!("{robot}: what the standard model leaves, and the law that was found"),
+            x: String::new(),
+            columns: if panels.len() > 1 { 2 } else { 1 },
+            panel: [460.0, 240.0],
+            panels,
+        }
+        .to_svg()
+    })
+}
+
+fn revealing(finding: &Finding) -> Option<Panel> {
+    let curve = finding.curve.as_ref()?;
+    let line = |y: &[f64]| curve.x.iter().copied().zip(y.iter().copied()).collect::<Vec<(f64, f64)>>();
+    let bound = |sign: f64| -> Vec<f64> {
+        curve.residual.iter().zip(&curve.error).map(|(r, e)| r + sign * 2.0 * e).collect()
+    };
+    let title = EffectKind::from_id(&finding.effect).map_or(finding.effect.as_str(), |k| k.words().title);
+    let on: Vec<String> = finding.joints.iter().map(ToString::to_string).collect();
+    let place = if on.is_empty() { String::new() } else { format!(", joint {}", on.join(" and ")) };
+    Some(Panel {
+        title: format!("{title}{place}: {} over {}", curve.unit, curve.variable),
+        lines: vec![
+            ("fitted law".to_owned(), line(&curve.law)),
+            ("mean residual".to_owned(), line(&curve.residual)),
+            ("two standard errors more".to_owned(), line(&bound(1.0))),
+            ("and less".to_owned(), line(&bound(-1.0))),
+        ],
+    })
+}
+
+/// What both models leave of the torques of the motion that took no part, joint by joint.
+pub fn held_out(robot: &str, seen: &Seen) -> String {
+    let panels = (0..seen.measured.len())
+        .map(|j| {
+            let left = |model: &[Vec<f64>]| -> Vec<(f64, f64)> {
+                let rest = seen.measured[j].iter().zip(&model[j]).map(|(y, m)| y - m);
+                seen.time.iter().copied().zip(rest).collect()
+            };
+            Panel {
+                title: format!("joint {}, N.m", j + 1),
+                lines: vec![
+                    ("standard model".to_owned(), left(&seen.before)),
+                    ("with what was found".to_owned(), left(&seen.after)),
+                ],
+            }
+        })
+        .collect();
+    Sheet {
+        title: format!(
+            "{robot}: what is left of the torques of a motion that took no part ({})",
+            seen.motion
+        ),
+        x: "time, s".to_owned(),
+        columns: 2,
+        panel: [460.0, 190.0],
+        panels,
+    }
+    .to_svg()
+}

@@ -1,0 +1,109 @@
+//! What is concealed in real recordings: diagnosed on one part, judged on a part that the diagnosis never sees.
+//!
+//! `cargo run --release --example evidence -- ../shared/data --out docs` writes `docs/evidence.md` with its figures;
+//! `--robot tx40` prints one story.
+//!
+//! The TX-40 is diagnosed on 0.05 to 4.5 s and tested on 4.5 to 7.4 s, the UR10e on three motions and tested on two
+//! others, the Panda on the first 60 % of its motion and tested on the rest.
+
+mod figures;
+mod story;
+mod tested;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Parser;
+use dynid::robots::resolve;
+use dynid_runtime::diagnosis::{Settings, Silent, diagnose};
+use dynid_runtime::model::Model;
+use dynid_runtime::recording::{Manifest, Trajectory, load};
+
+use story::{STORIES, Story, Told};
+
+/// Anything that ends a run.
+pub type Failure = Box<dyn std::error::Error>;
+
+/// Which recordings, and where the page goes.
+#[derive(Debug, Parser)]
+struct Options {
+    /// Folder of the recordings
+    #[arg(default_value = "../shared/data")]
+    folder: PathBuf,
+    /// Only these robots
+    #[arg(long, value_delimiter = ',')]
+    robot: Vec<String>,
+    /// Folder for evidence.md and its figures [default: the stories on standard output, no figures]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+fn main() -> Result<(), Failure> {
+    let options = Options::parse();
+    let mut stories = Vec::new();
+    for story in &STORIES {
+        let wanted = options.robot.is_empty() || options.robot.iter().any(|r| r == story.robot);
+        if wanted {
+            stories.push(tell(&options.folder.join(story.robot), story, options.out.as_deref())?);
+        }
+    }
+    match &options.out {
+        Some(folder) => std::fs::write(folder.join("evidence.md"), story::page(&stories))?,
+        None => println!("{}", stories.concat()),
+    }
+    Ok(())
+}
+
+fn motions(model: &dyn Model, path: &Path) -> Result<Vec<Trajectory>, Failure> {
+    Ok(load(&Manifest::read(path)?, model.robot())?.trajectories)
+}
+
+/// Diagnoses one part of a recording and judges on the other.
+fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Failure> {
+    let path = folder.join(story.recording);
+    let dynamics = resolve(&Manifest::read(&path)?.robot, Some(folder))?;
+    let model = dynamics.model();
+    let all = motions(model, &path)?;
+    let (fitted, test) = match story.test {
+        Some(test) => (all, motions(model, &folder.join(test))?),
+        None => {
+            let motion = all.first().ok_or("the recording has no motion")?;
+            let (from, to) = (motion.time[0], motion.time[motion.time.len() - 1]);
+            let cut = story.cut.unwrap_or(from + 0.6 * (to - from));
+            (vec![between(motion, from, cut)], vec![between(motion, cut, to + 1.0)])
+        }
+    };
+    let start = Instant::now();
+    let found = diagnose(model, &fitted, &[], &Settings::default(), &Silent)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let counted = tested::errors(model, &found, &fitted, &test)?;
+    let mut pictures = Vec::new();
+    if let Some(out) = out {
+        let seen = tested::seen(model, &found, &test[0])?;
+        for (name, svg) in [
+            ("findings", figures::findings(story.title, &found)),
+            ("held_out", (!found.findings.is_empty()).then(|| figures::held_out(story.title, &seen))),
+        ] {
+            if let Some(svg) = svg {
+                let file = format!("evidence_{}_{name}.svg", story.robot);
+                std::fs::write(out.join(&file), svg)?;
+                pictures.push((name, file));
+            }
+        }
+    }
+    Ok(story::told(&Told { story, found: &found, counted: &counted, pictures: &pictures, seconds }))
+}
+
+/// The part of a motion between two times.
+fn between(motion: &Trajectory, from: f64, to: f64) -> Trajectory {
+    let keep: Vec<usize> = (0..motion.time.len()).filter(|&k| (from..to).contains(&motion.time[k])).collect();
+    let pick = |x: &Vec<f64>| keep.iter().map(|&k| x[k]).collect::<Vec<f64>>();
+    Trajectory {
+        name: format!("{} {from:.2} to {to:.2} s", motion.name),
+        time: pick(&motion.time),
+        position: motion.position.iter().map(pick).collect(),
+        velocity: motion.velocity.as_ref().map(|v| v.iter().map(pick).collect()),
+        torque: motion.torque.iter().map(pick).collect(),
+        ..motion.clone()
+    }
+}

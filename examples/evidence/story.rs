@@ -1,0 +1,275 @@
+//! The stories in words: what was hidden, how it was found, what it turned out to be, and whether it held.
+
+use std::fmt::Write as _;
+
+use dynid_runtime::diagnosis::{Diagnosis, Finding};
+use dynid_runtime::effects::EffectKind;
+use dynid_runtime::report::{percent, significant};
+
+use crate::tested::Counted;
+
+/// A recording and how it is divided.
+pub struct Story {
+    /// Folder, and robot.
+    pub robot: &'static str,
+    /// What a person calls it.
+    pub title: &'static str,
+    /// What is diagnosed.
+    pub recording: &'static str,
+    /// A recording that takes no part; `None`: the recording is divided in time.
+    pub test: Option<&'static str>,
+    /// Where it is divided, s; `None`: after 60 %.
+    pub cut: Option<f64>,
+    /// What was recorded.
+    pub recorded: &'static str,
+    /// How it is divided.
+    pub divided: &'static str,
+    /// What is aimed at: which way of counting, and the largest ratio or error.
+    pub goal: Option<Goal>,
+}
+
+/// What is aimed at on the part that takes no part.
+#[derive(Debug, Clone, Copy)]
+pub enum Goal {
+    /// Error with the findings over that of the standard model.
+    Ratio(f64),
+    /// Error with the findings.
+    Error(f64),
+}
+
+/// The recordings.
+pub const STORIES: [Story; 3] = [
+    Story {
+        robot: "tx40",
+        title: "Staubli TX-40",
+        recording: "recording.yaml",
+        test: None,
+        cut: Some(4.5),
+        recorded: "A single exciting motion of 7.4 s at 5 kHz, motor angles and motor torques (public repository \
+                   figaroh-examples).",
+        divided: "Diagnosed on 0.05 to 4.5 s, judged on 4.5 to 7.4 s.",
+        goal: Some(Goal::Ratio(0.68)),
+    },
+    Story {
+        robot: "ur10e",
+        title: "Universal Robots UR10e",
+        recording: "train.yaml",
+        test: Some("test.yaml"),
+        cut: None,
+        recorded: "Exciting motions at about 95 Hz with jittery stamps; the torque is the motor current times the \
+                   published drive gains (public repository dynamic_calibration).",
+        divided: "Diagnosed on three motions of 21 to 42 s, judged on other motions, recorded on other days.",
+        goal: Some(Goal::Error(0.026)),
+    },
+    Story {
+        robot: "panda",
+        title: "Franka Emika Panda",
+        recording: "recording.yaml",
+        test: None,
+        cut: None,
+        recorded: "A single exciting motion of 20 s at 1 kHz. Its torque sensors sit behind the gears, so that there is \
+                   next to no drive physics to be missed: a check for false alarms.",
+        divided: "Diagnosed on the first 60 % of the motion, judged on the rest.",
+        goal: None,
+    },
+];
+
+/// A story with its outcome.
+pub struct Told<'a> {
+    /// Which.
+    pub story: &'a Story,
+    /// What was found.
+    pub found: &'a Diagnosis,
+    /// Errors on the part that took no part.
+    pub counted: &'a [Counted],
+    /// Name and file of each figure.
+    pub pictures: &'a [(&'static str, String)],
+    /// Time of the diagnosis, s.
+    pub seconds: f64,
+}
+
+/// The page.
+pub fn page(stories: &[String]) -> String {
+    let mut text = String::from(
+        "# Evidence on real recordings\n\nWhat the standard model (rigid links, rotors, viscous and Coulomb friction, \
+         offsets) leaves out in three public recordings, found by `dynid diagnose` without a hint. The diagnosis sees one \
+         part of each recording; the other part is predicted afterwards, once. Errors are |measured - predicted| / \
+         |measured| of the torques, all joints together unless a joint is named. Every number on this page, every \
+         figure, and every statement whether a goal was reached was written by\n\n```\ncargo run --release --example evidence -- ../shared/data --out docs\n```\n\n",
+    );
+    text.push_str(&stories.join("\n"));
+    text
+}
+
+/// One story.
+pub fn told(told: &Told<'_>) -> String {
+    let Told { story, found, counted, .. } = told;
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "## {}\n\n{} {}\n", story.title, story.recorded, story.divided);
+    located(&mut text, told);
+    if found.findings.is_empty() {
+        text.push_str("### What was found\n\nNothing.\n\n");
+    } else {
+        named(&mut text, told);
+        shifts(&mut text, found);
+    }
+    proof(&mut text, story, counted, picture(told, "held_out"));
+    open(&mut text, found);
+    text
+}
+
+fn picture<'a>(told: &'a Told<'_>, name: &str) -> Option<&'a str> {
+    told.pictures.iter().find(|(known, _)| *known == name).map(|(_, file)| file.as_str())
+}
+
+fn located(text: &mut String, told: &Told<'_>) {
+    let found = told.found;
+    let _ = writeln!(
+        text,
+        "### Where the standard model fails\n\nOn the part that is diagnosed the standard model leaves {} in sample. {} \
+         candidates, each an effect at a place with all of its shapes, were tried in {} s.\n",
+        percent(found.before.relative_error),
+        found.tried,
+        significant(told.seconds, 2)
+    );
+    text.push_str("| joint | error of the standard model | share of what is unexplained | where it lives |\n|---|---|---|---|\n");
+    for m in &found.mismatch {
+        let error = found.before.per_joint.get(m.joint - 1).copied().unwrap_or(0.0);
+        let _ = writeln!(text, "| {} | {} | {} | {} |", m.joint, percent(error), percent(m.share), m.where_);
+    }
+    text.push('\n');
+}
+
+fn named(text: &mut String, told: &Told<'_>) {
+    text.push_str("### What was found\n\n");
+    for line in &told.found.verdict {
+        let _ = writeln!(text, "{line}");
+    }
+    text.push('\n');
+    if let Some(file) = picture(told, "findings") {
+        let _ = writeln!(text, "![residuals and laws]({file})\n");
+    }
+    for finding in &told.found.findings {
+        finding_words(text, finding);
+    }
+}
+
+fn finding_words(text: &mut String, finding: &Finding) {
+    let title = EffectKind::from_id(&finding.effect).map_or(finding.effect.as_str(), |k| k.words().title);
+    let numbers: Vec<String> = finding
+        .parameters
+        .iter()
+        .map(|(name, p)| {
+            let sigma =
+                if p.sigma > 0.0 { format!(" ± {}", significant(p.sigma, 2)) } else { String::new() };
+            format!("{name} {}{sigma} {}", significant(p.value, 3), p.unit)
+        })
+        .collect();
+    let _ = writeln!(
+        text,
+        "- **{title}.** {} ({}; confidence {}.)",
+        finding.sentence,
+        numbers.join(", "),
+        significant(finding.confidence, 4)
+    );
+    let others: Vec<String> = (finding.alternatives.iter().take(3))
+        .map(|a| {
+            let on: Vec<String> = a.joints.iter().map(ToString::to_string).collect();
+            let place = if on.is_empty() { String::new() } else { format!(" on joint {}", on.join(" and ")) };
+            format!("{}{place}, which {}", a.effect, a.why_not)
+        })
+        .collect();
+    if !others.is_empty() {
+        let _ = writeln!(text, "  Considered instead: {}.", others.join("; "));
+    }
+}
+
+fn shifts(text: &mut String, found: &Diagnosis) {
+    if found.shifts.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\nParameters that the missing physics had biased:\n\n| parameter | before | after | unit |\n|---|---|---|---|\n",
+    );
+    for s in &found.shifts {
+        let _ = writeln!(
+            text,
+            "| {} | {} ± {} | {} ± {} | {} |",
+            s.name,
+            significant(s.before, 3),
+            significant(s.sigma_before, 2),
+            significant(s.after, 3),
+            significant(s.sigma_after, 2),
+            s.unit
+        );
+    }
+    text.push('\n');
+}
+
+fn proof(text: &mut String, story: &Story, counted: &[Counted], picture: Option<&str>) {
+    text.push_str("### The part that took no part\n\n| rows | standard model | with what was found | ratio |\n|---|---|---|---|\n");
+    for c in counted {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:.2} |",
+            c.how,
+            percent(c.before.relative_error),
+            percent(c.after.relative_error),
+            c.ratio()
+        );
+    }
+    let Some(first) = counted.first() else { return };
+    let _ = writeln!(
+        text,
+        "\nJoint by joint, {}:\n\n| joint | standard model | with what was found |\n|---|---|---|",
+        first.how
+    );
+    for (j, (before, after)) in first.before.per_joint.iter().zip(&first.after.per_joint).enumerate() {
+        let _ = writeln!(text, "| {} | {} | {} |", j + 1, percent(*before), percent(*after));
+    }
+    if let Some(file) = picture {
+        let _ = writeln!(text, "\n![what is left of the torques]({file})");
+    }
+    let words = match story.goal {
+        None => None,
+        Some(Goal::Ratio(most)) => {
+            let reached = if first.ratio() <= most { "reached" } else { "missed" };
+            Some(format!(
+                "The goal was a ratio of {most} at most; here it is {:.2}: {reached}.",
+                first.ratio()
+            ))
+        }
+        Some(Goal::Error(most)) => {
+            let reached = if first.after.relative_error <= most { "reached" } else { "missed" };
+            Some(format!(
+                "The goal was an error of {} at most; here it is {}: {reached}.",
+                percent(most),
+                percent(first.after.relative_error)
+            ))
+        }
+    };
+    if let Some(words) = words {
+        let _ = writeln!(text, "\n{words}");
+    }
+}
+
+fn open(text: &mut String, found: &Diagnosis) {
+    text.push_str("\n### What stays open\n\n");
+    let _ = writeln!(
+        text,
+        "{} of the squared error that remains on held-back motion is more than noise.",
+        percent(found.unexplained.share)
+    );
+    for c in &found.cannot_tell {
+        let on: Vec<String> = c.joints.iter().map(ToString::to_string).collect();
+        let _ = writeln!(
+            text,
+            "\nThis motion cannot tell {} on joint {} apart. To tell: {}.",
+            c.between.join(" from "),
+            on.join(" and "),
+            c.experiment
+        );
+    }
+    text.push('\n');
+}
