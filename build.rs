@@ -1,8 +1,12 @@
-//! Every `robots/*.yaml` through the generator into `OUT_DIR`: one module a robot, and their registry.
+//! Every `robots/*.yaml` through the generator into `OUT_DIR`: one module a robot, and their registry. A module is
+//! generated again only where its robot or the generator has changed.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::{env, fs, io};
+
+use dynid_codegen::robot::Robot;
 
 fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=robots");
@@ -30,24 +34,56 @@ fn run() -> io::Result<Vec<String>> {
         println!("cargo::rerun-if-changed={}", path.display());
         files.push((path.display().to_string(), fs::read(path)?));
     }
-    let modules = match dynid_codegen::generate_all(&files) {
-        Ok(modules) => modules,
+    let collection = match dynid_codegen::read_all(&files) {
+        Ok(collection) => collection,
         Err(mistakes) => return Ok(mistakes.iter().map(ToString::to_string).collect()),
     };
+    collection.doubts.iter().for_each(|doubt| println!("cargo::warning={doubt}"));
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("OUT_DIR is not set"))?);
+    let generator = generator()?;
     let mut registry = String::new();
     let (mut models, mut operations) = (Vec::new(), Vec::new());
-    for module in &modules {
-        let path = out.join(format!("{}.rs", module.name));
-        write_if_changed(&path, &module.source)?;
-        registry.push_str(&format!("#[path = {path:?}]\npub mod {};\n", module.name));
-        models.push(format!("&{}::Dynamics", module.name));
-        operations.push(format!("&{}::OPERATIONS", module.name));
+    for robot in &collection.robots {
+        let name = &robot.name;
+        let path = out.join(format!("{name}.rs"));
+        if let Err(error) = generate(robot, &path, generator)? {
+            return Ok(vec![format!("robots/: {name}: {error}")]);
+        }
+        registry.push_str(&format!("#[path = {path:?}]\npub mod {name};\n"));
+        models.push(format!("&{name}::Dynamics"));
+        operations.push(format!("&{name}::OPERATIONS"));
     }
     registry.push_str(&format!("static MODELS: &[&dyn Model] = &[{}];\n", models.join(", ")));
     registry.push_str(&format!("static OPERATIONS: &[&[Operations]] = &[{}];\n", operations.join(", ")));
     write_if_changed(&out.join("registry.rs"), &registry)?;
     Ok(Vec::new())
+}
+
+/// Writes the module of a robot, unless the one that is there was made from the same robot by the same generator.
+fn generate(robot: &Robot, path: &Path, generator: u64) -> io::Result<Result<(), String>> {
+    let mut hasher = DefaultHasher::new();
+    (generator, format!("{robot:?}")).hash(&mut hasher);
+    let key = format!("{:016x}", hasher.finish());
+    let made_from = path.with_extension("made_from");
+    if path.is_file() && fs::read_to_string(&made_from).is_ok_and(|known| known == key) {
+        return Ok(Ok(()));
+    }
+    match dynid_codegen::generate(robot) {
+        Ok(source) => {
+            write_if_changed(path, &source)?;
+            fs::write(&made_from, key)?;
+            Ok(Ok(()))
+        }
+        Err(error) => Ok(Err(error.to_string())),
+    }
+}
+
+/// What stands for the generator: this program, by its length and time.
+fn generator() -> io::Result<u64> {
+    let own = fs::metadata(env::current_exe()?)?;
+    let mut hasher = DefaultHasher::new();
+    (own.len(), own.modified()?).hash(&mut hasher);
+    Ok(hasher.finish())
 }
 
 fn write_if_changed(path: &Path, text: &str) -> io::Result<()> {

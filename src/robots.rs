@@ -55,15 +55,18 @@ pub fn resolve(name: &str, beside: Option<&Path>) -> Result<Dynamics, Failure> {
     Ok(Dynamics::Recursive(Box::new(model)))
 }
 
-/// Reads a robot YAML into the numbers that the runtime works with.
+/// Reads a robot YAML into the numbers that the runtime works with. What is allowed in it but probably not meant is
+/// told on standard error.
 ///
 /// # Errors
 /// [`Failure::Input`] with every mistake, one a line.
 pub fn read(path: &Path) -> Result<Robot, Failure> {
     let text = std::fs::read(path).map_err(|error| file_failure("read the robot", path, &error))?;
-    let parsed = symbolic::parse(&path.display().to_string(), &text).map_err(|mistakes| {
-        Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
-    })?;
+    let (parsed, doubts) =
+        symbolic::parse_with_doubts(&path.display().to_string(), &text).map_err(|mistakes| {
+            Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+        })?;
+    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
     let base = base_set(&parsed);
     Ok(numeric(&parsed, &base))
 }

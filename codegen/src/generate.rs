@@ -3,7 +3,7 @@
 use crate::base::BaseSet;
 use crate::emit;
 use crate::mechanics::{Equations, ModelCounts, ModelError};
-use crate::robot::{Diagnostic, Robot, parse};
+use crate::robot::{Diagnostic, Robot, parse_with_doubts};
 
 /// Why no module came out.
 #[derive(Debug, thiserror::Error)]
@@ -19,7 +19,7 @@ pub enum GenerateError {
 /// The module of a robot: its data, its equations and its `Model`, as formatted Rust.
 ///
 /// # Errors
-/// A drive without a model. A robot from [`parse`] always has one.
+/// A drive without a model. A robot from [`crate::robot::parse`] always has one.
 pub fn generate(robot: &Robot) -> Result<String, GenerateError> {
     generate_with(robot, &crate::base::base_set(robot))
 }
@@ -41,45 +41,42 @@ pub fn operation_counts(robot: &Robot) -> Result<ModelCounts, ModelError> {
     Ok(Equations::derive(robot, &crate::base::base_set(robot))?.counts())
 }
 
-/// The module of one robot of a collection.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Module {
-    /// Name of the robot and of the module.
-    pub name: String,
-    /// Its source.
-    pub source: String,
+/// The robots of several YAMLs, and what is doubtful about them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collection {
+    /// In the order of the files.
+    pub robots: Vec<Robot>,
+    /// What is allowed in the files but probably not meant.
+    pub doubts: Vec<Diagnostic>,
 }
 
-/// The modules of several robot YAMLs, given as path and bytes, in their order.
+/// Reads several robot YAMLs, given as path and bytes, that go into one registry.
 ///
 /// # Errors
 /// Every mistake of every file, and every name that is taken already.
-pub fn generate_all(files: &[(String, Vec<u8>)]) -> Result<Vec<Module>, Vec<Diagnostic>> {
+pub fn read_all(files: &[(String, Vec<u8>)]) -> Result<Collection, Vec<Diagnostic>> {
     let mut mistakes = Vec::new();
-    let mut robots: Vec<(&str, Robot)> = Vec::new();
+    let mut collection = Collection { robots: Vec::new(), doubts: Vec::new() };
+    let mut paths: Vec<&str> = Vec::new();
     for (path, bytes) in files {
-        let robot = match parse(path, bytes) {
-            Ok(robot) => robot,
-            Err(found) => {
-                mistakes.extend(found);
-                continue;
+        match parse_with_doubts(path, bytes) {
+            Err(found) => mistakes.extend(found),
+            Ok((robot, doubts)) => {
+                match collection.robots.iter().position(|known| known.name == robot.name) {
+                    Some(first) => {
+                        let message = format!("the name {} is already that of {}", robot.name, paths[first]);
+                        mistakes.push(at_key(path, bytes, "name", message));
+                    }
+                    None => {
+                        collection.robots.push(robot);
+                        collection.doubts.extend(doubts);
+                        paths.push(path);
+                    }
+                }
             }
-        };
-        if let Some((first, _)) = robots.iter().find(|(_, known)| known.name == robot.name) {
-            let message = format!("the name {} is already that of {first}", robot.name);
-            mistakes.push(at_key(path, bytes, "name", message));
-        } else {
-            robots.push((path, robot));
         }
     }
-    let mut modules = Vec::new();
-    for (path, robot) in &robots {
-        match generate(robot) {
-            Ok(source) => modules.push(Module { name: robot.name.clone(), source }),
-            Err(error) => mistakes.push(at_key(path, &[], "name", error.to_string())),
-        }
-    }
-    if mistakes.is_empty() { Ok(modules) } else { Err(mistakes) }
+    if mistakes.is_empty() { Ok(collection) } else { Err(mistakes) }
 }
 
 /// A mistake at a top-level key of a file, or at its start where the key cannot be found.

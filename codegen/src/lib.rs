@@ -9,7 +9,7 @@ pub mod mechanics;
 pub mod robot;
 pub mod symbolic;
 
-pub use generate::{GenerateError, Module, generate, generate_all, generate_with, operation_counts};
+pub use generate::{Collection, GenerateError, generate, generate_with, operation_counts, read_all};
 
 #[cfg(test)]
 mod testing;

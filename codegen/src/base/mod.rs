@@ -84,11 +84,3 @@ fn base_parameter(
         unit: parameter.kind.unit(robot.frames[parameter.frame].kind).to_owned(),
     }
 }
-
-impl BaseSet {
-    /// Standard parameters, by index, that have no effect on any torque.
-    pub fn without_effect(&self) -> Vec<usize> {
-        let used = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
-        (0..self.standard.len()).filter(|&k| !used(k)).collect()
-    }
-}

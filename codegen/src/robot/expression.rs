@@ -1,5 +1,6 @@
 //! Expressions over numbers, pi and the robot's constants.
 
+use std::f64::consts::FRAC_PI_4;
 use std::fmt;
 
 /// A constant expression of the table, as written.
@@ -23,6 +24,13 @@ pub enum Expression {
     Div(Box<Expression>, Box<Expression>),
 }
 
+/// A multiple of pi/4 that is meant to be one, rad: the rounding of an expression.
+const EXACT: f64 = 1e-12;
+/// An angle this close to a multiple of pi/4 without being one is doubted, rad.
+const NEAR: f64 = 1e-4;
+/// The coarsest rounding that is taken for one, rad: 1.57 and 3.14, but not 0.79.
+const COARSEST: f64 = 2e-3;
+
 impl Expression {
     /// The number 0, which stands for every entry of the table that is not there.
     pub const ZERO: Expression = Expression::Number(0.0);
@@ -38,6 +46,32 @@ impl Expression {
             Expression::Mul(a, b) => a.value() * b.value(),
             Expression::Div(a, b) => a.value() / b.value(),
         }
+    }
+
+    /// A number in the expression that is a multiple of pi/4 rounded to the digits it is written with, or the value of
+    /// the whole within 1e-4 rad of one without being it; with the multiple, both without sign.
+    pub(super) fn rounded_multiple(&self) -> Option<(f64, i64)> {
+        let multiple = |x: f64, within: f64| {
+            let eighths = (x.abs() / FRAC_PI_4).round();
+            let distance = (x.abs() - eighths * FRAC_PI_4).abs();
+            (eighths > 0.0 && distance > EXACT && distance <= within).then_some((x.abs(), eighths as i64))
+        };
+        let number = |x: f64| {
+            let text = x.abs().to_string();
+            let decimals = text.split_once('.').map_or(0, |(_, after)| after.len());
+            multiple(x, (0.5 * 10_f64.powi(-(decimals as i32))).min(COARSEST))
+        };
+        let inside = match self {
+            Expression::Number(x) | Expression::Constant(_, x) => number(*x),
+            Expression::Pi => None,
+            Expression::Neg(a) => a.rounded_multiple(),
+            Expression::Add(a, b) | Expression::Sub(a, b) => {
+                a.rounded_multiple().or_else(|| b.rounded_multiple())
+            }
+            // A factor is no angle.
+            Expression::Mul(..) | Expression::Div(..) => None,
+        };
+        inside.or_else(|| multiple(self.value(), NEAR))
     }
 
     /// How tightly the outermost operator binds: 1 sum, 2 product, 3 sign, 4 nothing to bind.

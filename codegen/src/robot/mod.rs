@@ -39,7 +39,7 @@ mod table;
 
 pub use diagnostic::Diagnostic;
 pub use expression::Expression;
-pub use parse::parse;
+pub use parse::{parse, parse_with_doubts};
 pub(crate) use standard::INERTIAL;
 pub use standard::{ParameterKind, StandardParameter, standard_parameters};
 

@@ -17,13 +17,21 @@ const KEYS: [&str; 8] =
 /// `path` is how the messages name the file. All mistakes are reported at once, in the order of the file; a file
 /// that is not UTF-8, not YAML, or empty gives just one.
 pub fn parse(path: &str, bytes: &[u8]) -> Result<Robot, Vec<Diagnostic>> {
+    parse_with_doubts(path, bytes).map(|(robot, _)| robot)
+}
+
+/// [`parse`], with what is allowed in the file but probably not meant.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_with_doubts(path: &str, bytes: &[u8]) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>> {
     let root = read_document(path, bytes).map_err(|diagnostic| vec![diagnostic])?;
     let mut reader = Reader::new(path);
     let robot = read_robot(&mut reader, &root);
     let mut diagnostics = reader.diagnostics;
     diagnostics.sort_by_key(|d| (d.line, d.column));
     match robot {
-        Some(robot) if diagnostics.is_empty() => Ok(robot),
+        Some(robot) if diagnostics.is_empty() => Ok((robot, reader.doubts)),
         _ => Err(diagnostics),
     }
 }

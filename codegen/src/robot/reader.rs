@@ -9,6 +9,8 @@ use super::{Diagnostic, Expression};
 pub(super) struct Reader {
     path: String,
     pub diagnostics: Vec<Diagnostic>,
+    /// What is allowed but probably not meant.
+    pub doubts: Vec<Diagnostic>,
 }
 
 /// The keys of one mapping, checked against those that are known.
@@ -31,12 +33,17 @@ fn count(n: usize, what: &str) -> String {
 
 impl Reader {
     pub fn new(path: &str) -> Self {
-        Reader { path: path.to_owned(), diagnostics: Vec::new() }
+        Reader { path: path.to_owned(), diagnostics: Vec::new(), doubts: Vec::new() }
     }
 
     pub fn report(&mut self, place: Place, message: impl Into<String>) {
         let Place { line, column } = place;
         self.diagnostics.push(Diagnostic { path: self.path.clone(), line, column, message: message.into() });
+    }
+
+    pub fn doubt(&mut self, place: Place, message: impl Into<String>) {
+        let Place { line, column } = place;
+        self.doubts.push(Diagnostic { path: self.path.clone(), line, column, message: message.into() });
     }
 
     /// The keys of a mapping. Unknown and repeated keys are reported; the first of a repeated key counts.

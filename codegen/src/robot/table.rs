@@ -4,6 +4,7 @@ use super::document::{Node, Place, Value};
 use super::formula::Formula;
 use super::reader::Reader;
 use super::{Expression, Frame, JointKind};
+use std::f64::consts::FRAC_PI_4;
 
 const KEYS: [&str; 9] = ["j", "parent", "sigma", "gamma", "b", "alpha", "d", "theta", "r"];
 /// Most rows that a table may have.
@@ -71,7 +72,12 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
         parent.and_then(|node| reader.integer(node, "parent as the number of a frame (0 is the base)"));
     let mut constant = |key: &str, needed: bool| {
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) };
-        node.and_then(|node| reader.constant(node, key, constants)).unwrap_or(Expression::ZERO)
+        let Some(node) = node else { return Expression::ZERO };
+        let value = reader.constant(node, key, constants).unwrap_or(Expression::ZERO);
+        if matches!(key, "alpha" | "gamma") {
+            doubt_rounded(reader, node, key, &value);
+        }
+        value
     };
     let (gamma, b) = (constant("gamma", false), constant("b", false));
     let (alpha, d) = (constant("alpha", true), constant("d", true));
@@ -83,12 +89,37 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
         {
             reader.report(node.place, message);
         }
+        if let Some(angle) = formula.constant.as_ref().filter(|_| key == "theta") {
+            doubt_rounded(reader, node, key, angle);
+        }
         formula.constant
     };
     let theta = moving("theta", JointKind::Revolute).unwrap_or(Expression::ZERO);
     let r = moving("r", JointKind::Prismatic).unwrap_or(Expression::ZERO);
     let frame = Frame { j, parent: parent.unwrap_or(j - 1), kind: kind?, gamma, b, alpha, d, theta, r };
     Some(Row { frame, parent_place })
+}
+
+/// Doubts an angle that is written as a rounded multiple of pi/4: it is taken as it stands, as a general angle.
+fn doubt_rounded(reader: &mut Reader, node: &Node, key: &str, angle: &Expression) {
+    if let Some((written, eighths)) = angle.rounded_multiple() {
+        let meant = match eighths {
+            4 => "pi".to_owned(),
+            _ if eighths % 4 == 0 => format!("{}*pi", eighths / 4),
+            2 => "pi/2".to_owned(),
+            _ if eighths % 2 == 0 => format!("{}*pi/2", eighths / 2),
+            1 => "pi/4".to_owned(),
+            _ => format!("{eighths}*pi/4"),
+        };
+        reader.doubt(
+            node.place,
+            format!(
+                "{key}: {written} is a general angle, {:.1e} rad from {meant}; write {meant} if that is meant: only then \
+                 are sines, cosines and base parameters those of {meant}",
+                (written - eighths as f64 * FRAC_PI_4).abs()
+            ),
+        );
+    }
 }
 
 /// The joint variable stands once where the joint moves (`expected`), and nowhere else.
