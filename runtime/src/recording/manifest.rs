@@ -7,6 +7,7 @@ use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::RecordingError;
+use super::duplicate_key::duplicate_key;
 use super::unit::{Quantity, Unit};
 
 /// A recording as its manifest describes it. Files are named relative to the manifest.
@@ -197,6 +198,10 @@ impl Manifest {
         if text.lines().all(|l| l.trim().is_empty() || l.trim_start().starts_with('#')) {
             let message = "the file is empty; a recording needs robot, time, position and torque".into();
             return Err(RecordingError::Manifest { file, line: 1, column: 1, message });
+        }
+        if let Some(twice) = duplicate_key(text) {
+            let message = format!("the key `{}` is there twice; first at line {}", twice.key, twice.first);
+            return Err(RecordingError::Manifest { file, line: twice.line, column: twice.column, message });
         }
         let raw: Raw = serde_yaml::from_str(text).map_err(|e| {
             let (line, column) = e.location().map_or((1, 1), |l| (l.line(), l.column()));

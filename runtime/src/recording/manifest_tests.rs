@@ -76,7 +76,8 @@ fn mistakes_are_told_with_their_place_and_what_was_expected() {
         ("to: 7.25", "to: 0.25", 10, &["later"]),
         ("fixed: [1, 2]", "fixxed: [1]", 12, &["unknown field `fixxed`", "fixed"]),
         ("time: {column: t,", "time: {rate: 5, column: t,", 6, &["exclude"]),
-        ("title: all keys at once", "robot: panda", 1, &["duplicate", "robot"]),
+        ("title: all keys at once", "robot: panda", 3, &["robot", "twice", "first at line 2"]),
+        ("rpm}", "rpm,\n  columns: [1, 2]}", 9, &["columns", "twice", "first at line 8"]),
         ("side: motor", "side: [", 5, &[]),
     ];
     for (good, bad, line, words) in cases {

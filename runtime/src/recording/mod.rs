@@ -1,6 +1,7 @@
 //! Recordings: manifests, files, units, trajectories.
 
 mod channel;
+mod duplicate_key;
 mod error;
 #[cfg(test)]
 mod folder;
@@ -8,6 +9,7 @@ mod load;
 mod manifest;
 mod npy;
 mod number;
+mod regear;
 mod report;
 mod rows;
 mod screen;
@@ -21,6 +23,7 @@ mod write;
 pub use error::RecordingError;
 pub use load::{Loader, MOST_LEFT_OUT, Recording, load};
 pub use manifest::{Channel, Column, Layout, Manifest, Side, Time, Window};
+pub use regear::regear;
 pub use report::{Cut, LeftOutRow, Reason, RowReport};
 pub use rows::Rows;
 pub use screen::Reach;
