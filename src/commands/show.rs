@@ -121,14 +121,8 @@ fn relations(robot: &Robot) -> String {
         .iter()
         .map(|p| vec![format!("  {}", p.name), format!("[{}]", p.unit), format!("= {}", p.relation)])
         .collect();
-    let mut used = vec![false; robot.standard.len()];
-    for parameter in robot.base.iter() {
-        for &(index, _) in parameter.combination.iter() {
-            used[index] = true;
-        }
-    }
     let silent: Vec<&str> =
-        robot.standard.iter().zip(&used).filter(|(_, used)| !**used).map(|(p, _)| p.name.as_ref()).collect();
+        robot.without_effect().into_iter().map(|k| robot.standard[k].name.as_ref()).collect();
     let mut text = table(&["<", "<", "<"], rows);
     if !silent.is_empty() {
         text.push_str(&format!("\nwithout any effect on the joint torques: {}", silent.join(" ")));

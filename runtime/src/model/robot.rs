@@ -156,6 +156,12 @@ impl Robot {
         self.frames.iter().filter(|f| f.kind != JointKind::Fixed).count()
     }
 
+    /// Standard parameters, by index, that no base parameter holds: they have no effect on any torque.
+    pub fn without_effect(&self) -> Vec<usize> {
+        let held = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
+        (0..self.standard.len()).filter(|&k| !held(k)).collect()
+    }
+
     /// chi from chi_st: every base parameter as its combination of standard parameters.
     pub fn base_from_standard(&self, standard: &[f64]) -> Vec<f64> {
         self.base.iter().map(|p| p.combination.iter().map(|&(k, c)| c * standard[k]).sum()).collect()
