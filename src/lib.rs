@@ -12,6 +12,7 @@ pub mod motions;
 pub mod output;
 pub mod pages;
 pub mod paper_tables;
+pub mod plausibility;
 pub mod recorded;
 pub mod robots;
 pub mod scoring;

@@ -7,7 +7,7 @@ use dynid_runtime::estimation::observe::{
     Equations, Observation, ObserveError, ObserveSettings, Standstill, observe,
 };
 use dynid_runtime::estimation::{Bandwidth, Piecewise, choose_bandwidth};
-use dynid_runtime::recording::{Loader, Manifest, RecordingError, RowReport, Trajectory, load};
+use dynid_runtime::recording::{Loader, Manifest, RecordingError, RowReport, Side, Trajectory, load};
 use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare_all};
 
 use crate::failure::Failure;
@@ -83,6 +83,8 @@ pub struct Measured {
     pub dynamics: Dynamics,
     /// The title of the recording.
     pub title: String,
+    /// Side of the gear that was recorded.
+    pub side: Side,
     /// Its motions as measured, within the window that was asked for.
     pub trajectories: Vec<Trajectory>,
     /// What was left out.
@@ -104,6 +106,8 @@ pub struct Recorded {
     pub dynamics: Dynamics,
     /// The title of the recording.
     pub title: String,
+    /// Side of the gear that was recorded.
+    pub side: Side,
     /// Its motions: filtered, differentiated, on a uniform grid.
     pub motions: Vec<Motion>,
     /// What was left out.
@@ -128,7 +132,7 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
         return Err(nothing_in_window(options));
     }
     let rows = LeftOut { rows: recording.rows, too_short: Vec::new() };
-    Ok(Measured { dynamics, title: manifest.title, trajectories, rows })
+    Ok(Measured { dynamics, title: manifest.title, side: manifest.side, trajectories, rows })
 }
 
 /// Prepares the motions of a recording.
@@ -136,13 +140,13 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
 /// # Errors
 /// [`Failure::Data`] where no motion can be prepared.
 pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Recorded, Failure> {
-    let Measured { dynamics, title, trajectories, mut rows } = measured;
+    let Measured { dynamics, title, side, trajectories, mut rows } = measured;
     let joints = dynamics.model().robot().joints();
     let (preparation, settings) = bandwidth(options, &trajectories, joints)?;
     let (motions, too_short) = prepare_all(&trajectories, &preparation)
         .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
     rows.too_short = too_short.iter().map(SignalError::to_string).collect();
-    Ok(Recorded { dynamics, title, motions, rows, settings })
+    Ok(Recorded { dynamics, title, side, motions, rows, settings })
 }
 
 /// [`measure`] and [`prepared`].
@@ -194,7 +198,7 @@ pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Res
     if !long {
         let rows = LeftOut { rows: loader.into_report(), too_short: Vec::new() };
         let trajectories = first.into_iter().map(|(_, piece)| piece).collect();
-        let measured = Measured { dynamics, title: manifest.title, trajectories, rows };
+        let measured = Measured { dynamics, title: manifest.title, side: manifest.side, trajectories, rows };
         let recorded = prepared(measured, options)?;
         let bar = Bar::new("samples");
         let progress = |done, all| bar.at(done, all);
@@ -222,7 +226,8 @@ pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Res
     }
     let (observations, too_short) = all.finish().map_err(failure)?;
     let rows = LeftOut { rows: loader.into_report(), too_short };
-    let recorded = Recorded { title: manifest.title.clone(), motions, rows, settings, dynamics };
+    let (title, side) = (manifest.title.clone(), manifest.side);
+    let recorded = Recorded { title, side, motions, rows, settings, dynamics };
     Ok(Observed { recorded, observations, whole: false })
 }
 

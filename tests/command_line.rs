@@ -49,13 +49,15 @@ trajectories:
   - {file: motion.csv}
 ";
 
-/// A planar arm that moves, with torques that follow no law.
+/// A planar arm that moves, with the torques of rotors and friction that a real one could have.
 fn moving(rows: usize) -> String {
     let mut text = String::from("t,q1,q2,u1,u2\n");
     for k in 0..rows {
         let t = k as f64 * 0.01;
-        let (a, b) = ((2.0 * t).sin(), (3.1 * t).cos());
-        text.push_str(&format!("{t},{a},{b},{},{}\n", 3.0 * a - b, 0.5 * b + 0.1 * a));
+        let (a, da) = ((2.0 * t).sin(), 2.0 * (2.0 * t).cos());
+        let (b, db) = ((3.1 * t).cos(), -3.1 * (3.1 * t).sin());
+        let (first, second) = (-4.0 * 0.7 * a + 1.5 * da, -9.61 * 0.2 * b + 0.4 * db);
+        text.push_str(&format!("{t},{a},{b},{first},{second}\n"));
     }
     text
 }

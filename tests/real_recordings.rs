@@ -71,10 +71,12 @@ fn the_tx40_is_identified_from_its_recording() {
     let identified = weighted(&observation);
     println!("moving rows {:.4}", identified.relative_error);
     assert!(identified.warnings.is_empty(), "{:?}", identified.warnings);
+    // The bound is on the rows where the joint of the equation moves. At rest friction takes any value below its
+    // break-away level, which no parameter describes: with those rows the error is told, not bounded.
     assert!(identified.relative_error <= 0.068);
     let every_row = weighted(&tx40.torque(&[], Standstill::Keep)).relative_error;
-    println!("all rows {every_row:.4}");
-    assert!(every_row < 0.0685);
+    println!("all rows, standstill as well {every_row:.4}");
+    assert!(every_row > identified.relative_error);
     // Friction differs from one robot to the next. The paper's TX-40 (Table II, Case 1): Fv 6.90 4.54 1.73 0.92,
     // Fc 6.71 8.11 6.30 2.40. Another published set is nearer to the robot of this recording.
     for (name, expected) in [

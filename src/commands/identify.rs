@@ -12,6 +12,7 @@ use dynid_runtime::report::{percent, significant};
 
 use crate::failure::Failure;
 use crate::output::{print, table, write, write_json};
+use crate::plausibility;
 use crate::recorded::{self, Recorded, RecordingOptions, left_out_words, observe_failure};
 
 /// What to identify and where to put it.
@@ -28,6 +29,9 @@ pub(super) struct Arguments {
     /// Ratio of the largest to the smallest relative standard deviation among the essential parameters
     #[arg(long, default_value_t = 20.0)]
     r_sigma: f64,
+    /// Identify even where no such robot can have made the recording
+    #[arg(long)]
+    implausible: bool,
     /// Also print what is regrouped into each parameter
     #[arg(long)]
     base: bool,
@@ -101,10 +105,23 @@ fn identify(
             model.robot().base.len(),
         )));
     }
+    let mut warnings: Vec<String> = Vec::new();
+    if !arguments.implausible {
+        let path = &arguments.recording.recording;
+        let weighted;
+        let of_torques = match estimate.method {
+            Method::IdimWls => &estimate,
+            _ => {
+                weighted = dynid_runtime::estimation::estimate(torques, &EstimateSettings::default());
+                &weighted
+            }
+        };
+        warnings.extend(plausibility::check(path, recorded, torques, of_torques)?);
+    }
     let chi = estimate.chi();
     let errors = (relative_error(torques, &chi), per_equation(torques, &chi));
     let robot_name = arguments.recording.robot.as_deref().unwrap_or(&model.robot().name);
-    let identified = Identified::new(
+    let mut identified = Identified::new(
         model.robot(),
         robot_name,
         &Observed {
@@ -117,6 +134,7 @@ fn identify(
         errors,
         recorded.rows.rows.left_out,
     );
+    identified.warnings.extend(warnings);
     Ok((identified, estimate))
 }
 

@@ -10,6 +10,7 @@ mod identified;
 mod instrumental;
 pub mod observe;
 mod outcome;
+mod physical;
 mod piecewise;
 mod robust;
 mod solve;
@@ -24,5 +25,6 @@ pub use instrumental::{InstrumentalEstimate, Instruments, instrumental_variables
 pub use outcome::{
     BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,
 };
+pub use physical::{PhysicalFit, physical_fit};
 pub use piecewise::Piecewise;
 pub use solve::{RANK_TOLERANCE, Solution};

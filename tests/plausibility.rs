@@ -1,0 +1,158 @@
+//! A recording of another robot, or one whose signs, orders or units are mixed up, ends in a sentence; a recording of
+//! the robot itself never does.
+//!
+//! Real recordings belong to others; where `../shared` is absent their tests say that they were skipped.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn shared(name: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared").join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!("skipped: {} is not there", path.display());
+    None
+}
+
+/// Exit status of `dynid identify` and all that it says.
+fn identify(recording: &Path, more: &[&str]) -> (i32, String) {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_dynid")).arg("identify").arg(recording).args(more).output().unwrap();
+    let words =
+        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    (output.status.code().unwrap(), words)
+}
+
+#[test]
+fn real_recordings_are_refused_under_every_other_robot_and_accepted_under_their_own() {
+    let recordings = [
+        ("tx40/recording", "tx40"),
+        ("ur10e/train", "ur10e"),
+        ("ur10e/test", "ur10e"),
+        ("panda/recording", "panda"),
+    ];
+    for (name, own) in recordings {
+        let Some(path) = shared(&format!("data/{name}.yaml")) else { return };
+        for robot in ["tx40", "puma560", "stanford", "cobot6", "ur10e", "panda", "branched"] {
+            // The cobot6 has the lengths of the UR10e to within 5 cm: neither fits the other's recording any worse.
+            if (own, robot) == ("ur10e", "cobot6") {
+                continue;
+            }
+            let (status, words) = identify(&path, &["--robot", robot]);
+            println!("{name} as {robot}: {status}");
+            match robot == own {
+                true => assert_eq!(status, 0, "{name}: {words}"),
+                false => {
+                    let sentence = words.contains(".yaml") || words.contains(".csv");
+                    assert!(matches!(status, 1 | 2) && sentence, "{name} as {robot}: {status} {words}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_of_a_real_recording_is_accepted_and_still_refused_under_other_robots() {
+    let Some(tx40) = shared("data/tx40/recording.yaml") else { return };
+    for window in
+        [["--from", "0", "--to", "4.5"], ["--from", "4.5", "--to", "7.4"], ["--from", "0", "--to", "2"]]
+    {
+        let (status, words) = identify(&tx40, &window);
+        assert_eq!(status, 0, "{window:?}: {words}");
+    }
+    for robot in ["puma560", "cobot6", "ur10e"] {
+        let (status, words) = identify(&tx40, &["--from", "0", "--to", "4.5", "--robot", robot]);
+        assert!(status == 1 && words.contains("tx40"), "{robot}: {status} {words}");
+    }
+    let Some(panda) = shared("data/panda/recording.yaml") else { return };
+    for window in [["--from", "0", "--to", "12"], ["--from", "10", "--to", "14"]] {
+        let (status, words) = identify(&panda, &window);
+        assert_eq!(status, 0, "{window:?}: {words}");
+    }
+}
+
+#[test]
+fn recordings_that_hide_an_effect_are_accepted() {
+    let Some(folder) = shared("challenge") else { return };
+    for case in std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()) {
+        for name in ["recording.yaml", "test.yaml", "baseline.yaml"] {
+            let path = case.join(name);
+            if path.exists() {
+                let (status, words) = identify(&path, &[]);
+                assert_eq!(status, 0, "{}: {words}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wrong_sign_order_or_unit_is_named() {
+    let Some(folder) = shared("data/tx40") else { return };
+    let original = std::fs::read_to_string(folder.join("recording.yaml")).unwrap();
+    let original = original
+        .replace("file: pos", &format!("file: {}/pos", folder.display()))
+        .replace("file: curr", &format!("file: {}/curr", folder.display()));
+    let own = std::env::temp_dir().join(format!("dynid-plausible-{}", std::process::id()));
+    std::fs::create_dir_all(&own).unwrap();
+    let path = own.join("recording.yaml");
+    for (from, to, expected) in [
+        ("unit: N.m}", "unit: N.m, gain: [1, -1, 1, 1, 1, 1]}", "sign of the torque of joint 2"),
+        ("unit: N.m}", "unit: N.m, gain: [1, 1, 1, -1, 1, 1]}", "sign of the torque of joint 4"),
+        ("unit: rad}", "unit: deg}", "angles in radians"),
+        (
+            "columns: [Joint_1, Joint_2, Joint_3, Joint_4, Joint_5, Joint_6], unit: N.m}",
+            "columns: [Joint_1, Joint_2, Joint_3, Joint_5, Joint_4, Joint_6], unit: N.m}",
+            "torque of joints 4 and 5",
+        ),
+    ] {
+        assert!(original.contains(from));
+        std::fs::write(&path, original.replace(from, to)).unwrap();
+        let (status, words) = identify(&path, &[]);
+        println!("{words}");
+        assert!(status == 1 && words.contains(expected), "{to}: {status} {words}");
+        let (status, words) = identify(&path, &["--implausible"]);
+        assert_eq!(status, 0, "{words}");
+    }
+    std::fs::remove_dir_all(&own).unwrap();
+}
+
+#[test]
+fn simulated_recordings_of_every_robot_are_accepted() {
+    let own = std::env::temp_dir().join(format!("dynid-simulated-{}", std::process::id()));
+    let full = ["--motions", "2", "--period", "5", "--residue", "1"];
+    let weak = ["--motions", "1", "--period", "4", "--harmonics", "3", "--share", "0.5", "--residue", "1"];
+    let points = ["--motions", "1", "--kind", "trapezoidal", "--points", "4", "--noise", "3"];
+    let mut accepted = 0;
+    for model in dynid::models::all() {
+        let robot = model.robot().name.as_ref();
+        for (seed, motions) in [("1", &full[..]), ("2", &full[..]), ("3", &weak[..]), ("4", &points[..])] {
+            let mut simulate = Command::new(env!("CARGO_BIN_EXE_dynid"));
+            simulate.args([
+                "simulate",
+                robot,
+                "--seed",
+                seed,
+                "--rate",
+                "1000",
+                "--record-every",
+                "2",
+                "--out",
+            ]);
+            let made = simulate.arg(&own).args(motions).output().unwrap();
+            // A motion that the robot's limits do not allow is not simulated.
+            if !made.status.success() {
+                println!("{robot} {seed}: {}", String::from_utf8_lossy(&made.stderr));
+                continue;
+            }
+            let (status, words) = identify(&own.join("recording.yaml"), &[]);
+            let too_short = words.contains("cannot determine");
+            assert!(status == 0 || too_short, "{robot}, seed {seed}: {words}");
+            accepted += usize::from(status == 0);
+            std::fs::remove_dir_all(&own).unwrap();
+        }
+    }
+    println!("{accepted} recordings accepted");
+    assert!(accepted >= 24);
+}
