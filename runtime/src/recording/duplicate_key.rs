@@ -79,7 +79,7 @@ mod tests {
             found("a: 1\ntime: {rate: 5,\n  unit: s, rate: 6}\n"),
             Some(("rate".to_owned(), 3, 12, 2))
         );
-        assert_eq!(found("- {x: 1}\n- {x: 1, y: [x, x], 'x': 2}\n"), Some(("x".to_owned(), 2, 24, 2)));
+        assert_eq!(found("- {x: 1}\n- {x: 1, y: [x, x], 'x': 2}\n"), Some(("x".to_owned(), 2, 21, 2)));
     }
 
     #[test]
