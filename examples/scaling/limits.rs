@@ -38,7 +38,7 @@ pub fn compare(model: &dyn Model, seconds: f64) -> String {
     format!(
         "One sample of {}: {all:.0} operations (evaluation {evaluation:.0}, decimation {decimation:.0}, reduction \
          {reduction:.0}, preparation {preparation:.0}) and {bytes:.0} bytes in {:.0} ns.\n\
-         One core does {:.1} billion fused operations a second, which is {:.0} ns ({:.0} % of the time), and copies \
+         One core does {:.1} billion operations a second in fused products, which is {:.0} ns ({:.0} % of the time), and copies \
          {:.1} GB/s, which is {:.0} ns ({:.0} %).",
         robot.name,
         seconds * 1e9,

@@ -10,3 +10,5 @@ pub mod recording;
 pub mod report;
 pub mod signal;
 pub mod simulation;
+
+mod parallel;

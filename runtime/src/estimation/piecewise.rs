@@ -20,6 +20,7 @@ pub struct Piecewise<'a> {
 
 impl<'a> Piecewise<'a> {
     /// Starts with the first pieces, from which the speeds of standstill are taken for all. Gives their motions back.
+    /// The threads of the settings prepare, too.
     ///
     /// # Errors
     /// As of the preparation, where none of the pieces can be prepared, and of the observation.
@@ -27,10 +28,11 @@ impl<'a> Piecewise<'a> {
         model: &'a dyn Model,
         equations: &'a [Equations],
         first: Vec<Trajectory>,
-        preparation: Preparation,
+        mut preparation: Preparation,
         mut settings: ObserveSettings,
     ) -> Result<(Self, Vec<Motion>), ObserveError> {
         settings.keep_rows = false;
+        preparation.threads = settings.threads;
         let (motions, too_short) = prepare_all(&first, &preparation)?;
         drop(first);
         if settings.standstill == Standstill::Automatic {

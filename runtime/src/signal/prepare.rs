@@ -1,6 +1,7 @@
 //! From a trajectory as measured to a motion that a model can be evaluated on.
 
 use super::{Butterworth, Motion, SignalError, Stencil, UniformGrid, central_difference};
+use crate::parallel::in_parallel;
 use crate::recording::Trajectory;
 
 /// How positions are filtered and differentiated.
@@ -20,6 +21,8 @@ pub struct Preparation {
     pub velocity: VelocitySource,
     /// Stencil of the differences; `None`: the narrowest that is exact to 0.5 % at a quarter of the cut-off.
     pub stencil: Option<Stencil>,
+    /// Threads over the joints; 0: as many as the machine has. The result is the same, to the last digit.
+    pub threads: usize,
 }
 
 /// Where dq comes from.
@@ -37,7 +40,14 @@ pub enum VelocitySource {
 
 impl Default for Preparation {
     fn default() -> Self {
-        Self { cutoff: None, order: 4, rate: None, velocity: VelocitySource::Automatic, stencil: None }
+        Self {
+            cutoff: None,
+            order: 4,
+            rate: None,
+            velocity: VelocitySource::Automatic,
+            stencil: None,
+            threads: 1,
+        }
     }
 }
 
@@ -80,38 +90,43 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
             purpose: "filter and differentiate the positions",
         });
     }
-    let filtered = |values: &Vec<f64>| {
+    let filtered = |values: &[f64]| {
         let mut out = Vec::new();
-        filter.zero_phase_into(&grid.resample(values), padding, &mut out).map(|()| out)
+        filter.zero_phase_into(values, padding, &mut out).map(|()| out)
     };
-    let derivative = |values: &Vec<f64>| {
+    let derivative = |values: &[f64]| {
         let mut out = vec![0.0; values.len()];
         central_difference(values, rate, stencil, &mut out);
         out
     };
-    let q = trajectory.position.iter().map(filtered).collect::<Result<Vec<_>, _>>()?;
-    let differences = |j: usize| derivative(&q[j]);
-    let dq = match &trajectory.velocity {
-        Some(velocity) if settings.velocity != VelocitySource::Positions => velocity
-            .iter()
-            .enumerate()
-            .map(|(j, recorded)| {
-                let recorded = grid.resample(recorded);
-                let mut filtered = Vec::new();
-                filter.zero_phase_into(&recorded, padding, &mut filtered)?;
-                if settings.velocity == VelocitySource::Recorded {
-                    return Ok(filtered);
-                }
-                let raw = derivative(&grid.resample(&trajectory.position[j]));
-                let ours = differences(j);
-                let inside = spoiled..grid.len - spoiled;
-                let agrees = agree(&filtered[inside.clone()], &ours[inside], rate);
-                Ok(if agrees && roughness(&recorded) < roughness(&raw) { filtered } else { ours })
-            })
-            .collect::<Result<Vec<_>, SignalError>>()?,
-        _ => (0..q.len()).map(differences).collect(),
+    let inside = spoiled..grid.len - spoiled;
+    let speed = |j: usize, q: &[f64]| {
+        let recorded = match trajectory.velocity.as_ref().and_then(|velocity| velocity.get(j)) {
+            Some(velocity) if settings.velocity != VelocitySource::Positions => grid.resample(velocity),
+            _ => return Ok(derivative(q)),
+        };
+        let smooth = filtered(&recorded)?;
+        if settings.velocity == VelocitySource::Recorded {
+            return Ok(smooth);
+        }
+        let raw = derivative(&grid.resample(&trajectory.position[j]));
+        let ours = derivative(q);
+        let agrees = agree(&smooth[inside.clone()], &ours[inside.clone()], rate);
+        Ok(if agrees && roughness(&recorded) < roughness(&raw) { smooth } else { ours })
     };
-    let ddq = dq.iter().map(derivative).collect();
+    let joints = in_parallel(trajectory.position.len(), settings.threads, |j| {
+        let q = filtered(&grid.resample(&trajectory.position[j]))?;
+        let dq = speed(j, &q)?;
+        let ddq = derivative(&dq);
+        Ok::<_, SignalError>([q, dq, ddq])
+    });
+    let [mut q, mut dq, mut ddq] = [Vec::new(), Vec::new(), Vec::new()];
+    for joint in joints {
+        let [position, velocity, acceleration] = joint?;
+        q.push(position);
+        dq.push(velocity);
+        ddq.push(acceleration);
+    }
     Ok(Motion {
         name: name.clone(),
         rate,

@@ -37,6 +37,26 @@ fn positions_and_derivatives_of_a_slow_sine_are_exact_between_the_spoiled_ends()
 }
 
 #[test]
+fn a_motion_has_the_same_digits_for_every_number_of_threads() {
+    let one = sine(500.0, 2000, 0.1);
+    let several = |channel: &Vec<Vec<f64>>| -> Vec<Vec<f64>> {
+        [1.0, 0.3, -2.0].map(|scale| channel[0].iter().map(|x| scale * x).collect()).to_vec()
+    };
+    let trajectory = Trajectory {
+        position: several(&one.position),
+        velocity: one.velocity.as_ref().map(several),
+        torque: several(&one.torque),
+        ..one.clone()
+    };
+    let with = |threads| prepare(&trajectory, &Preparation { threads, ..Preparation::default() });
+    let expected = with(1).expect("a valid motion");
+    assert_eq!(expected.q.len(), 3);
+    for threads in [2, 3, 0] {
+        assert_eq!(with(threads).expect("a valid motion"), expected);
+    }
+}
+
+#[test]
 fn two_point_difference_agrees_with_numpy() {
     for case in oracle().gradient {
         let mut out = vec![0.0; case.input.len()];
