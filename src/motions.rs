@@ -43,6 +43,9 @@ pub struct MotionOptions {
     /// Share of every limit of the robot that may be used
     #[arg(long, default_value_t = 0.9)]
     pub share: f64,
+    /// Share of the position range that is used, about its middle
+    #[arg(long, default_value_t = 1.0)]
+    pub reach: f64,
 }
 
 impl MotionOptions {

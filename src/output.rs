@@ -43,6 +43,17 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     std::fs::write(path, text).map_err(|error| file_failure("write it", path, &error))
 }
 
+/// Writes a page that is made by a command. What the file already has from its line `## Discussion` on is a person's
+/// and stays.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path.
+pub fn write_page(path: &Path, text: &str) -> Result<(), Failure> {
+    let before = std::fs::read_to_string(path).unwrap_or_default();
+    let discussion = before.find("\n## Discussion\n").map_or("", |at| &before[at..]);
+    write(path, &format!("{}\n{}", text.trim_end(), discussion))
+}
+
 /// Writes a value as JSON, or to standard output for `-`.
 ///
 /// # Errors

@@ -1,8 +1,10 @@
 //! Tables II, III and IV beside the paper's, as rows of text.
 
+use dynid_runtime::estimation::Estimate;
 use dynid_runtime::model::Robot;
 use dynid_runtime::paper::{
-    Case, CaseResult, PUBLISHED_PARAMETERS, Spread, mean_difference, published_error, spread,
+    Case, CaseResult, PUBLISHED_DEVIATIONS, PUBLISHED_PARAMETERS, Spread, mean_difference, published_error,
+    spread,
 };
 use dynid_runtime::report::significant;
 
@@ -66,7 +68,7 @@ impl Results<'_> {
             for &case in &cases {
                 let values = spread(self.of(case).map(|r| r.chi[k]).filter(|&x| x != 0.0));
                 row.push(with_spread(values.filter(|_| often(case)), 3));
-                let sigmas = self.of(case).filter_map(|r| relative_sigma(r, &parameter.name));
+                let sigmas = self.of(case).filter_map(|r| relative_sigma(&r.estimate, &parameter.name));
                 let sigma = spread(sigmas).filter(|_| often(case));
                 row.push(sigma.map_or_else(dash, |s| significant(s.mean, 2)));
                 if self.published {
@@ -76,6 +78,45 @@ impl Results<'_> {
             }
             let first = 1 + usize::from(self.truth.is_some());
             if row[first..].iter().any(|cell| *cell != dash()) {
+                rows.push(row);
+            }
+        }
+        Rows { header, rows }
+    }
+
+    /// Relative standard deviations of the essential parameters in cases 1 and 2, percent: weighted joint by joint,
+    /// with equal weights, and the paper's.
+    pub fn deviations(&self) -> Rows {
+        let cases: Vec<Case> =
+            self.cases().into_iter().filter(|c| matches!(c, Case::One | Case::Two)).collect();
+        let mut header = vec!["<parameter".to_owned()];
+        for case in &cases {
+            let words = ["weighted", "equal", "paper"].iter().take(if self.published { 3 } else { 2 });
+            header.extend(words.map(|word| format!("case {}, {word}", case.number())));
+        }
+        let mut rows = Vec::new();
+        for parameter in self.robot.base.iter() {
+            let plain = self.robot.standard[parameter.standard].name.as_ref();
+            let paper = PUBLISHED_DEVIATIONS.iter().find(|p| p.0 == plain).filter(|_| self.published);
+            let mut row = vec![parameter.name.to_string()];
+            for &case in &cases {
+                let weighted: Vec<f64> =
+                    self.of(case).filter_map(|r| relative_sigma(&r.estimate, &parameter.name)).collect();
+                let equal: Vec<f64> = self
+                    .of(case)
+                    .filter_map(|r| relative_sigma(r.equal_weights.as_ref()?, &parameter.name))
+                    .collect();
+                for values in [weighted, equal] {
+                    let often = 2 * values.len() > self.seeds.len();
+                    let mean = spread(values).filter(|_| often);
+                    row.push(mean.map_or_else(dash, |s| significant(s.mean, 2)));
+                }
+                if self.published {
+                    let value = paper.and_then(|p| p.1[case.number() - 1]);
+                    row.push(value.map_or_else(dash, |v| significant(v, 3)));
+                }
+            }
+            if row[1..].iter().any(|cell| *cell != dash()) {
                 rows.push(row);
             }
         }
@@ -112,7 +153,12 @@ impl Results<'_> {
                 })
             ));
             findings.push(format!(
-                "More parameters survive in case 2 than in case 1: {}; more are known to 10 %: {}",
+                "More parameters survive in case 2 than in case 1: with equal weights, which the standard deviations \
+                 that the paper prints follow, {}; weighted joint by joint {}; more are known to 10 %: {}",
+                count(&|run| {
+                    let survived = |case| run.of(case)?.survived_equal_weights();
+                    Some(survived(Case::Two)? > survived(Case::One)?)
+                }),
                 count(&|run| Some(run.of(Case::Two)?.survived > run.of(Case::One)?.survived)),
                 count(&|run| Some(run.of(Case::Two)?.known_to(10.0) > run.of(Case::One)?.known_to(10.0)))
             ));
@@ -138,6 +184,9 @@ impl Results<'_> {
                 Some(PUBLISHED_PARAMETERS.iter().filter(|p| p.values[at].is_some()).count() as f64)
             }));
         }
+        rows.push(self.row("parameters that survive, equal weights", &cases, 3, |case| {
+            spread(self.of(case).filter_map(CaseResult::survived_equal_weights).map(|count| count as f64))
+        }));
         rows.push(self.row("parameters known to 10 %", &cases, 3, |case| {
             spread(self.of(case).map(|r| r.known_to(10.0) as f64))
         }));
@@ -227,7 +276,7 @@ fn with_spread(value: Option<Spread>, digits: usize) -> String {
     }
 }
 
-fn relative_sigma(result: &CaseResult, name: &str) -> Option<f64> {
-    let kept = &result.estimate.essential.as_ref()?.parameters;
+fn relative_sigma(estimate: &Estimate, name: &str) -> Option<f64> {
+    let kept = &estimate.essential.as_ref()?.parameters;
     kept.iter().find(|p| p.name == name)?.relative_sigma_percent
 }

@@ -3,7 +3,7 @@
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::{
-    ExcitationSettings, ExcitingMotion, Identification, MotionKind, Profile, excite,
+    ExcitationSettings, ExcitingMotion, MotionKind, Profile, excite,
 };
 use dynid_runtime::simulation::{LoopSettings, simulate};
 
@@ -39,15 +39,8 @@ pub fn planned(
                 pause: 0.05,
             },
         };
-        let settings = ExcitationSettings {
-            kind,
-            identification: Identification::Idim,
-            sets: 1,
-            starts: 1,
-            evaluations: 0,
-            share: SHARE,
-            seed: random.bits(),
-        };
+        let settings =
+            ExcitationSettings { kind, share: SHARE, seed: random.bits(), ..ExcitationSettings::default() };
         motions.extend(excite(model, chi.as_deref(), &settings, &|_| {})?.motions);
     }
     Ok(motions)

@@ -7,7 +7,7 @@ use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
 use dynid_runtime::model::{Model, ParameterKind, Robot};
 use dynid_runtime::recording::{self, Trajectory};
 use dynid_runtime::report::significant;
-use dynid_runtime::simulation::excitation::{ExcitationSettings, Identification, MotionKind, excite};
+use dynid_runtime::simulation::excitation::{ExcitationSettings, MotionKind, excite};
 use dynid_runtime::simulation::{LoopSettings, Plant, SimulatedEffects, SimulationError, simulate};
 
 use super::execute_words;
@@ -128,12 +128,9 @@ fn simulated(
         let own_seed = seed.wrapping_mul(1000).wrapping_add(k);
         let settings = ExcitationSettings {
             kind: MotionKind::Fourier { harmonics: 5, period: 8.0, periods: 1 },
-            identification: Identification::Idim,
-            sets: 1,
-            starts: 1,
-            evaluations: 0,
             share: 0.8,
             seed: own_seed,
+            ..ExcitationSettings::default()
         };
         let plan = excite(model, Some(chi), &settings, &|_| {}).map_err(failed)?;
         for motion in &plan.motions {

@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use dynid_runtime::model::{Model, Robot};
 use dynid_runtime::report::significant;
-use dynid_runtime::simulation::excitation::{ExcitationPlan, ExcitationSettings, Identification, excite};
+use dynid_runtime::simulation::excitation::{
+    Criterion, ExcitationPlan, ExcitationSettings, Identification, excite,
+};
 use dynid_runtime::simulation::{Reference, check_standard};
 
 use crate::failure::{Failure, file_failure};
@@ -27,6 +29,9 @@ pub(super) struct Arguments {
     pim: bool,
     #[command(flatten)]
     motions: MotionOptions,
+    /// What makes motions better
+    #[arg(long, value_enum, default_value = "determinant")]
+    criterion: By,
     /// Random starts for each motion
     #[arg(long, default_value_t = 4)]
     starts: usize,
@@ -41,6 +46,24 @@ pub(super) struct Arguments {
     rate: f64,
 }
 
+/// What is searched for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum By {
+    /// A small condition number of the weighted observation matrix
+    Condition,
+    /// A large determinant of the information matrix
+    Determinant,
+}
+
+impl From<By> for Criterion {
+    fn from(by: By) -> Self {
+        match by {
+            By::Condition => Criterion::Condition,
+            By::Determinant => Criterion::Determinant,
+        }
+    }
+}
+
 /// Searches, prints, writes.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dynamics = resolve(&arguments.robot, None)?;
@@ -52,11 +75,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let chi = nominal(robot)?;
     let settings = ExcitationSettings {
         kind: arguments.motions.kind(),
+        criterion: arguments.criterion.into(),
         identification: if arguments.pim { Identification::Pim } else { Identification::Idim },
         sets: if arguments.pim { robot.joints() } else { 1 },
         starts: arguments.starts,
         evaluations: arguments.evaluations,
         share: arguments.motions.share,
+        reach: arguments.motions.reach,
         seed: arguments.seed,
     };
     let plan = search(model, chi.as_deref(), &settings)?;

@@ -8,7 +8,7 @@ use dynid_runtime::estimation::Identified;
 use dynid_runtime::model::{Model, Robot};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
-use dynid_runtime::simulation::excitation::{ExcitationSettings, Identification, excite};
+use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
 use dynid_runtime::simulation::{
     ElasticJoint, LoopSettings, Plant, Reference, Residue, SimulatedEffects, Simulation, SimulationError,
     check_standard, simulate,
@@ -148,12 +148,10 @@ fn planned(
     for k in 0..arguments.motions {
         let settings = ExcitationSettings {
             kind: arguments.family.kind(),
-            identification: Identification::Idim,
-            sets: 1,
-            starts: 1,
-            evaluations: 0,
             share: arguments.family.share,
+            reach: arguments.family.reach,
             seed: arguments.seed.wrapping_mul(1009).wrapping_add(k as u64),
+            ..ExcitationSettings::default()
         };
         let plan = excite(model, Some(chi), &settings, &|_| {}).map_err(|e| Failure::Input(e.to_string()))?;
         motions.extend(plan.motions.into_iter().map(|motion| Box::new(motion) as Box<dyn Reference>));

@@ -1,7 +1,9 @@
 //! Cases 1 to 5 of the paper on given recordings.
 
 use crate::estimation::observe::{Equations, Observation, ObserveError, ObserveSettings, observe};
-use crate::estimation::{Estimate, EstimateSettings, estimate, per_equation, relative_error};
+use crate::estimation::{
+    Estimate, EstimateSettings, ParameterEstimate, estimate, per_equation, relative_error,
+};
 use crate::model::Model;
 use crate::signal::Motion;
 
@@ -77,6 +79,10 @@ pub struct CaseResult {
     pub chi: Vec<f64>,
     /// How many parameters survived.
     pub survived: usize,
+    /// The identification with the same weight for every equation, where there are several a sample (Cases 1 and
+    /// 2). The standard deviations that the paper prints for these cases follow it rather than weights joint by
+    /// joint.
+    pub equal_weights: Option<Estimate>,
     /// Table III: ||Y - W·chi|| / ||Y|| of the weighted system of the identification.
     pub identification_error: f64,
     /// Table IV: ||Y - W·chi|| / ||Y|| of the torques of all joints on the single motion.
@@ -86,6 +92,11 @@ pub struct CaseResult {
 }
 
 impl CaseResult {
+    /// How many parameters survive with the same weight for every equation.
+    pub fn survived_equal_weights(&self) -> Option<usize> {
+        self.equal_weights.as_ref().map(|equal| essential(equal).len())
+    }
+
     /// Parameters of the whole model, before any is cancelled, whose relative standard deviation is at most
     /// `percent`.
     pub fn known_to(&self, percent: f64) -> usize {
@@ -145,7 +156,9 @@ fn one_case(case: Case, observation: &Observation, torques: &Observation, r_sigm
         ..EstimateSettings::default()
     };
     let estimate = estimate(observation, &settings);
-    let kept = estimate.essential.as_ref().map_or(&estimate.parameters, |e| &e.parameters);
+    let equal_weights = matches!(case, Case::One | Case::Two)
+        .then(|| self::estimate(observation, &EstimateSettings { weighted: false, ..settings }));
+    let kept = essential(&estimate);
     let mut chi = vec![0.0; observation.unknowns.len()];
     for parameter in kept {
         if let Some(k) = observation.unknowns.iter().position(|name| *name == parameter.name) {
@@ -155,12 +168,18 @@ fn one_case(case: Case, observation: &Observation, torques: &Observation, r_sigm
     CaseResult {
         case,
         survived: kept.len(),
+        equal_weights,
         identification_error: weighted_error(observation, &estimate, &chi),
         reconstruction_error: relative_error(torques, &chi),
         per_joint: per_equation(torques, &chi),
         chi,
         estimate,
     }
+}
+
+/// The parameters of the simplified model.
+fn essential(estimate: &Estimate) -> &[ParameterEstimate] {
+    estimate.essential.as_ref().map_or(&estimate.parameters, |e| &e.parameters)
 }
 
 /// ||Y - W·chi|| / ||Y|| with every group divided by its standard deviation.

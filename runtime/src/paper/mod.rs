@@ -7,7 +7,7 @@ mod published;
 
 pub use campaign::{Campaign, CampaignError, Motions, SeedResult, Spread, record, spread};
 pub use cases::{Case, CaseResult, PaperSettings, mean_difference, parameter_difference, run_cases};
-pub use published::{PUBLISHED_PARAMETERS, PublishedParameter, published_error};
+pub use published::{PUBLISHED_DEVIATIONS, PUBLISHED_PARAMETERS, PublishedParameter, published_error};
 
 #[cfg(test)]
 mod tests;

@@ -67,6 +67,36 @@ pub const PUBLISHED_PARAMETERS: &[PublishedParameter] = &[
     row("Fcm6", [1.85, 1.53, -2.97, 2.79]),
 ];
 
+/// Relative standard deviations of Cases 1 and 2 in Table II, percent; `None` where the parameter was cancelled.
+pub const PUBLISHED_DEVIATIONS: &[(&str, [Option<f64>; 2])] = &[
+    ("ZZ1", [Some(0.45), Some(0.36)]),
+    ("Fv1", [Some(0.78), Some(0.58)]),
+    ("Fc1", [Some(2.37), Some(1.76)]),
+    ("XX2", [Some(2.02), Some(1.44)]),
+    ("XZ2", [Some(4.3), Some(3.03)]),
+    ("ZZ2", [Some(0.57), Some(0.31)]),
+    ("MX2", [Some(0.52), Some(0.27)]),
+    ("Fv2", [Some(1.33), Some(0.72)]),
+    ("Fc2", [Some(1.83), Some(0.97)]),
+    ("XX3", [None, Some(7.62)]),
+    ("ZZ3", [Some(3.7), Some(1.81)]),
+    ("MY3", [Some(1.53), Some(0.79)]),
+    ("Ia3", [Some(5.83), Some(2.85)]),
+    ("Fv3", [Some(2.61), Some(1.19)]),
+    ("Fc3", [Some(2.4), Some(1.03)]),
+    ("Ia4", [None, Some(3.81)]),
+    ("Fv4", [Some(4.79), Some(1.78)]),
+    ("Fc4", [Some(6.87), Some(2.31)]),
+    ("Ia5", [Some(9.94), Some(4.84)]),
+    ("Fv5", [Some(3.8), Some(1.42)]),
+    ("Fc5", [Some(4.47), Some(1.92)]),
+    ("Ia6", [None, Some(4.43)]),
+    ("Fv6", [Some(4.91), Some(1.69)]),
+    ("Fc6", [Some(7.72), Some(2.68)]),
+    ("Fvm6", [Some(4.59), Some(1.69)]),
+    ("Fcm6", [Some(7.76), Some(3.19)]),
+];
+
 /// Relative error norm of the identification (Table III, not given for Case 5) and of the torque reconstruction
 /// (Table IV).
 pub fn published_error(case: Case) -> (Option<f64>, f64) {

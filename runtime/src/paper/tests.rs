@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::signal::{Preparation, prepare};
 use crate::simulation::testing::tx40;
 
-const SEEDS: [u64; 3] = [1, 2, 3];
+const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 
 fn of(results: &[CaseResult], case: Case) -> &CaseResult {
     results.iter().find(|r| r.case == case).unwrap()
@@ -26,7 +26,7 @@ fn the_findings_of_the_paper_hold_in_simulation() {
         let (one, two, three) =
             (reconstruction(Case::One), reconstruction(Case::Two), reconstruction(Case::Three));
         assert!((0.04..0.12).contains(&one), "seed {seed}: as good as a real robot's: {one}");
-        assert!(three > 2.5 * one, "seed {seed}: the power model fails on one motion: {three} {one}");
+        assert!(three > 1.5 * one, "seed {seed}: the power model fails on one motion: {three} {one}");
         assert!(reconstruction(Case::Five) > 5.0 * one, "seed {seed}: joint 1 alone is not enough");
         let four = reconstruction(Case::Four);
         assert!(four < 2.5 * two, "seed {seed}: the sets make the power model work: {four} {two}");
@@ -41,16 +41,22 @@ fn the_findings_of_the_paper_hold_in_simulation() {
             far(Case::Four)
         );
     }
+    // One motion fails more than another, as the paper's one motion did: several times worse on average.
+    let mean = |case| all.iter().map(|r| of(r, case).reconstruction_error).sum::<f64>() / all.len() as f64;
+    assert!(mean(Case::Three) > 4.0 * mean(Case::One), "{} {}", mean(Case::Three), mean(Case::One));
+    // More parameters survive in Case 2 than in Case 1, with equations weighted as the standard deviations of Table
+    // II are. Weighted joint by joint, Case 1 already knows the wrist: about level.
+    let equal = |run: &[CaseResult], case| of(run, case).survived_equal_weights().unwrap();
+    for (seed, results) in SEEDS.iter().zip(&all) {
+        let (two, one) = (equal(results, Case::Two), equal(results, Case::One));
+        assert!(two >= one, "seed {seed}: {two} {one}");
+    }
+    let sum = |case| all.iter().map(|r| equal(r, case)).sum::<usize>();
+    assert!(sum(Case::Two) > sum(Case::One) + SEEDS.len(), "{} {}", sum(Case::Two), sum(Case::One));
+    let survived = |case| all.iter().map(|r| of(r, case).survived).sum::<usize>();
+    assert!(survived(Case::Two) + 1 >= survived(Case::One));
     let known = |case| all.iter().map(|r| of(r, case).known_to(10.0)).sum::<usize>();
-    assert!(
-        known(Case::Two) > known(Case::One),
-        "the sets tell more: {} {}",
-        known(Case::Two),
-        known(Case::One)
-    );
-    // By the ratio rule the two are about level in simulation: the best parameters gain as much as the others.
-    let survived = |case| all.iter().map(|r| of(r, case).survived).sum::<usize>() as f64;
-    assert!(survived(Case::Two) > 0.9 * survived(Case::One));
+    assert!(known(Case::Two) > known(Case::One), "{} {}", known(Case::Two), known(Case::One));
 }
 
 #[test]
@@ -73,6 +79,29 @@ fn cases_one_three_and_five_fail_and_hold_on_the_real_robot_as_in_the_paper() {
     assert!(reconstruction(Case::Three) > 4.0 * one, "{}", reconstruction(Case::Three));
     assert!(reconstruction(Case::Five) > 8.0 * one, "{}", reconstruction(Case::Five));
     assert!(of(&results, Case::Three).identification_error < one);
+    // The standard deviations of Table II, Case 1, are those of this motion with equal weights, all larger by about
+    // the same factor; with weights joint by joint the wrist would be known far better. Motor 6 is left out: the
+    // recording tells its friction from joint 6's by other means than the paper's motion did.
+    let wrist = |name: &str| name.ends_with('6');
+    let disagreement = |found: &[crate::estimation::ParameterEstimate]| {
+        let ratios: Vec<f64> = PUBLISHED_DEVIATIONS
+            .iter()
+            .filter(|(name, _)| !wrist(name))
+            .filter_map(|(name, sigmas)| {
+                let own = found.iter().find(|p| p.name.trim_end_matches('R') == *name)?;
+                Some(sigmas[0]? / own.relative_sigma_percent?)
+            })
+            .collect();
+        assert!(ratios.len() >= 15);
+        let [low, high] =
+            [f64::min, f64::max].map(|f: fn(f64, f64) -> f64| ratios.iter().copied().reduce(f).unwrap());
+        high / low
+    };
+    let equal = of(&results, Case::One).equal_weights.as_ref().unwrap();
+    let equal = disagreement(&equal.essential.as_ref().unwrap().parameters);
+    let weighted = disagreement(&of(&results, Case::One).estimate.essential.as_ref().unwrap().parameters);
+    assert!(equal < 1.7, "{equal}");
+    assert!(weighted > 3.5, "{weighted}");
     // Table II, Case 2: the friction of the arm's joints is that of the paper's robot, within a quarter.
     for (name, published) in [("ZZ1R", 1.27), ("MX2R", 2.21), ("Fc1", 6.72), ("Fc3", 6.30), ("Fv3", 1.60)] {
         let k = model.robot().base.iter().position(|p| p.name == name).unwrap();

@@ -1,9 +1,9 @@
-//! Motion of a plant over one control interval: Runge-Kutta steps that end where friction changes direction.
+//! Motion of a plant over one control interval: steps that end where friction changes direction.
 //!
 //! Between two control samples the torques are held, and with fixed stick and slip states the robot is a smooth
 //! system without fast modes: the controller is sampled, so its gains are no stiffness of the equations. The
 //! classical fourth-order scheme at 5 kHz keeps the energy of a frictionless arm to better than 1e-8 over ten
-//! seconds. A slip velocity that would pass through zero ends the step there (located by the cubic through
+//! seconds; `docs/simulation.md` sets the schemes beside each other. A slip velocity that would pass through zero ends the step there (located by the cubic through
 //! values and slopes, then Newton), the stick-slip decision is taken exactly, and the rest of the interval goes
 //! on with it. Friction never chatters, and nothing at rest creeps.
 
@@ -26,12 +26,12 @@ impl Plant<'_> {
         let mut left = step;
         for reversal in 0.. {
             self.decide(state, torque)?;
-            self.runge_kutta(state, torque, left)?;
+            self.trial_step(state, torque, left)?;
             let crossing = self.earliest_reversal(state, left);
             let Some(mut part) = crossing.filter(|_| reversal < MANY_REVERSALS) else {
                 if crossing.is_some() {
                     self.hold_what_reversed(state);
-                    self.runge_kutta(state, torque, left)?;
+                    self.trial_step(state, torque, left)?;
                 }
                 break;
             };
@@ -41,7 +41,7 @@ impl Plant<'_> {
                 continue;
             }
             for _ in 0..4 {
-                self.runge_kutta(state, torque, part)?;
+                self.trial_step(state, torque, part)?;
                 let Some(correction) = self.newton_correction(state) else { break };
                 part = (part + correction).clamp(0.0, left);
             }
@@ -58,44 +58,6 @@ impl Plant<'_> {
         }
         state.time = end;
         Ok(())
-    }
-
-    /// One classical Runge-Kutta step (Kutta 1901) with the present stick and slip states, into `next`.
-    fn runge_kutta(&mut self, state: &State, torque: &[f64], h: f64) -> Result<(), SimulationError> {
-        let d = self.freedom;
-        let mut slopes = std::mem::take(&mut self.work.slopes);
-        let mut stage_q = std::mem::take(&mut self.work.stage_q);
-        let mut stage_dq = std::mem::take(&mut self.work.stage_dq);
-        let outcome = (|| {
-            let [k1, k2, k3, k4] = &mut slopes;
-            let (half, t) = (0.5 * h, state.time);
-            self.accelerate(t, &state.q, &state.dq, &state.hold, torque, k1)?;
-            for i in 0..d {
-                stage_q[i] = state.q[i] + half * state.dq[i];
-                stage_dq[i] = state.dq[i] + half * k1[i];
-            }
-            self.accelerate(t + half, &stage_q, &stage_dq, &state.hold, torque, k2)?;
-            for i in 0..d {
-                stage_q[i] = state.q[i] + half * (state.dq[i] + half * k1[i]);
-                stage_dq[i] = state.dq[i] + half * k2[i];
-            }
-            self.accelerate(t + half, &stage_q, &stage_dq, &state.hold, torque, k3)?;
-            for i in 0..d {
-                stage_q[i] = state.q[i] + h * (state.dq[i] + half * k2[i]);
-                stage_dq[i] = state.dq[i] + h * k3[i];
-            }
-            self.accelerate(t + h, &stage_q, &stage_dq, &state.hold, torque, k4)?;
-            for i in 0..d {
-                let sum = k1[i] + k2[i] + k3[i];
-                self.work.next_q[i] = state.q[i] + h * (state.dq[i] + h / 6.0 * sum);
-                self.work.next_dq[i] = state.dq[i] + h / 6.0 * (sum + k2[i] + k3[i] + k4[i]);
-            }
-            Ok(())
-        })();
-        self.work.slopes = slopes;
-        self.work.stage_q = stage_q;
-        self.work.stage_dq = stage_dq;
-        outcome
     }
 
     /// Time into the step of `h` at which the first slipping element comes to rest; `None` where none does.

@@ -14,11 +14,13 @@ mod effect;
 mod error;
 pub mod excitation;
 mod extra;
+mod forward;
 mod integrator;
 mod plant;
 mod reference;
 mod residue;
 mod rest;
+mod scheme;
 mod sensors;
 
 pub use closed_loop::{LoopSettings, Simulation, simulate};
@@ -31,6 +33,7 @@ pub use extra::{ExtraTorque, Instant};
 pub use plant::{ElasticJoint, Hold, Plant, State};
 pub use reference::{Reference, SampledReference};
 pub use residue::Residue;
+pub use scheme::Scheme;
 pub use sensors::SensorSettings;
 
 #[cfg(test)]

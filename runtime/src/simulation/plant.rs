@@ -1,9 +1,10 @@
-//! A simulated robot: forward dynamics with friction that holds at rest.
+//! A simulated robot: its parameters, its friction, its elastic joints, and its state.
 
+use super::SimulationError;
 use super::drive::{DriveFriction, rotor_matrix};
-use super::extra::{ExtraTorque, Instant};
-use super::rest::{self, Decision, RestScratch};
-use super::{SimulationError, cholesky};
+use super::extra::ExtraTorque;
+use super::rest::{Decision, RestScratch};
+use super::scheme::{Scheme, Stiff};
 use crate::model::{Model, ParameterKind};
 
 /// Compliance and play between motor and link of one joint.
@@ -56,42 +57,44 @@ impl State {
 /// A robot that can be driven by joint torques.
 pub struct Plant<'m> {
     pub(super) model: &'m dyn Model,
-    chi: Vec<f64>,
-    joints: usize,
+    pub(super) chi: Vec<f64>,
+    pub(super) joints: usize,
     pub(super) freedom: usize,
     pub(super) friction: DriveFriction,
-    elastic: Vec<ElasticJoint>,
+    pub(super) elastic: Vec<ElasticJoint>,
     /// Coordinate of the motor side of each joint.
-    motor: Vec<usize>,
+    pub(super) motor: Vec<usize>,
     /// Rotor inertias where they are not part of chi (with elastic joints), n x n; else empty.
-    rotor: Vec<f64>,
+    pub(super) rotor: Vec<f64>,
     pub(super) effects: Vec<Box<dyn ExtraTorque + 'm>>,
+    pub(super) scheme: Scheme,
     pub(super) work: Work,
 }
 
 /// Memory of one evaluation, allocated once.
 #[derive(Debug, Clone)]
 pub(super) struct Work {
-    link_mass: Vec<f64>,
-    link_bias: Vec<f64>,
-    mass: Vec<f64>,
+    pub(super) link_mass: Vec<f64>,
+    pub(super) link_bias: Vec<f64>,
+    pub(super) mass: Vec<f64>,
     /// M⁻¹·Gᵀ, one row per friction element.
-    response: Vec<f64>,
-    a: Vec<f64>,
-    b: Vec<f64>,
-    limits: Vec<[f64; 2]>,
-    chosen: Vec<usize>,
-    decisions: Vec<Decision>,
-    rest: RestScratch,
-    extra: Vec<f64>,
-    joint_levels: Vec<[f64; 2]>,
-    levels: Vec<[f64; 2]>,
-    motor_q: Vec<f64>,
-    motor_dq: Vec<f64>,
+    pub(super) response: Vec<f64>,
+    pub(super) a: Vec<f64>,
+    pub(super) b: Vec<f64>,
+    pub(super) limits: Vec<[f64; 2]>,
+    pub(super) chosen: Vec<usize>,
+    pub(super) decisions: Vec<Decision>,
+    pub(super) rest: RestScratch,
+    pub(super) extra: Vec<f64>,
+    pub(super) joint_levels: Vec<[f64; 2]>,
+    pub(super) levels: Vec<[f64; 2]>,
+    pub(super) motor_q: Vec<f64>,
+    pub(super) motor_dq: Vec<f64>,
     pub(super) load: Vec<f64>,
     pub(super) slopes: [Vec<f64>; 4],
     pub(super) stage_q: Vec<f64>,
     pub(super) stage_dq: Vec<f64>,
+    pub(super) stiff: Stiff,
     pub(super) next_q: Vec<f64>,
     pub(super) next_dq: Vec<f64>,
 }
@@ -102,7 +105,7 @@ impl<'m> Plant<'m> {
     /// # Errors
     /// Wrong length, a number that is not finite, a negative friction coefficient.
     pub fn new(model: &'m dyn Model, chi: &[f64]) -> Result<Self, SimulationError> {
-        Self::build(model, chi.to_vec(), Vec::new(), None, Vec::new())
+        Self::with_torques(model, chi, Vec::new())
     }
 
     /// [`Plant::new`] with torques of effects.
@@ -206,11 +209,24 @@ impl<'m> Plant<'m> {
             slopes: std::array::from_fn(|_| vec![0.0; freedom]),
             stage_q: vec![0.0; freedom],
             stage_dq: vec![0.0; freedom],
+            stiff: Stiff::new(freedom),
             next_q: vec![0.0; freedom],
             next_dq: vec![0.0; freedom],
         };
         let rotor = rotor.unwrap_or_default();
-        Ok(Self { model, chi, joints: n, freedom, friction, elastic, motor, rotor, effects, work })
+        Ok(Self {
+            model,
+            chi,
+            joints: n,
+            freedom,
+            friction,
+            elastic,
+            motor,
+            rotor,
+            effects,
+            scheme: Scheme::default(),
+            work,
+        })
     }
 
     /// Number of joints n.
@@ -266,242 +282,6 @@ impl<'m> Plant<'m> {
     pub fn motor_acceleration(&self, ddq: &[f64], j: usize) -> f64 {
         ddq[self.motor[j]]
     }
-
-    /// Accelerations of all coordinates under the motor torques `torque` (n, joint side), with every place of dry
-    /// friction as `state.hold` says. Elements at rest are decided first.
-    ///
-    /// # Errors
-    /// A mass matrix that is not positive definite.
-    pub fn acceleration(
-        &mut self,
-        state: &mut State,
-        torque: &[f64],
-        ddq: &mut [f64],
-    ) -> Result<(), SimulationError> {
-        self.decide(state, torque)?;
-        self.accelerate(state.time, &state.q, &state.dq, &state.hold, torque, ddq)
-    }
-
-    /// Mass matrix (factored in place) and the torques that accelerate it, all friction of slipping elements
-    /// included, that of sticking ones not.
-    fn assemble(
-        &mut self,
-        time: f64,
-        q: &[f64],
-        dq: &[f64],
-        hold: &[Hold],
-        torque: &[f64],
-        right: &mut [f64],
-    ) -> Result<(), SimulationError> {
-        let (n, d) = (self.joints, self.freedom);
-        let work = &mut self.work;
-        self.model.mass_and_bias(&self.chi, &q[..n], &dq[..n], &mut work.link_mass, &mut work.link_bias);
-        if d == n {
-            work.mass.copy_from_slice(&work.link_mass);
-        } else {
-            work.mass.fill(0.0);
-            for a in 0..n {
-                for b in 0..n {
-                    work.mass[a * d + b] += work.link_mass[a * n + b];
-                    work.mass[self.motor[a] * d + self.motor[b]] += self.rotor[a * n + b];
-                }
-            }
-        }
-        right.fill(0.0);
-        for j in 0..n {
-            right[j] -= work.link_bias[j];
-            right[self.motor[j]] += torque[j];
-        }
-        for &(coordinate, offset) in &self.friction.offset {
-            right[coordinate] -= offset;
-        }
-        for &(row, column, coefficient) in &self.friction.viscous {
-            right[row] -= coefficient * dq[column];
-        }
-        for joint in &self.elastic {
-            let (link, motor) = (joint.joint, self.motor[joint.joint]);
-            let twist = q[motor] - q[link];
-            let stretch = twist - twist.clamp(-0.5 * joint.play, 0.5 * joint.play);
-            if stretch != 0.0 || joint.play == 0.0 {
-                let through = joint.stiffness * stretch + joint.damping * (dq[motor] - dq[link]);
-                right[link] += through;
-                right[motor] -= through;
-            }
-        }
-        if !self.effects.is_empty() {
-            for j in 0..n {
-                work.motor_q[j] = q[self.motor[j]];
-                work.motor_dq[j] = dq[self.motor[j]];
-            }
-            let at = Instant { time, q: &work.motor_q, dq: &work.motor_dq, load: &work.load };
-            work.extra.fill(0.0);
-            work.joint_levels.fill([0.0; 2]);
-            for effect in &self.effects {
-                effect.torque(&at, &mut work.extra);
-                effect.dry_friction(&at, &mut work.joint_levels);
-            }
-            for j in 0..n {
-                right[self.motor[j]] -= work.extra[j];
-            }
-            for (level, element) in work.levels.iter_mut().zip(&self.friction.elements) {
-                let more = element.joint.map_or([0.0; 2], |j| work.joint_levels[j]);
-                *level = more.map(|x| (element.level + x).max(0.0));
-            }
-        }
-        for ((element, hold), level) in self.friction.elements.iter().zip(hold).zip(&work.levels) {
-            match hold {
-                Hold::Sticking => {}
-                Hold::Forward => element.add(-level[1], right),
-                Hold::Backward => element.add(level[0], right),
-            }
-        }
-        if cholesky::factor(d, &mut work.mass) { Ok(()) } else { Err(SimulationError::MassMatrix { time }) }
-    }
-
-    /// Fills `response` = M⁻¹·Gᵀ, A and b for the elements in `chosen`, for accelerations `free` without them.
-    fn condense(&mut self, free: &[f64]) {
-        let d = self.freedom;
-        let Work { mass, response, a, b, chosen, .. } = &mut self.work;
-        let count = chosen.len();
-        for (row, &k) in chosen.iter().enumerate() {
-            let column = &mut response[row * d..][..d];
-            column.fill(0.0);
-            self.friction.elements[k].add(1.0, column);
-            cholesky::solve(d, mass, column);
-        }
-        for (row, &k) in chosen.iter().enumerate() {
-            let element = &self.friction.elements[k];
-            b[row] = element.slip(free);
-            for column in 0..count {
-                a[row * count + column] = element.slip(&response[column * d..][..d]);
-            }
-        }
-    }
-
-    /// Decides for every element at rest whether it holds or starts to slip.
-    pub(super) fn decide(&mut self, state: &mut State, torque: &[f64]) -> Result<(), SimulationError> {
-        if state.hold.iter().all(|&hold| hold != Hold::Sticking) {
-            return Ok(());
-        }
-        let mut free = std::mem::take(&mut self.work.slopes[0]);
-        let assembled = self.assemble(state.time, &state.q, &state.dq, &state.hold, torque, &mut free);
-        if assembled.is_ok() {
-            cholesky::solve(self.freedom, &self.work.mass, &mut free);
-            self.choose_sticking(&state.hold);
-            self.condense(&free);
-            let Work { a, b, limits, levels, chosen, decisions, rest, .. } = &mut self.work;
-            for (limit, &k) in limits.iter_mut().zip(chosen.iter()) {
-                *limit = [-levels[k][0], levels[k][1]];
-            }
-            rest::decide(chosen.len(), a, b, limits, rest, decisions);
-            for (&k, decision) in chosen.iter().zip(decisions.iter()) {
-                state.hold[k] = match decision {
-                    Decision::Stick => Hold::Sticking,
-                    Decision::Forward => Hold::Forward,
-                    Decision::Backward => Hold::Backward,
-                };
-            }
-        }
-        self.work.slopes[0] = free;
-        assembled
-    }
-
-    fn choose_sticking(&mut self, hold: &[Hold]) {
-        self.work.chosen.clear();
-        self.work.chosen.extend((0..hold.len()).filter(|&k| hold[k] == Hold::Sticking));
-    }
-
-    /// Accelerations with every element held or slipping as `hold` says.
-    pub(super) fn accelerate(
-        &mut self,
-        time: f64,
-        q: &[f64],
-        dq: &[f64],
-        hold: &[Hold],
-        torque: &[f64],
-        ddq: &mut [f64],
-    ) -> Result<(), SimulationError> {
-        self.assemble(time, q, dq, hold, torque, ddq)?;
-        let d = self.freedom;
-        cholesky::solve(d, &self.work.mass, ddq);
-        self.choose_sticking(hold);
-        if self.work.chosen.is_empty() {
-            return Ok(());
-        }
-        self.condense(ddq);
-        let Work { response, a, b, chosen, .. } = &mut self.work;
-        let count = hold_at_rest(chosen, a, b);
-        for (row, column) in response.chunks_exact(d).enumerate().take(count) {
-            for (x, &r) in ddq.iter_mut().zip(column) {
-                *x -= b[row] * r;
-            }
-        }
-        for &k in chosen.iter() {
-            if let [(coordinate, _)] = self.friction.elements[k].direction[..] {
-                ddq[coordinate] = 0.0;
-            }
-        }
-        Ok(())
-    }
-
-    /// Records the torque that each joint transmits, for effects that depend on the load.
-    pub(super) fn note_load(&mut self, state: &State, ddq: &[f64]) {
-        if self.effects.is_empty() {
-            return;
-        }
-        let n = self.joints;
-        let work = &mut self.work;
-        self.model.mass_and_bias(
-            &self.chi,
-            &state.q[..n],
-            &state.dq[..n],
-            &mut work.link_mass,
-            &mut work.link_bias,
-        );
-        for j in 0..n {
-            let inertial: f64 = (0..n).map(|s| work.link_mass[j * n + s] * ddq[s]).sum();
-            work.load[j] = work.link_bias[j] + inertial;
-        }
-    }
-
-    /// Lets the effects update their inner states.
-    pub(super) fn advance_effects(&mut self, state: &State, step: f64) {
-        if self.effects.is_empty() {
-            return;
-        }
-        let work = &mut self.work;
-        for j in 0..self.joints {
-            work.motor_q[j] = state.q[self.motor[j]];
-            work.motor_dq[j] = state.dq[self.motor[j]];
-        }
-        let at = Instant { time: state.time, q: &work.motor_q, dq: &work.motor_dq, load: &work.load };
-        for effect in &mut self.effects {
-            effect.advance(&at, step);
-        }
-    }
-}
-
-/// Solves A·f = b for the elements that hold, in place of b; returns their number. An element that the ones
-/// before it already hold (its pivot vanishes) gets no torque of its own.
-fn hold_at_rest(chosen: &[usize], a: &mut [f64], b: &mut [f64]) -> usize {
-    let count = chosen.len();
-    for i in 0..count {
-        let scale = a[i * count + i];
-        for j in 0..i {
-            let mut sum = a[i * count + j];
-            for k in 0..j {
-                sum -= a[i * count + k] * a[j * count + k];
-            }
-            a[i * count + j] = sum * a[j * count + j];
-        }
-        let mut pivot = scale;
-        for k in 0..i {
-            pivot -= a[i * count + k] * a[i * count + k];
-        }
-        a[i * count + i] = if pivot > 1e-10 * scale { 1.0 / pivot.sqrt() } else { 0.0 };
-    }
-    cholesky::solve(count, a, b);
-    count
 }
 
 fn check_elastic(joint: &ElasticJoint, inertia: &[f64]) -> Result<(), SimulationError> {

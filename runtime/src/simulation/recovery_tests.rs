@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 //! Simulated, recorded with noise, identified: do the parameters come back?
 
-use super::excitation::{ExcitationSettings, Identification, MotionKind, excite};
+use super::excitation::{ExcitationSettings, excite};
 use super::testing::tx40;
 use super::{DidimSettings, Experiment, LoopSettings, Plant, Reference, Simulation, didim, simulate};
 use crate::estimation::observe::{Equations, ObserveSettings, observe};
@@ -10,15 +10,7 @@ use crate::model::{Model, RecursiveModel};
 use crate::signal::{Motion, Preparation, prepare};
 
 fn motion(model: &RecursiveModel, chi: &[f64], seed: u64) -> impl Reference + use<> {
-    let settings = ExcitationSettings {
-        kind: MotionKind::Fourier { harmonics: 5, period: 8.0, periods: 1 },
-        identification: Identification::Idim,
-        sets: 1,
-        starts: 1,
-        evaluations: 100,
-        share: 0.9,
-        seed,
-    };
+    let settings = ExcitationSettings { evaluations: 100, seed, ..ExcitationSettings::default() };
     excite(model, Some(chi), &settings, &|_| {}).unwrap().motions.swap_remove(0)
 }
 

@@ -1,9 +1,7 @@
 #![allow(clippy::unwrap_used)]
 //! The plant against energy, against the inverse dynamics, and against friction worked out by hand.
 
-use super::excitation::{
-    ExcitationSettings, FourierJoint, FourierMotion, Identification, MotionKind, excite,
-};
+use super::excitation::{ExcitationSettings, FourierJoint, FourierMotion, MotionKind, excite};
 use super::testing::{arm, pendulum, random_state, tx40, wrist};
 use super::*;
 use crate::model::{Model, ParameterKind, RecursiveModel};
@@ -357,12 +355,8 @@ fn the_tx40_follows_an_exciting_motion_under_control() {
     let chi = model.robot().base_from_standard(&standard);
     let settings = ExcitationSettings {
         kind: MotionKind::Fourier { harmonics: 5, period: 4.0, periods: 1 },
-        identification: Identification::Idim,
-        sets: 1,
-        starts: 1,
         evaluations: 60,
-        share: 0.9,
-        seed: 1,
+        ..ExcitationSettings::default()
     };
     let plan = excite(&model, Some(&chi), &settings, &|_| {}).unwrap();
     let residue = Residue::typical(model.robot(), &standard, 1.0).boxed();

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use super::ExcitingMotion;
 use super::evolution::{Found, maximise};
 use super::fourier::{FourierJoint, FourierMotion};
-use super::information::{Identification, Observer, condition, log_determinant};
+use super::information::{Criterion, Identification, Observer, condition, log_determinant};
 use super::limits::{Limits, peak_torque_share};
 use super::point_to_point::{PointToPointMotion, Profile};
 use crate::model::Model;
@@ -43,6 +43,8 @@ pub struct ExcitationSettings {
     pub kind: MotionKind,
     /// What the motions are for.
     pub identification: Identification,
+    /// What makes motions better.
+    pub criterion: Criterion,
     /// The sets of section IV.B: `sets` motions, in motion k (from 0) joints 1 to k stand still. 1 is a single
     /// motion of all joints, n makes W block-triangular.
     pub sets: usize,
@@ -52,8 +54,27 @@ pub struct ExcitationSettings {
     pub evaluations: usize,
     /// Share of every limit that may be used, in (0, 1].
     pub share: f64,
+    /// Share of the position range that may be used, about its middle, in (0, 1]; where `share` is less, that holds.
+    pub reach: f64,
     /// The same seed gives the same motions.
     pub seed: u64,
+}
+
+impl Default for ExcitationSettings {
+    /// One random Fourier motion of 8 s that was not searched for, within 90 % of the limits.
+    fn default() -> Self {
+        Self {
+            kind: MotionKind::Fourier { harmonics: 5, period: 8.0, periods: 1 },
+            identification: Identification::Idim,
+            criterion: Criterion::Determinant,
+            sets: 1,
+            starts: 1,
+            evaluations: 0,
+            share: 0.9,
+            reach: 1.0,
+            seed: 1,
+        }
+    }
 }
 
 /// Motions that were found.
@@ -90,7 +111,7 @@ pub fn excite(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<ExcitationPlan, SimulationError> {
     let robot = model.robot();
-    let limits = Limits::of(robot, settings.share)?;
+    let limits = Limits::of(robot, settings.share, settings.reach)?;
     check(settings, robot.joints())?;
     let samples = match settings.kind {
         MotionKind::Fourier { harmonics, .. } => 24 * harmonics,
@@ -196,7 +217,7 @@ fn run_starts(
             0.4,
             settings.evaluations,
             seed ^ 0x5EED,
-            &mut |candidate| merit(&mut observer, family, settings.share, known, candidate),
+            &mut |candidate| merit(&mut observer, family, settings, known, candidate),
             &mut |used| {
                 tell(used - told);
                 told = used;
@@ -219,17 +240,17 @@ fn run_starts(
     })
 }
 
-/// log det of what is known with the candidate, less a penalty where it would break a torque limit.
+/// The criterion for what is known with the candidate, less a penalty where it would break a torque limit.
 fn merit(
     observer: &mut Observer<'_>,
     family: &Family<'_>,
-    share: f64,
+    settings: &ExcitationSettings,
     known: &DMatrix<f64>,
     candidate: &[f64],
 ) -> f64 {
     let mut information = known.clone();
     let torque = observer.add(&family.motion(candidate), &mut information);
-    log_determinant(&information) - 200.0 * (torque / share - 1.0).max(0.0)
+    settings.criterion.merit(&information) - 200.0 * (torque / settings.share - 1.0).max(0.0)
 }
 
 /// Makes a motion slower until its torques keep to the share of the limits at every instant that is looked at.

@@ -1,6 +1,6 @@
 //! What a motion tells about the parameters: the weighted information matrix of IDIM or PIM.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 
 use crate::model::{Model, ParameterKind, Robot, States};
 use crate::simulation::Reference;
@@ -189,11 +189,44 @@ pub fn log_determinant(information: &DMatrix<f64>) -> f64 {
 /// Condition number of the weighted, scaled observation matrix: the root of that of the information matrix.
 /// Infinite where a parameter is not observed.
 pub fn condition(information: &DMatrix<f64>) -> f64 {
+    let [low, high] = extreme_eigenvalues(information);
+    if low > 1e-15 * high { (high / low).sqrt() } else { f64::INFINITY }
+}
+
+/// Smallest and largest eigenvalue of a matrix of which the lower triangle is given; NaN where it is not finite.
+fn extreme_eigenvalues(information: &DMatrix<f64>) -> [f64; 2] {
+    if !information.iter().all(|x| x.is_finite()) {
+        return [f64::NAN; 2];
+    }
     let n = information.nrows();
     let full = DMatrix::from_fn(n, n, |i, j| information[(i.max(j), i.min(j))]);
-    let eigenvalues = SymmetricEigen::new(full).eigenvalues;
-    let (low, high) = (eigenvalues.min(), eigenvalues.max());
-    if low <= 1e-15 * high { f64::INFINITY } else { (high / low).sqrt() }
+    let eigenvalues = full.symmetric_eigenvalues();
+    [eigenvalues.min(), eigenvalues.max()]
+}
+
+/// What makes one set of motions better than another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Criterion {
+    /// A large determinant of the information matrix, a priori knowledge of the parameters' sizes included: all
+    /// parameters together are known well. [`log_determinant`]
+    Determinant,
+    /// A small condition number of the weighted, scaled observation matrix: no combination of parameters is known
+    /// much worse than another. [`condition`]
+    Condition,
+}
+
+impl Criterion {
+    /// The larger the better; information that is not finite is the worst.
+    pub fn merit(self, information: &DMatrix<f64>) -> f64 {
+        match self {
+            Criterion::Determinant => log_determinant(information),
+            Criterion::Condition => {
+                // Where a parameter is not observed at all, the search is still told which way is down.
+                let [low, high] = extreme_eigenvalues(information);
+                if high > 0.0 { 0.5 * (low.max(1e-16 * high) / high).ln() } else { f64::NEG_INFINITY }
+            }
+        }
+    }
 }
 
 /// The joint that carries each frame: itself, or the nearest ancestor that moves.

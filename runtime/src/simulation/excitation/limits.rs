@@ -13,14 +13,15 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
-    /// `share` of the robot's limits.
+    /// `share` of the robot's limits, and of its position range no more than `reach` about the middle.
     ///
     /// # Errors
-    /// A robot that does not give all of them; a share out of (0, 1].
-    pub fn of(robot: &Robot, share: f64) -> Result<Self, SimulationError> {
-        if !(share > 0.0 && share <= 1.0) {
-            let what = "share of the limits";
-            return Err(SimulationError::Setting { what, expected: "above 0, at most 1", found: share });
+    /// A robot that does not give all of them; a share or reach out of (0, 1].
+    pub fn of(robot: &Robot, share: f64, reach: f64) -> Result<Self, SimulationError> {
+        for (what, found) in [("share of the limits", share), ("reach", reach)] {
+            if !(found > 0.0 && found <= 1.0) {
+                return Err(SimulationError::Setting { what, expected: "above 0, at most 1", found });
+            }
         }
         let n = robot.joints();
         let limits = &robot.limits;
@@ -35,7 +36,7 @@ impl Limits {
         }
         let symmetric = |list: &[[f64; 2]]| list.iter().map(|x| share * x[1].min(-x[0])).collect();
         let inner = |x: &[f64; 2]| {
-            let (middle, half) = (0.5 * (x[0] + x[1]), 0.5 * share * (x[1] - x[0]));
+            let (middle, half) = (0.5 * (x[0] + x[1]), 0.5 * share.min(reach) * (x[1] - x[0]));
             [middle - half, middle + half]
         };
         Ok(Self {
@@ -46,8 +47,11 @@ impl Limits {
     }
 }
 
-/// Largest share of a torque limit that a motion takes, looked at 2000 times a second with Coulomb friction
-/// against the motion throughout; 0 for a robot without torque limits.
+/// Largest share of a torque limit that a motion takes, with Coulomb friction against the motion throughout; 0 for
+/// a robot without torque limits.
+///
+/// Torques are worked out 2000 times a second. Between two samples a torque can pass the larger one by half of its
+/// second difference at most (a peak or a bend in the middle); that much is added, so that limits hold there too.
 ///
 /// # Errors
 /// Parameters that no robot has.
@@ -77,6 +81,8 @@ pub fn peak_torque_share(
     }
     let samples = (motion.duration() * 2000.0).ceil() as usize;
     let mut share = 0.0_f64;
+    // The torques of the last two samples; the first ones have no bend.
+    let mut last: [Option<Vec<f64>>; 2] = [None, None];
     for k in 0..=samples {
         motion.at(motion.duration() * k as f64 / samples as f64, &mut q, &mut dq, &mut ddq);
         model.mass_and_bias(chi, &q, &dq, &mut mass, &mut bias);
@@ -86,11 +92,21 @@ pub fn peak_torque_share(
         for &(row, column, coefficient) in &friction.viscous {
             bias[row] += coefficient * dq[column];
         }
+        let torque: Vec<f64> =
+            (0..n).map(|j| bias[j] + (0..n).map(|s| mass[j * n + s] * ddq[s]).sum::<f64>()).collect();
         for j in 0..n {
-            let torque = bias[j] + (0..n).map(|s| mass[j * n + s] * ddq[s]).sum::<f64>();
+            let between = match &last {
+                [Some(before), Some(middle)] => 0.5 * (torque[j] - 2.0 * middle[j] + before[j]).abs(),
+                _ => 0.0,
+            };
+            let nearest = last[1].as_ref().map_or(torque[j], |middle| middle[j]);
             let [low, high] = robot.limits.torque[j];
-            share = share.max((torque + dry[j]) / high).max((torque - dry[j]) / low);
+            for value in [torque[j], nearest] {
+                share = share.max((value + dry[j] + between) / high).max((value - dry[j] - between) / low);
+            }
         }
+        last.swap(0, 1);
+        last[1] = Some(torque);
     }
     Ok(share)
 }

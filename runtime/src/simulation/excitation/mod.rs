@@ -11,7 +11,7 @@ mod tests;
 
 pub use design::{ExcitationPlan, ExcitationSettings, MotionKind, excite};
 pub use fourier::{Bounds, FourierJoint, FourierMotion};
-pub use information::{Identification, Observer, condition, log_determinant};
+pub use information::{Criterion, Identification, Observer, condition, log_determinant};
 pub use limits::peak_torque_share;
 pub use point_to_point::{PointToPointMotion, Profile};
 
