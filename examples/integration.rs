@@ -11,9 +11,12 @@ use std::time::Instant;
 
 use dynid::models;
 use dynid::output::write_page;
+use dynid_runtime::estimation::observe::{Equations, ObserveSettings, observe};
+use dynid_runtime::estimation::{EstimateSettings, ParameterEstimate, choose_bandwidth, estimate};
 use dynid_runtime::model::{Model, ParameterKind};
 use dynid_runtime::paper::Campaign;
 use dynid_runtime::report::significant;
+use dynid_runtime::signal::{Preparation, prepare};
 use dynid_runtime::simulation::excitation::{
     ExcitationSettings, ExcitingMotion, MotionKind, Profile, excite,
 };
@@ -45,6 +48,7 @@ fn main() -> Result<(), Failure> {
     bench.schemes(&mut text)?;
     bench.exactness(&mut text)?;
     bench.speed(&mut text)?;
+    recovery(&mut text)?;
     match file {
         Some(path) => write_page(Path::new(&path), &text)?,
         None => print!("{text}"),
@@ -202,6 +206,58 @@ impl Bench<'_> {
         }
         Ok(())
     }
+}
+
+/// The honest Monte Carlo: simulated with noise, identified as `dynid identify` does, for every robot.
+fn recovery(text: &mut String) -> Result<(), Failure> {
+    const SEEDS: u64 = 50;
+    let _ = write!(
+        text,
+        "\n## Do the parameters come back?\n\nEvery robot with its nominal parameters and noise, one Fourier motion of 8 s \
+         in closed loop at 2 kHz, recorded at 1 kHz and identified as `dynid identify` does; {SEEDS} seeds of motion and \
+         noise (wanted: 95 % of the parameters within three of their standard deviations). Random motions, and motions \
+         that were searched for with {SEARCHED} candidates:\n\n| robot | parameters | random, % within 3 sigma | least \
+         seed | searched, % within 3 sigma | least seed |\n| --- | ---: | ---: | ---: | ---: | ---: |\n"
+    );
+    for &model in models::all() {
+        let Some(nominal) = &model.robot().nominal else { continue };
+        let chi = model.robot().base_from_standard(&nominal.standard);
+        let _ = write!(text, "| {} | {} |", model.robot().name, chi.len());
+        for evaluations in [0, SEARCHED] {
+            let (mut whole, mut least) = (0.0, 1.0_f64);
+            for seed in 1..=SEEDS {
+                let share = within_three_sigma(model, &chi, evaluations, seed)?;
+                whole += share / SEEDS as f64;
+                least = least.min(share);
+            }
+            let percent = |x: f64| significant(100.0 * x, 3);
+            let _ = write!(text, " {} | {} |", percent(whole), percent(least));
+        }
+        text.push('\n');
+    }
+    Ok(())
+}
+
+/// Candidate motions of a search.
+const SEARCHED: usize = 300;
+
+fn within_three_sigma(model: &dyn Model, chi: &[f64], evaluations: usize, seed: u64) -> Result<f64, Failure> {
+    let settings = ExcitationSettings { evaluations, seed, ..Default::default() };
+    let plan = excite(model, Some(chi), &settings, &|_| {})?;
+    let motion = plan.motions.first().ok_or("there is no motion")?;
+    let mut settings = LoopSettings::nominal(model, chi, motion, 2000.0, seed);
+    settings.record_every = 2;
+    let recorded = simulate(&mut Plant::new(model, chi)?, motion, &settings, &mut |_| {})?.recorded;
+    let chosen = choose_bandwidth(std::slice::from_ref(&recorded))?;
+    let prepared = prepare(&recorded, &Preparation { cutoff: Some(chosen.cutoff), ..Default::default() })?;
+    let rows = ObserveSettings { band: chosen.band, ..Default::default() };
+    let observation = observe(model, &[prepared], Equations::Torque, None, &rows, None)?;
+    let found = estimate(&observation, &EstimateSettings { block_sigmas: false, ..Default::default() });
+    let back = |(p, truth): &(&ParameterEstimate, &f64)| {
+        p.sigma.is_some_and(|sigma| (p.value - *truth).abs() <= 3.0 * sigma)
+    };
+    let within = found.parameters.iter().zip(chi).filter(back).count();
+    Ok(within as f64 / chi.len() as f64)
 }
 
 fn largest_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {

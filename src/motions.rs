@@ -29,7 +29,7 @@ pub struct MotionOptions {
     #[arg(long, value_enum, default_value = "fourier")]
     pub kind: Family,
     /// Length of a Fourier motion, s
-    #[arg(long, default_value_t = 8.0)]
+    #[arg(long, default_value_t = 8.0, allow_negative_numbers = true)]
     pub period: f64,
     /// Harmonics of a Fourier motion
     #[arg(long, default_value_t = 5)]
@@ -38,13 +38,13 @@ pub struct MotionOptions {
     #[arg(long, default_value_t = 8)]
     pub points: usize,
     /// Stop at each point, s
-    #[arg(long, default_value_t = 0.1)]
+    #[arg(long, default_value_t = 0.1, allow_negative_numbers = true)]
     pub pause: f64,
     /// Share of every limit of the robot that may be used
-    #[arg(long, default_value_t = 0.9)]
+    #[arg(long, default_value_t = 0.9, allow_negative_numbers = true)]
     pub share: f64,
     /// Share of the position range that is used, about its middle
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub reach: f64,
 }
 
@@ -60,6 +60,17 @@ impl MotionOptions {
             Family::Trapezoidal => points(Profile::TrapezoidalAcceleration),
         }
     }
+}
+
+/// Refuses a size that is negative or no number.
+///
+/// # Errors
+/// [`Failure::Input`] naming the option.
+pub fn check_size(option: &str, size: f64) -> Result<(), Failure> {
+    if size >= 0.0 && size.is_finite() {
+        return Ok(());
+    }
+    Err(Failure::Input(format!("{option} {size}: it must be zero or positive")))
 }
 
 /// A motion sampled at `rate`, as `[q, dq, ddq]` with `signal[joint][sample]`.

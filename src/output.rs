@@ -43,6 +43,14 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     std::fs::write(path, text).map_err(|error| file_failure("write it", path, &error))
 }
 
+/// Makes a folder, before long work that would be lost without it.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path.
+pub fn make_folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path).map_err(|error| file_failure("make the folder", path, &error))
+}
+
 /// Writes a page that is made by a command. What the file already has from its line `## Discussion` on is a person's
 /// and stays.
 ///

@@ -219,6 +219,78 @@ fn a_challenge_tells_refused_cases_and_reads_the_truth_last() {
 }
 
 #[test]
+fn simulate_excite_and_paper_refuse_what_cannot_be_with_status_2() {
+    let folder = Folder::new("simulate");
+    let tx40 =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("robots/tx40.yaml")).unwrap();
+    folder.write("bad.yaml", &tx40.replace("ZZ3: 0.0046", "ZZ3: 5.0").replace("name: tx40", "name: bad"));
+    folder.write("file", "");
+    let refused = |words: &[&str], what: &[&str]| assert_refused(&folder.run(words), 2, what);
+    for (more, what) in [
+        (["--period", "-3"], "period"),
+        (["--period", "1e9"], "period"),
+        (["--rate", "0"], "rate"),
+        (["--rate", "1e12"], "rate"),
+        (["--rate", "0.01"], "rows"),
+        (["--record-every", "0"], "1 or more"),
+        (["--record-every", "1000000"], "rows"),
+        (["--noise", "-1"], "--noise -1"),
+        (["--residue", "nan"], "--residue NaN"),
+        (["--ripple", "inf"], "--ripple inf"),
+        (["--elastic", "9:1000"], "not 9"),
+        (["--share", "2"], "share"),
+        (["--reach", "0"], "reach"),
+        (["--follow", "nowhere"], "motion1.csv"),
+        (["--out", "file/x"], "file/x"),
+    ] {
+        let mut words = vec!["simulate", "tx40", "--motions", "1", more[0], more[1]];
+        if more[0] != "--out" {
+            words.extend(["--out", "out"]);
+        }
+        refused(&words, &[what]);
+    }
+    let twice = ["simulate", "tx40", "--out", "out", "--elastic", "3:1e4", "--elastic", "3:2e4"];
+    refused(&twice, &["another joint", "3"]);
+    refused(&["simulate", "./bad.yaml", "--out", "out"], &["link 3 cannot exist", "bad"]);
+    refused(&["excite", "./bad.yaml", "--out", "out"], &["link 3 cannot exist"]);
+    refused(&["excite", "tx40", "--out", "out", "--criterion", "beauty"], &["determinant", "condition"]);
+    refused(&["excite", "tx40", "--out", "file", "--evaluations", "0"], &["file", "folder"]);
+    refused(&["paper", "--robot", "./bad.yaml", "--seeds", "1"], &["link 3 cannot exist"]);
+    refused(&["paper", "--seeds", "0"], &["--seeds 0"]);
+    refused(&["paper", "--noise", "-1"], &["--noise -1"]);
+    refused(&["paper", "--single-points", "1", "--seeds", "1"], &["points"]);
+    refused(&["paper", "--out", "file/x"], &["file/x"]);
+}
+
+#[test]
+fn what_is_simulated_is_identified_again() {
+    let folder = Folder::new("again");
+    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("robots/scara4.yaml");
+    folder.write("arm.yaml", &std::fs::read_to_string(robots).unwrap());
+    // A robot given by path is found from the recording too.
+    for robot in ["scara4", "./arm.yaml"] {
+        let words = [
+            "simulate",
+            robot,
+            "--out",
+            "deep/out",
+            "--motions",
+            "2",
+            "--rate",
+            "2000",
+            "--record-every",
+            "2",
+        ];
+        let output = folder.run(&words);
+        assert!(output.status.success(), "{}", error_of(&output));
+        let output = folder.run(&["identify", "deep/out/recording.yaml", "--json", "-"]);
+        assert!(output.status.success(), "{}", error_of(&output));
+        let json: serde_json::Value = serde_json::from_str(&words_of(&output)).unwrap();
+        assert!(json["relative_error"].as_f64().unwrap() < 0.05, "{}", json["relative_error"]);
+    }
+}
+
+#[test]
 fn a_reader_that_goes_away_is_no_failure() {
     use std::process::Stdio;
     let mut child = Command::new(env!("CARGO_BIN_EXE_dynid"))

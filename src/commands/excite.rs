@@ -10,9 +10,9 @@ use dynid_runtime::simulation::excitation::{
 };
 use dynid_runtime::simulation::{Reference, check_standard};
 
-use crate::failure::{Failure, file_failure};
+use crate::failure::Failure;
 use crate::motions::{MotionOptions, to_csv, to_svg};
-use crate::output::{Bar, print, table, write};
+use crate::output::{Bar, make_folder, print, table, write};
 use crate::robots::resolve;
 
 /// What to search, and where to put it.
@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Rows a second in the CSV files, Hz
-    #[arg(long, default_value_t = 1000.0)]
+    #[arg(long, default_value_t = 1000.0, allow_negative_numbers = true)]
     rate: f64,
 }
 
@@ -84,9 +84,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         reach: arguments.motions.reach,
         seed: arguments.seed,
     };
+    make_folder(&arguments.out)?;
     let plan = search(model, chi.as_deref(), &settings)?;
-    std::fs::create_dir_all(&arguments.out)
-        .map_err(|error| file_failure("make the folder", &arguments.out, &error))?;
     for (k, motion) in plan.motions.iter().enumerate() {
         let title = format!("{}: motion {} of {}", robot.name, k + 1, plan.motions.len());
         write(

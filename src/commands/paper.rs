@@ -7,12 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Args;
 use dynid_runtime::estimation::observe::{Equations, ObserveSettings, observe};
 use dynid_runtime::model::Model;
-use dynid_runtime::paper::{Campaign, Case, CaseResult, PaperSettings, SeedResult, run_cases};
+use dynid_runtime::paper::{Campaign, CampaignError, Case, CaseResult, PaperSettings, SeedResult, run_cases};
 use dynid_runtime::report::{Panel, Sheet};
 use dynid_runtime::signal::{Motion, Preparation, prepare};
 
-use crate::failure::{Failure, file_failure};
-use crate::output::{Bar, print, table, write, write_page};
+use crate::failure::Failure;
+use crate::motions::check_size;
+use crate::output::{Bar, make_folder, print, table, write, write_page};
 use crate::paper_tables::{Results, Rows};
 use crate::recorded::{RecordingOptions, Sampling, read};
 use crate::robots::resolve;
@@ -30,10 +31,10 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 5)]
     seeds: u64,
     /// Size of the physics that the model does not know; 1 is that of the real TX-40, 0 none
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     residue: f64,
     /// Factor on the nominal noise
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     noise: f64,
     /// Points of the single motion
     #[arg(long, default_value_t = 13)]
@@ -43,7 +44,7 @@ pub(super) struct Arguments {
     set_points: usize,
     /// Share of the position range that the motions use; with 13 points and 0.6 they last as long as the public
     /// recording of a TX-40
-    #[arg(long, default_value_t = 0.6)]
+    #[arg(long, default_value_t = 0.6, allow_negative_numbers = true)]
     reach: f64,
     /// dh in closed form instead of differentiating h as in the paper
     #[arg(long)]
@@ -57,6 +58,11 @@ pub(super) struct Arguments {
 /// Runs the cases and prints the tables.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let settings = PaperSettings { closed_form: arguments.closed_form, ..PaperSettings::default() };
+    check_size("--residue", arguments.residue)?;
+    check_size("--noise", arguments.noise)?;
+    if let Some(folder) = &arguments.out {
+        make_folder(folder)?;
+    }
     match &arguments.recording {
         Some(path) => recorded(path.clone(), &settings, arguments),
         None => simulated(&settings, arguments),
@@ -118,7 +124,10 @@ fn run_seeds(
     let one = |seed: u64| {
         let outcome = campaign.run(model, standard, &Preparation::default(), &settings, seed, &|_| {});
         bar.at(done.fetch_add(1, Ordering::Relaxed) + 1, seeds as usize);
-        outcome.map_err(|error| Failure::Data(format!("seed {seed}: {error}")))
+        outcome.map_err(|error| match error {
+            CampaignError::Simulation(error) => Failure::Input(error.to_string()),
+            error => Failure::Data(format!("seed {seed}: {error}")),
+        })
     };
     let mut all: Vec<(u64, Result<SeedResult, Failure>)> = std::thread::scope(|scope| {
         let handles: Vec<_> = (0..workers as u64)
@@ -220,7 +229,7 @@ fn markdown(said: &str, command: &str, file: &str, results: &Results<'_>) -> Str
 }
 
 fn save(folder: &Path, file: &str, page: &str, figure: &str) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| file_failure("make the folder", folder, &error))?;
+    make_folder(folder)?;
     write_page(&folder.join(format!("{file}.md")), page)?;
     write(&folder.join(format!("{file}.svg")), figure)
 }

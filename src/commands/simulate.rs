@@ -16,8 +16,8 @@ use dynid_runtime::simulation::{
 
 use super::validate::read_model;
 use crate::failure::Failure;
-use crate::motions::{MotionOptions, read as read_motions};
-use crate::output::{Bar, print, table};
+use crate::motions::{MotionOptions, check_size, read as read_motions};
+use crate::output::{Bar, make_folder, print, table};
 use crate::robots::resolve;
 
 /// What to simulate, and where to put it.
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     family: MotionOptions,
     /// Control rate, Hz
-    #[arg(long, default_value_t = 5000.0)]
+    #[arg(long, default_value_t = 5000.0, allow_negative_numbers = true)]
     rate: f64,
     /// Control samples for each recorded row
     #[arg(long, default_value_t = 5)]
@@ -46,16 +46,16 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Factor on the robot's nominal noise of encoders and torques
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     noise: f64,
     /// Smallest step of the encoders, rad or m at the joint
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     quantum: f64,
     /// Physics beyond the model of this size: Stribeck, load and uneven friction and ripple; 1 is a real robot's
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     residue: f64,
     /// Torque ripple of this share of each joint's dry friction, once a motor turn
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     ripple: f64,
     /// Elastic joint: JOINT:STIFFNESS[:DAMPING[:PLAY]], SI; may be repeated
     #[arg(long)]
@@ -75,6 +75,14 @@ enum Parameters {
 
 /// Simulates and writes.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    for (option, size) in [
+        ("--noise", arguments.noise),
+        ("--quantum", arguments.quantum),
+        ("--residue", arguments.residue),
+        ("--ripple", arguments.ripple),
+    ] {
+        check_size(option, size)?;
+    }
     let saved = saved_model(&arguments.robot)?;
     let name = saved.as_ref().map_or(arguments.robot.as_str(), |identified| identified.robot.as_str());
     let dynamics = resolve(name, Path::new(&arguments.robot).parent())?;
@@ -92,6 +100,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let motions = planned(model, &chi, arguments)?;
+    make_folder(&arguments.out)?;
     let bar = Bar::new("simulating");
     let mut runs: Vec<Simulation> = Vec::new();
     for (k, motion) in motions.iter().enumerate() {

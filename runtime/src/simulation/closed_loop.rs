@@ -72,9 +72,9 @@ pub fn simulate(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Simulation, SimulationError> {
     let n = plant.joints();
-    check(settings, reference, n)?;
     let model = plant.model();
     let mut controller = Controller::new(&settings.controller, model)?;
+    check(settings, reference, n)?;
     let mut sensors = Sensors::new(&settings.sensors);
     let period = 1.0 / settings.controller.rate;
     let samples = (reference.duration() * settings.controller.rate + 1e-6).floor() as usize + 1;
@@ -125,6 +125,9 @@ pub fn simulate(
     Ok(Simulation { recorded, truth, limited: controller.limited, tracking_error })
 }
 
+/// Rows that fit into the memory of a small machine, with all that is logged of each.
+const MOST_ROWS: f64 = 1e7;
+
 fn check(settings: &LoopSettings, reference: &dyn Reference, n: usize) -> Result<(), SimulationError> {
     settings.sensors.check(n)?;
     if reference.joints() != n {
@@ -142,6 +145,17 @@ fn check(settings: &LoopSettings, reference: &dyn Reference, n: usize) -> Result
     let found = reference.duration();
     if !(found > 0.0 && found.is_finite()) {
         return Err(SimulationError::Setting { what: "duration of the motion", expected: "positive", found });
+    }
+    // Compared before anything is counted in integers or made room for.
+    let found = found * settings.controller.rate / settings.record_every as f64;
+    if !(1.0..=MOST_ROWS).contains(&found) {
+        let what = "the duration of the motion times the rate of the rows";
+        return Err(SimulationError::Setting { what, expected: "1 to 10 million rows", found });
+    }
+    let found = settings.longest_step * settings.controller.rate;
+    if found < 1e-6 {
+        let what = "the integration step in control periods";
+        return Err(SimulationError::Setting { what, expected: "a millionth at least", found });
     }
     Ok(())
 }

@@ -68,8 +68,8 @@ impl ControllerSettings {
             });
         }
         for (what, found) in [("controller rate", self.rate), ("velocity cut-off", self.velocity_cutoff)] {
-            if !(found > 0.0 && found.is_finite()) {
-                return Err(SimulationError::Setting { what, expected: "a positive number of Hz", found });
+            if !(found > 0.0 && found <= 1e6) {
+                return Err(SimulationError::Setting { what, expected: "positive, at most 1 MHz", found });
             }
         }
         Ok(())

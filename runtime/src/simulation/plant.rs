@@ -151,8 +151,12 @@ impl<'m> Plant<'m> {
                 inertia[j] = std::mem::take(value);
             }
         }
-        for joint in elastic {
+        for (k, joint) in elastic.iter().enumerate() {
             check_elastic(joint, &inertia)?;
+            if elastic[..k].iter().any(|other| other.joint == joint.joint) {
+                let (what, found) = ("each elastic joint", (joint.joint + 1) as f64);
+                return Err(SimulationError::Setting { what, expected: "another joint", found });
+            }
         }
         let rotor = rotor_matrix(robot, &inertia);
         Self::build(model, robot.base_from_standard(&links), elastic.to_vec(), Some(rotor), effects)
@@ -287,7 +291,7 @@ impl<'m> Plant<'m> {
 fn check_elastic(joint: &ElasticJoint, inertia: &[f64]) -> Result<(), SimulationError> {
     let setting = |what, expected, found| Err(SimulationError::Setting { what, expected, found });
     let Some(&rotor) = inertia.get(joint.joint) else {
-        return setting("the elastic joint", "a joint of the robot", joint.joint as f64);
+        return setting("the elastic joint", "the number of a joint of the robot", (joint.joint + 1) as f64);
     };
     if !(joint.stiffness > 0.0 && joint.stiffness.is_finite()) {
         return setting("the stiffness of an elastic joint", "positive", joint.stiffness);

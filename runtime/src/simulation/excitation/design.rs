@@ -131,7 +131,7 @@ pub fn excite(
         torque_share: None,
     };
     let done = AtomicUsize::new(0);
-    let whole = settings.sets * settings.starts * settings.evaluations;
+    let whole = settings.sets.saturating_mul(settings.starts).saturating_mul(settings.evaluations);
     for set in 0..settings.sets {
         let family = Family { kind: settings.kind, limits: &limits, fixed: set };
         let tell = |more: usize| {
@@ -165,6 +165,9 @@ pub fn excite(
     Ok(plan)
 }
 
+/// Longest period and pause, s: torques are looked at densely, and a robot is not excited for hours.
+const LONGEST: f64 = 3600.0;
+
 fn check(settings: &ExcitationSettings, n: usize) -> Result<(), SimulationError> {
     let setting = |what, expected, found| Err(SimulationError::Setting { what, expected, found });
     match settings.kind {
@@ -172,19 +175,19 @@ fn check(settings: &ExcitationSettings, n: usize) -> Result<(), SimulationError>
             if !(2..=64).contains(&harmonics) {
                 return setting("number of harmonics", "2 to 64", harmonics as f64);
             }
-            if !(period > 0.0 && period.is_finite()) {
-                return setting("period", "positive", period);
+            if !(period > 0.0 && period <= LONGEST) {
+                return setting("period", "positive, at most 3600 s", period);
             }
-            if periods == 0 {
-                return setting("number of periods", "1 or more", 0.0);
+            if !(1..=1000).contains(&periods) {
+                return setting("number of periods", "1 to 1000", periods as f64);
             }
         }
         MotionKind::PointToPoint { points, pause, .. } => {
             if !(2..=1000).contains(&points) {
                 return setting("number of points", "2 to 1000", points as f64);
             }
-            if !(pause >= 0.0 && pause.is_finite()) {
-                return setting("pause", "zero or positive", pause);
+            if !(0.0..=LONGEST).contains(&pause) {
+                return setting("pause", "0 to 3600 s", pause);
             }
         }
     }
