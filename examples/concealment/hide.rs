@@ -3,6 +3,7 @@
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
+use dynid_runtime::simulation::excitation::ExcitingMotion;
 
 use crate::motions::{planned, recorded};
 use crate::random::Random;
@@ -39,15 +40,27 @@ pub struct Recordings {
     pub test: Vec<Trajectory>,
 }
 
-/// Simulates a case. `with_test`: a motion for a test as well.
-pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Result<Recordings, Failure> {
+/// What is drawn for a case.
+pub struct Drawn {
+    /// What is hidden.
+    pub hidden: Vec<Hidden>,
+    secrets: Vec<(Secret, f64)>,
+    /// Motions, their number and length, s.
+    motions: Vec<ExcitingMotion>,
+    count: usize,
+    length: f64,
+    noise: u64,
+    random: Random,
+}
+
+/// Draws motions, joints, shapes and sizes.
+pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
     let ids: Vec<&str> = case.effects.iter().map(|e| e.id()).collect();
     let mut random = Random::of(&[&[&*case.robot, case.size_name()], &ids[..]].concat(), case.seed);
     let count = 1 + random.below(3);
     let length = [16.0, 10.0, 8.0][count - 1];
     let motions = planned(model, count, length, &mut random)?;
     let noise = random.bits();
-    let plain = World::plain(model)?;
     let mut secrets: Vec<(Secret, f64)> = Vec::new();
     let mut hidden = Vec::new();
     for &effect in &case.effects {
@@ -65,6 +78,13 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
         });
         secrets.push((secret, size));
     }
+    Ok(Drawn { hidden, secrets, motions, count, length, noise, random })
+}
+
+/// Simulates a case. `with_test`: a motion for a test as well.
+pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Result<Recordings, Failure> {
+    let Drawn { hidden, secrets, motions, count, length, noise, mut random } = draw(model, case)?;
+    let plain = World::plain(model)?;
     let mut world = World::plain(model)?;
     for (secret, size) in &secrets {
         world.hide(secret, *size)?;
@@ -96,7 +116,7 @@ fn sized(
     model: &'static dyn Model,
     secret: &Secret,
     wanted: f64,
-    motions: &[dynid_runtime::simulation::excitation::ExcitingMotion],
+    motions: &[ExcitingMotion],
     noise: u64,
 ) -> Result<(f64, f64), Failure> {
     let without = recorded(&World::plain(model)?, motions, &[], noise)?;

@@ -28,7 +28,7 @@ use dynid::models;
 use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
 use dynid_runtime::effects::EffectKind;
 
-use hide::{Hidden, recordings};
+use hide::{Hidden, draw, recordings};
 use random::Random;
 use size::SIZES;
 
@@ -62,6 +62,9 @@ pub struct Options {
     /// Markdown file for the tables [default: standard output]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Simulate only, and write what can be seen of every effect
+    #[arg(long, conflicts_with = "dump")]
+    visible: bool,
     /// Write the cases to this folder as a challenge, instead of diagnosing them
     #[arg(long, conflicts_with = "out")]
     dump: Option<PathBuf>,
@@ -147,6 +150,15 @@ fn main() -> Result<(), Failure> {
         println!("{} of {} cases written in {seconds:.0} s", cases.len() - failed, cases.len());
         return Ok(());
     }
+    if options.visible {
+        let seen = in_parallel(&cases, options.threads, |case| {
+            let model = models::find(&case.robot).ok_or("no such robot")?;
+            let drawn = draw(model, case)?;
+            Ok((page::hidden_in_words(&drawn.hidden), drawn.hidden))
+        });
+        let minutes = start.elapsed().as_secs_f64() / 60.0;
+        return finish(&options, &page::what_can_be_seen(&cases, &seen, &options, minutes));
+    }
     let scores: Vec<Score> = in_parallel(&cases, options.threads, |case| {
         let score = score(case)?;
         Ok((page::in_a_line(&score), score))
@@ -155,7 +167,10 @@ fn main() -> Result<(), Failure> {
     .map(|score| score.unwrap_or_else(Score::not_simulated))
     .collect();
     let minutes = start.elapsed().as_secs_f64() / 60.0;
-    let text = page::markdown(&cases, &scores, &options, minutes);
+    finish(&options, &page::markdown(&cases, &scores, &options, minutes))
+}
+
+fn finish(options: &Options, text: &str) -> Result<(), Failure> {
     match &options.out {
         Some(path) => std::fs::write(path, text)?,
         None => std::io::stdout().write_all(text.as_bytes())?,

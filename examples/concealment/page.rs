@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use dynid_runtime::effects::EffectKind;
+use dynid_runtime::report::significant;
 
 use crate::hide::Hidden;
 use crate::size::{SIZES, VISIBLE, magnitude};
@@ -87,6 +88,63 @@ fn line(text: &mut String, words: &str) {
     text.push('\n');
 }
 
+/// What of every effect can be seen, robot by robot, and how much of it that takes.
+pub fn what_can_be_seen(
+    cases: &[Case],
+    seen: &[Option<Vec<Hidden>>],
+    options: &Options,
+    minutes: f64,
+) -> String {
+    let mut text = String::from("# What can be seen of a hidden effect\n\n");
+    let _ = writeln!(
+        text,
+        "Each effect of the catalogue in simulated robots, on random joints and motions: how much of it there must be to \
+         be seen. No diagnosis takes part.\n\n```\n{} --visible{}\n```\n\n{} cases took {minutes:.1} minutes on {} threads.\n",
+        command(options),
+        options.out.as_ref().map_or_else(String::new, |path| format!(" --out {}", path.display())),
+        cases.len(),
+        options.threads
+    );
+    about_sizes(&mut text);
+    line(
+        &mut text,
+        "In each cell the visible size, and the magnitude that it takes; medians over the seeds.\n",
+    );
+    let columns: Vec<(&String, usize)> = options
+        .robots
+        .iter()
+        .flat_map(|r| (0..SIZES.len()).map(move |s| (r, s)))
+        .filter(|(_, s)| options.sizes.iter().any(|name| name == SIZES[*s]))
+        .collect();
+    let header: Vec<String> = columns.iter().map(|(r, s)| format!("{r}, {}", SIZES[*s])).collect();
+    let _ = writeln!(text, "| effect | magnitude | {} |", header.join(" | "));
+    line(&mut text, &format!("|---|---|{}", "---|".repeat(columns.len())));
+    for effect in EffectKind::ALL {
+        let of = |robot: &str, size: usize| -> Vec<&Hidden> {
+            (cases.iter().zip(seen))
+                .filter(|(c, _)| c.robot == robot && c.size == size)
+                .filter_map(|(_, hidden)| hidden.as_ref()?.iter().find(|h| h.effect == effect))
+                .collect()
+        };
+        let cells: Vec<String> = columns
+            .iter()
+            .map(|(robot, size)| {
+                let own = of(robot, *size);
+                if own.is_empty() {
+                    return "-".to_owned();
+                }
+                let visible = median(own.iter().map(|h| h.visible).collect());
+                let magnitude = median(own.iter().map(|h| h.magnitude).collect());
+                format!("{visible:.1} ({})", significant(magnitude, 2))
+            })
+            .collect();
+        if cells.iter().any(|cell| cell != "-") {
+            let _ = writeln!(text, "| {} | {} | {} |", effect.id(), magnitude(effect).0, cells.join(" | "));
+        }
+    }
+    text
+}
+
 fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes: f64) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let how = if options.pairs { "two at a time" } else { "one at a time" };
@@ -97,21 +155,7 @@ fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes:
          profile), at 500 Hz in closed loop, with the nominal noise of the robot. Joint, shape and motions are drawn \
          for each run. Only after the diagnosis is it compared with what was hidden.\n"
     );
-    let mut command = format!(
-        "cargo run --release --example concealment -- --robots {} --sizes {} --seeds {}",
-        options.robots.join(","),
-        options.sizes.join(","),
-        options.seeds
-    );
-    if options.first_seed != 1 {
-        let _ = write!(command, " --first-seed {}", options.first_seed);
-    }
-    if !options.effects.is_empty() {
-        let _ = write!(command, " --effects {}", options.effects.join(","));
-    }
-    if options.pairs {
-        command.push_str(" --pairs");
-    }
+    let mut command = command(options);
     if let Some(path) = &options.out {
         let _ = write!(command, " --out {}", path.display());
     }
@@ -134,6 +178,10 @@ fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes:
             plain.len()
         );
     }
+    about_sizes(text);
+}
+
+fn about_sizes(text: &mut String) {
     let _ = writeln!(
         text,
         "The sizes are relative to what can be seen. *Visible* is the torque of the effect that no refit of the standard \
@@ -144,6 +192,26 @@ fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes:
          what was seen.\n",
         VISIBLE[0], VISIBLE[1], VISIBLE[2]
     );
+}
+
+/// The command that makes a page, up to the file that it goes to.
+fn command(options: &Options) -> String {
+    let mut command = format!(
+        "cargo run --release --example concealment -- --robots {} --sizes {} --seeds {}",
+        options.robots.join(","),
+        options.sizes.join(","),
+        options.seeds
+    );
+    if options.first_seed != 1 {
+        let _ = write!(command, " --first-seed {}", options.first_seed);
+    }
+    if !options.effects.is_empty() {
+        let _ = write!(command, " --effects {}", options.effects.join(","));
+    }
+    if options.pairs {
+        command.push_str(" --pairs");
+    }
+    command
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
