@@ -108,7 +108,7 @@ pub fn what_can_be_seen(
     about_sizes(&mut text);
     line(
         &mut text,
-        "In each cell the visible size, and the magnitude that it takes; medians over the seeds.\n",
+        "In each cell the visible size, and the magnitude that it takes; medians over the seeds (of an even number of seeds the upper one).\n",
     );
     let columns: Vec<(&String, usize)> = options
         .robots

@@ -58,7 +58,7 @@ pub const STORIES: [Story; 3] = [
         cut: None,
         recorded: "Exciting motions at about 95 Hz with jittery stamps; the torque is the motor current times the \
                    published drive gains (public repository dynamic_calibration).",
-        divided: "Diagnosed on three motions of 21 to 42 s, judged on other motions, recorded on other days.",
+        divided: "Diagnosed on three motions of 21 to 42 s, judged on two other motions, one of them recorded a week later.",
         goal: Some(Goal::Error(0.026)),
     },
     Story {
