@@ -34,5 +34,13 @@ impl std::error::Error for Failure {}
 
 /// Wraps what the file system said with the file and what was wanted of it.
 pub fn file_failure(doing: &str, path: &std::path::Path, error: &std::io::Error) -> Failure {
-    Failure::Input(format!("{}: cannot {doing}: {error}", path.display()))
+    use std::io::ErrorKind::{IsADirectory, NotADirectory, NotFound, PermissionDenied};
+    let why = match error.kind() {
+        NotFound => "there is no such file or folder".to_owned(),
+        IsADirectory => "it is a folder, a file was expected".to_owned(),
+        NotADirectory => "a part of the path is a file, not a folder".to_owned(),
+        PermissionDenied => "it is not permitted".to_owned(),
+        _ => error.to_string(),
+    };
+    Failure::Input(format!("{}: cannot {doing}: {why}", path.display()))
 }

@@ -12,7 +12,7 @@ use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare_all};
 
 use crate::failure::Failure;
 use crate::output::Bar;
-use crate::robots::{Dynamics, resolve};
+use crate::robots::{Dynamics, path_of, resolve};
 
 /// Which recording is read, and how it is sampled. The defaults are the same for every robot and recording.
 #[derive(Debug, Clone, Args)]
@@ -83,6 +83,8 @@ pub struct Measured {
     pub dynamics: Dynamics,
     /// The title of the recording.
     pub title: String,
+    /// How the robot is found again: its name, or the path of its YAML.
+    pub robot: String,
     /// Side of the gear that was recorded.
     pub side: Side,
     /// Its motions as measured, within the window that was asked for.
@@ -106,6 +108,8 @@ pub struct Recorded {
     pub dynamics: Dynamics,
     /// The title of the recording.
     pub title: String,
+    /// How the robot is found again: its name, or the path of its YAML.
+    pub robot: String,
     /// Side of the gear that was recorded.
     pub side: Side,
     /// Its motions: filtered, differentiated, on a uniform grid.
@@ -116,12 +120,20 @@ pub struct Recorded {
     pub settings: ObserveSettings,
 }
 
+impl Recorded {
+    /// The robot and the title, on one line.
+    pub fn heading(&self) -> String {
+        let name = &self.dynamics.model().robot().name;
+        if self.title.is_empty() { name.to_string() } else { format!("{name}: {}", self.title) }
+    }
+}
+
 /// Reads a recording.
 ///
 /// # Errors
 /// [`Failure::Input`] for what is wrong in a file, [`Failure::Data`] where the rows cannot support an answer.
 pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
-    let (manifest, dynamics) = opened(options)?;
+    let (manifest, dynamics, robot) = opened(options)?;
     let window = window(options.from, options.to)?;
     let recording = load(&manifest, dynamics.model().robot()).map_err(recording_failure)?;
     let trajectories: Vec<Trajectory> = match window {
@@ -132,7 +144,7 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
         return Err(nothing_in_window(options));
     }
     let rows = LeftOut { rows: recording.rows, too_short: Vec::new() };
-    Ok(Measured { dynamics, title: manifest.title, side: manifest.side, trajectories, rows })
+    Ok(Measured { dynamics, title: manifest.title, robot, side: manifest.side, trajectories, rows })
 }
 
 /// Prepares the motions of a recording.
@@ -140,13 +152,13 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
 /// # Errors
 /// [`Failure::Data`] where no motion can be prepared.
 pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Recorded, Failure> {
-    let Measured { dynamics, title, side, trajectories, mut rows } = measured;
+    let Measured { dynamics, title, robot, side, trajectories, mut rows } = measured;
     let joints = dynamics.model().robot().joints();
     let (preparation, settings) = bandwidth(options, &trajectories, joints)?;
     let (motions, too_short) = prepare_all(&trajectories, &preparation)
         .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
     rows.too_short = too_short.iter().map(SignalError::to_string).collect();
-    Ok(Recorded { dynamics, title, side, motions, rows, settings })
+    Ok(Recorded { dynamics, title, robot, side, motions, rows, settings })
 }
 
 /// [`measure`] and [`prepared`].
@@ -177,7 +189,7 @@ pub struct Observed {
 /// As of [`read`] and of the observation.
 pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Result<Observed, Failure> {
     let failure = |error: ObserveError| observe_failure(&options.recording, &error);
-    let (manifest, dynamics) = opened(options)?;
+    let (manifest, dynamics, robot) = opened(options)?;
     let window = window(options.from, options.to)?;
     let model = dynamics.model();
     let mut loader = Loader::new(&manifest, model.robot(), PIECE).map_err(recording_failure)?;
@@ -198,7 +210,8 @@ pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Res
     if !long {
         let rows = LeftOut { rows: loader.into_report(), too_short: Vec::new() };
         let trajectories = first.into_iter().map(|(_, piece)| piece).collect();
-        let measured = Measured { dynamics, title: manifest.title, side: manifest.side, trajectories, rows };
+        let (title, side) = (manifest.title, manifest.side);
+        let measured = Measured { dynamics, title, robot, side, trajectories, rows };
         let recorded = prepared(measured, options)?;
         let bar = Bar::new("samples");
         let progress = |done, all| bar.at(done, all);
@@ -227,7 +240,7 @@ pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Res
     let (observations, too_short) = all.finish().map_err(failure)?;
     let rows = LeftOut { rows: loader.into_report(), too_short };
     let (title, side) = (manifest.title.clone(), manifest.side);
-    let recorded = Recorded { title, side, motions, rows, settings, dynamics };
+    let recorded = Recorded { title, robot, side, motions, rows, settings, dynamics };
     Ok(Observed { recorded, observations, whole: false })
 }
 
@@ -245,14 +258,19 @@ fn next_piece(loader: &mut Loader<'_>, window: Option<[f64; 2]>) -> Result<Optio
     Ok(None)
 }
 
-/// The manifest and the robot that is meant.
-fn opened(options: &RecordingOptions) -> Result<(Manifest, Dynamics), Failure> {
+/// The manifest, the robot that is meant, and how it is found again.
+fn opened(options: &RecordingOptions) -> Result<(Manifest, Dynamics, String), Failure> {
     let manifest = Manifest::read(&options.recording).map_err(recording_failure)?;
-    let dynamics = match &options.robot {
-        Some(name) => resolve(name, None)?,
-        None => resolve(&manifest.robot, Some(&manifest.folder))?,
+    let (name, beside) = match &options.robot {
+        Some(name) => (name, None),
+        None => (&manifest.robot, Some(manifest.folder.as_path())),
     };
-    Ok((manifest, dynamics))
+    let dynamics = resolve(name, beside)?;
+    let found = match &dynamics {
+        Dynamics::Generated(model) => model.robot().name.to_string(),
+        Dynamics::Recursive(_) => path_of(name, beside).display().to_string(),
+    };
+    Ok((manifest, dynamics, found))
 }
 
 fn nothing_in_window(options: &RecordingOptions) -> Failure {

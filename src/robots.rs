@@ -1,6 +1,6 @@
 //! Which robot is meant: one that was generated at build time, or a YAML given by path.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use dynid_codegen::base::{BaseSet, ParameterKind as SymbolicKind, base_set};
 use dynid_codegen::robot as symbolic;
@@ -44,15 +44,20 @@ pub fn resolve(name: &str, beside: Option<&Path>) -> Result<Dynamics, Failure> {
     if !looks_like_a_path {
         return Err(unknown(name));
     }
-    let direct = Path::new(name).to_path_buf();
-    let path = match beside.map(|folder| folder.join(name)) {
-        Some(joined) if !direct.is_file() => joined,
-        _ => direct,
-    };
+    let path = path_of(name, beside);
     let robot = read(&path)?;
     let model =
         RecursiveModel::new(robot).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
     Ok(Dynamics::Recursive(Box::new(model)))
+}
+
+/// The path that is meant by a relative one: from the working directory where such a file is there, else from `beside`.
+pub fn path_of(name: &str, beside: Option<&Path>) -> PathBuf {
+    let direct = PathBuf::from(name);
+    match beside.map(|folder| folder.join(name)) {
+        Some(joined) if !direct.is_file() => joined,
+        _ => direct,
+    }
 }
 
 /// Reads a robot YAML into the numbers that the runtime works with. What is allowed in it but probably not meant is

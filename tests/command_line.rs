@@ -156,6 +156,38 @@ fn a_robot_given_by_path_and_the_generated_one_identify_the_same_parameters() {
 }
 
 #[test]
+fn a_model_of_a_robot_given_by_path_is_validated_from_any_folder() {
+    let folder = Folder::new("by-path");
+    let robot = Path::new(env!("CARGO_MANIFEST_DIR")).join("robots/planar_2r.yaml");
+    let robot = std::fs::read_to_string(robot).unwrap().replace("name: planar_2r", "name: arm");
+    folder.write("arm.yaml", &robot).write("motion.csv", &moving(900));
+    folder.write("recording.yaml", &MANIFEST.replace("planar_2r", "./arm.yaml"));
+    let identified = folder.run(&["identify", "recording.yaml", "--out", "m.json"]);
+    assert!(identified.status.success(), "{}", error_of(&identified));
+    assert!(words_of(&identified).starts_with("arm\n"));
+    let validated = folder.run(&["validate", "m.json", "recording.yaml"]);
+    assert!(validated.status.success(), "{}", error_of(&validated));
+    let elsewhere = Folder::new("by-path-elsewhere");
+    let from = |name: &str| folder.0.join(name).display().to_string();
+    let validated = elsewhere.run(&["validate", &from("m.json"), &from("recording.yaml")]);
+    assert!(validated.status.success(), "{}", error_of(&validated));
+}
+
+#[test]
+fn an_angle_that_is_nearly_a_right_one_is_warned_of() {
+    let folder = Folder::new("doubt");
+    folder.write(
+        "arm.yaml",
+        "name: arm\nframes:\n  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n  \
+         - {j: 2, sigma: 0, alpha: 1.5708, d: 0, theta: q2, r: 0}\n",
+    );
+    let shown = folder.run(&["show", "./arm.yaml"]);
+    assert!(shown.status.success());
+    let warning = error_of(&shown);
+    assert!(warning.contains("arm.yaml:4:29") && warning.contains("pi/2"), "{warning}");
+}
+
+#[test]
 fn identify_writes_the_json_of_the_contract_and_a_model_that_validate_reads() {
     let folder = Folder::new("contract");
     folder.write("motion.csv", &moving(900)).write("recording.yaml", MANIFEST);

@@ -120,10 +120,9 @@ fn identify(
     }
     let chi = estimate.chi();
     let errors = (relative_error(torques, &chi), per_equation(torques, &chi));
-    let robot_name = arguments.recording.robot.as_deref().unwrap_or(&model.robot().name);
     let mut identified = Identified::new(
         model.robot(),
-        robot_name,
+        &recorded.robot,
         &Observed {
             samples: observation.samples,
             trajectories: &observation.trajectories,
@@ -145,7 +144,7 @@ fn summary(
     arguments: &Arguments,
 ) -> String {
     let robot = recorded.dynamics.model().robot();
-    let mut text = format!("{}: {}\n", robot.name, recorded.title);
+    let mut text = format!("{}\n", recorded.heading());
     for line in left_out_words(&recorded.rows) {
         text.push_str(&format!("{line}\n"));
     }

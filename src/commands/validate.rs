@@ -12,6 +12,7 @@ use dynid_runtime::signal::Motion;
 
 use super::diagnose::diagnosis_failure;
 use crate::failure::{Failure, file_failure};
+use crate::models;
 use crate::output::{Bar, print, table, write_json};
 use crate::recorded::{Recorded, RecordingOptions, left_out_words, observe_failure, read};
 
@@ -32,7 +33,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let identified = read_model(&arguments.model)?;
     let mut options = arguments.recording.clone();
     // The model was identified for a robot and a band; the same are used unless something else is asked for.
-    options.robot = options.robot.or_else(|| Some(identified.robot.clone()));
+    // A robot whose YAML is not where it was then is the one that the recording names.
+    let still_there = models::find(&identified.robot).is_some() || Path::new(&identified.robot).is_file();
+    options.robot = options.robot.or_else(|| still_there.then(|| identified.robot.clone()));
     options.sampling.band = options.sampling.band.or(Some(identified.band));
     let recorded = read(&options)?;
     let Prediction { observation, errors } = prediction(&recorded, &identified, &arguments.model)?;
@@ -49,7 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             return Ok(());
         }
     }
-    print(&format!("{}: {}", recorded.dynamics.model().robot().name, recorded.title));
+    print(&recorded.heading());
     for line in left_out_words(&recorded.rows) {
         print(&line);
     }

@@ -88,6 +88,13 @@ impl<R: Read> TableReader<R> {
                 Some(_) => {}
             }
         };
+        if let Some(message) = no_text(&reader.buffer[first.0..first.1]) {
+            return Err(RecordingError::Table {
+                file: file.into(),
+                line: reader.line,
+                message: message.into(),
+            });
+        }
         let names = split(&reader.buffer[first.0..first.1], layout.delimiter);
         reader.fields = names.len();
         let mut indices = Vec::with_capacity(wanted.len());
@@ -318,8 +325,24 @@ fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
     fields
 }
 
+/// What is wrong with a first line that no table of text begins with.
+fn no_text(line: &[u8]) -> Option<&'static str> {
+    if line.contains(&0) {
+        return Some(
+            "this is not a text of one byte a character (UTF-16, or a binary file): save it as CSV in UTF-8",
+        );
+    }
+    let inside = line.strip_suffix(b"\r").unwrap_or(line);
+    inside
+        .contains(&b'\r')
+        .then_some("the lines end in CR alone: save the file with line ends of LF or CR LF")
+}
+
 fn find(column: &Column, names: &[&[u8]], header: bool) -> Result<usize, String> {
-    let shown = |n: &&[u8]| String::from_utf8_lossy(trim_quotes(n)).chars().take(40).collect::<String>();
+    let shown = |n: &&[u8]| {
+        let text = String::from_utf8_lossy(trim_quotes(n));
+        text.chars().filter(|c| !c.is_control()).take(40).collect::<String>()
+    };
     let listed = || {
         let mut all = names.iter().take(40).map(shown).collect::<Vec<_>>().join(", ");
         if names.len() > 40 {

@@ -112,6 +112,8 @@ fn a_table_that_does_not_have_what_is_asked_for_is_told() {
     assert!(error(b"1,2\n", &headless(), &names(&["q3"])).contains("no header"));
     assert!(error(b"1;2;3\n", &headless(), &indices(&[2])).contains("delimiter"));
     assert!(error(b"a,a\n1,2\n", &header, &names(&["a"])).contains("two columns"));
+    assert!(error(b"a,b\r1,2\r3,4\r", &header, &[Column::Index(0)]).contains("CR alone"));
+    assert!(error(b"a\0,\0b\0\n\0", &header, &[Column::Index(0)]).contains("UTF-16"));
     assert!(error(b"a,b\n1,2\n", &header, &[Column::Index(0), Column::Name("a".into())]).contains("twice"));
     let missing = TableReader::open(std::path::Path::new("no/such.csv"), "such.csv", &header, &names(&["a"]));
     assert!(missing.err().is_some_and(|e| e.to_string().contains("no such file")));
