@@ -197,6 +197,10 @@ fn write_table(text: &mut String, noise: f64, all: &[Vec<Outcome>], truth: &[f64
         let root = |sum: f64| significant((sum / truth.len() as f64).sqrt(), 3);
         let error = spread(outcomes.iter().map(|o| o.torque_error));
         let words = |s: dynid_runtime::paper::Spread| {
+            // The same number for every seed, but for its last digit.
+            if s.deviation <= 1e-12 * s.mean {
+                return significant(s.mean, 3);
+            }
             format!("{} ±{}", significant(s.mean, 3), significant(s.deviation, 2))
         };
         let _ = writeln!(
