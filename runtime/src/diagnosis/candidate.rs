@@ -2,6 +2,7 @@
 
 use super::context::Context;
 use super::design::{Design, dot};
+use super::parallel;
 use crate::effects::{EffectKind, Form, Place};
 use nalgebra::DMatrix;
 
@@ -213,26 +214,12 @@ pub(super) fn build(
     threads: usize,
     report: &(dyn Fn(f64) + Sync),
 ) -> Vec<Candidate> {
-    let next = std::sync::atomic::AtomicUsize::new(0);
-    let mut built: Vec<(usize, Candidate)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads.max(1))
-            .map(|_| {
-                scope.spawn(|| {
-                    let mut mine = Vec::new();
-                    loop {
-                        let k = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                        let Some((effect, place, shapes)) = proposals.get(k) else { break mine };
-                        mine.push((k, make(context, design, *effect, *place, shapes, change)));
-                        report(k as f64 / proposals.len() as f64);
-                    }
-                })
-            })
-            .collect();
-        // A worker that panicked would have panicked this thread too: its candidates are simply not there.
-        workers.into_iter().filter_map(|w| w.join().ok()).flatten().collect()
+    let built = parallel::map(threads, proposals.len(), |k| {
+        let (effect, place, shapes) = &proposals[k];
+        report(k as f64 / proposals.len() as f64);
+        make(context, design, *effect, *place, shapes, change)
     });
-    built.sort_by_key(|(k, _)| *k);
-    built.into_iter().map(|(_, c)| c).filter(|c| !c.trials.is_empty()).collect()
+    built.into_iter().filter(|c| !c.trials.is_empty()).collect()
 }
 
 /// One candidate with all of its shapes.

@@ -34,6 +34,7 @@ pub(super) struct Context<'a> {
     pub scales: Vec<Scale>,
     pub chi: Vec<f64>,
     links: Vec<OnceLock<Links>>,
+    inertias: Vec<OnceLock<[f64; 2]>>,
     /// Transmissions that are known in physical units, per joint.
     pub transmissions: Vec<(usize, Transmission)>,
 }
@@ -56,6 +57,7 @@ impl<'a> Context<'a> {
             scales,
             chi,
             links: signals.iter().map(|_| OnceLock::new()).collect(),
+            inertias: (0..robot.joints()).map(|_| OnceLock::new()).collect(),
             transmissions: Vec::new(),
         })
     }
@@ -64,6 +66,7 @@ impl<'a> Context<'a> {
     pub fn update(&mut self, chi: Vec<f64>) {
         self.torques = self.signals.iter().map(|s| ModelTorques::new(self.model, &chi, s)).collect();
         self.links = self.signals.iter().map(|_| OnceLock::new()).collect();
+        self.inertias.iter_mut().for_each(|i| *i = OnceLock::new());
         self.chi = chi;
     }
 
@@ -166,14 +169,20 @@ impl<'a> Context<'a> {
         if let Some((_, known)) = self.transmissions.iter().find(|(k, _)| *k == j) {
             return *known;
         }
+        let [least, median] = self.inertias[j].get_or_init(|| self.inertia(j));
+        let (least, median) = (*least, *median);
+        Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].prismatic)
+    }
+
+    /// Least and median inertia that a joint moves in these motions.
+    fn inertia(&self, j: usize) -> [f64; 2] {
         let n = self.model.robot().joints();
         let mut inertia: Vec<f64> = (0..self.signals.len())
             .flat_map(|k| self.links(k).mass[j * n + j].iter().step_by(7).copied().collect::<Vec<_>>())
             .collect();
         inertia.sort_by(f64::total_cmp);
         let least = inertia.first().copied().unwrap_or(1.0).max(1e-6);
-        let median = inertia.get(inertia.len() / 2).copied().unwrap_or(1.0).max(least);
-        Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].prismatic)
+        [least, inertia.get(inertia.len() / 2).copied().unwrap_or(1.0).max(least)]
     }
 
     fn compliant(&self, signal: usize, j: usize, shape: &[f64]) -> Series {

@@ -22,6 +22,7 @@ mod explain;
 mod fit;
 mod judge;
 mod outcome;
+mod parallel;
 mod predict;
 mod search;
 mod settings;

@@ -11,6 +11,7 @@ use super::judge::{
     Fold, Verdict, best_trial, folds, holds_forward, judge, significance, single_motion, whole_gain,
 };
 use super::outcome::OrderSpectrum;
+use super::parallel;
 use super::settings::{Progress, Settings};
 use super::spectrum::{order_spectrum, peaks};
 use crate::effects::{EffectKind, Form, Place};
@@ -89,6 +90,7 @@ pub(super) struct Search<'c, 'a> {
     pub tried: usize,
     pub change: bool,
     slowest: Vec<f64>,
+    threads: usize,
 }
 
 /// Effects whose columns follow the standard parameters.
@@ -101,6 +103,9 @@ fn follows_parameters(effect: EffectKind) -> bool {
             | EffectKind::FrictionLevelChange
     )
 }
+
+/// Shapes that a refinement tries at most.
+const MOST_EVALUATIONS: usize = 80;
 
 /// What passed a round: the side it is on, the candidate's index, and its verdict.
 struct Winner {
@@ -146,7 +151,7 @@ impl<'c, 'a> Search<'c, 'a> {
         let slow = make_side(slow, context);
         let fast = make_side(fast, context);
         let mut search =
-            Self { context, slow, fast, terms: Vec::new(), spectra: Vec::new(), tried: 0, change, slowest };
+            Self { context, slow, fast, terms: Vec::new(), spectra: Vec::new(), tried: 0, change, slowest, threads: settings.threads };
         search.propose(settings, progress);
         Ok(search)
     }
@@ -163,56 +168,30 @@ impl<'c, 'a> Search<'c, 'a> {
             fast.retain(|(effect, ..)| !matches!(effect.form(), Form::Compliance(_)));
         }
         self.tried = slow.iter().chain(&fast).map(|p| p.2.len()).sum();
-        let (context, change, threads) = (&*self.context, self.change, settings.threads);
+        let (context, change, threads) = (&*self.context, self.change, self.threads);
         self.slow.candidates = build(context, &self.slow.design, &slow, change, threads, &|done| {
             progress.at(0.2 + 0.15 * done, "slow effects");
         });
         self.fast.candidates = build(context, &self.fast.design, &fast, change, threads, &|done| {
             progress.at(0.35 + 0.2 * done, "fast effects");
         });
-        progress.at(0.56, "resonances");
-        self.polish(threads);
     }
 
     /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
-    /// refined before it is judged.
+    /// refined on what nothing else explains.
     fn polish(&mut self, threads: usize) {
-        let next = std::sync::atomic::AtomicUsize::new(0);
         let (this, fast) = (&*self, &self.fast);
-        let mut polished: Vec<(usize, Trial)> = std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..threads.max(1))
-                .map(|_| {
-                    scope.spawn(|| {
-                        let mut mine = Vec::new();
-                        loop {
-                            let k = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                            let Some(candidate) = fast.candidates.get(k) else { break mine };
-                            if candidate.fixed.is_none() {
-                                continue;
-                            }
-                            let Some(start) = best_trial(&fast.design, &fast.fit, &fast.sigma, candidate)
-                            else {
-                                continue;
-                            };
-                            let shape = this.refined(fast, candidate, &candidate.trials[start].shape);
-                            let columns = columns(
-                                this.context,
-                                &fast.design,
-                                candidate.effect,
-                                candidate.place,
-                                &shape,
-                                this.change,
-                            );
-                            mine.push((k, Trial::new(&fast.design, shape, columns)));
-                        }
-                    })
-                })
-                .collect();
-            workers.into_iter().filter_map(|w| w.join().ok()).flatten().collect()
+        let polished = parallel::map(threads, fast.candidates.len(), |k| {
+            let candidate = &fast.candidates[k];
+            candidate.fixed?;
+            let start = best_trial(&fast.design, &fast.fit, &fast.sigma, candidate)?;
+            let shape = this.refined(fast, candidate, &candidate.trials[start].shape);
+            let columns =
+                columns(this.context, &fast.design, candidate.effect, candidate.place, &shape, this.change);
+            Some(Trial::new(&fast.design, shape, columns))
         });
-        polished.sort_by_key(|(k, _)| *k);
-        for (k, trial) in polished {
-            self.fast.candidates[k].trials.push(trial);
+        for (candidate, trial) in self.fast.candidates.iter_mut().zip(polished) {
+            candidate.trials.extend(trial);
         }
     }
 
@@ -220,31 +199,16 @@ impl<'c, 'a> Search<'c, 'a> {
         let context = &*self.context;
         let joint_of_frame = context.model.robot().joint_of_frame();
         let number = |j: usize| 1 + joint_of_frame.iter().position(|f| *f == Some(j)).unwrap_or(j);
-        std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..self.slow.design.joints)
-                .map(|j| {
-                    let scale = context.scales[j];
-                    let slowest = self.slowest[j];
-                    scope.spawn(move || {
-                        let residual: Vec<Vec<f64>> = context
-                            .signals
-                            .iter()
-                            .zip(&context.torques)
-                            .map(|(s, m)| s.torque[j].iter().zip(&m.total[j]).map(|(y, t)| y - t).collect())
-                            .collect();
-                        order_spectrum(
-                            j,
-                            number(j),
-                            context.signals,
-                            &residual,
-                            scale.gear,
-                            scale.range,
-                            slowest * 3.0,
-                        )
-                    })
-                })
+        parallel::map(self.threads, self.slow.design.joints, |j| {
+            let scale = context.scales[j];
+            let residual: Vec<Vec<f64>> = context
+                .signals
+                .iter()
+                .zip(&context.torques)
+                .map(|(s, m)| s.torque[j].iter().zip(&m.total[j]).map(|(y, t)| y - t).collect())
                 .collect();
-            workers.into_iter().filter_map(|w| w.join().ok()).collect()
+            let slowest = 3.0 * self.slowest[j];
+            order_spectrum(j, number(j), context.signals, &residual, scale.gear, scale.range, slowest)
         })
     }
 
@@ -253,7 +217,11 @@ impl<'c, 'a> Search<'c, 'a> {
         while self.terms.len() < settings.most_effects {
             let done = self.terms.len() as f64 / settings.most_effects as f64;
             progress.at(0.6 + 0.25 * done, "held-out tests");
-            let Some(winner) = self.best(settings, None) else { break };
+            let winner = self.best(settings, None).or_else(|| {
+                self.polish(settings.threads);
+                self.best(settings, None)
+            });
+            let Some(winner) = winner else { break };
             let accepted = self.accept(&winner);
             self.terms.push(accepted);
             self.settle();
@@ -266,6 +234,9 @@ impl<'c, 'a> Search<'c, 'a> {
     /// Takes the given effects as known, on a joint where one is given: only shapes and amplitudes are fitted.
     pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) {
         for &(effect, joint) in known {
+            if matches!(effect.form(), Form::Compliance(_)) {
+                self.polish(self.threads);
+            }
             let which = pace(effect);
             let side = self.side(which);
             let best = side
@@ -295,22 +266,18 @@ impl<'c, 'a> Search<'c, 'a> {
         }
         self.slow.set_terms(self.context, &self.terms, self.change);
         self.fast.set_terms(self.context, &self.terms, self.change);
+        let (context, change) = (&*self.context, self.change);
         for side in [&mut self.slow, &mut self.fast] {
-            for candidate in &mut side.candidates {
+            let design = &side.design;
+            parallel::for_each(self.threads, &mut side.candidates, |candidate| {
                 for trial in &mut candidate.trials {
                     if follows_parameters(candidate.effect) {
-                        trial.columns = columns(
-                            self.context,
-                            &side.design,
-                            candidate.effect,
-                            candidate.place,
-                            &trial.shape,
-                            self.change,
-                        );
+                        trial.columns =
+                            columns(context, design, candidate.effect, candidate.place, &trial.shape, change);
                     }
-                    trial.refresh(&side.design);
+                    trial.refresh(design);
                 }
-            }
+            });
         }
     }
 
@@ -323,14 +290,14 @@ impl<'c, 'a> Search<'c, 'a> {
         let mut ranked: Vec<(Pace, usize, Verdict)> = Vec::new();
         for which in [Pace::Slow, Pace::Fast] {
             let side = self.side(which);
-            for (index, candidate) in side.candidates.iter().enumerate() {
+            let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
+                let candidate = &side.candidates[index];
                 if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.known(candidate) {
-                    continue;
+                    return None;
                 }
-                if let Some(v) = judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate) {
-                    ranked.push((which, index, v));
-                }
-            }
+                judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate)
+            });
+            ranked.extend(verdicts.into_iter().enumerate().filter_map(|(k, v)| Some((which, k, v?))));
         }
         ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
         let mut checked = 0;
@@ -450,7 +417,8 @@ impl<'c, 'a> Search<'c, 'a> {
         let mut shape = start.to_vec();
         let mut value = gain(&shape);
         let mut size = 1.0;
-        while size > 0.02 {
+        let mut evaluations = 0;
+        while size > 0.02 && evaluations < MOST_EVALUATIONS {
             let mut better = false;
             for directions in &moves {
                 let mut next = shape.clone();
@@ -468,6 +436,7 @@ impl<'c, 'a> Search<'c, 'a> {
                     continue;
                 }
                 let tried = gain(&next);
+                evaluations += 1;
                 if tried > value {
                     (shape, value, better) = (next, tried, true);
                 }
