@@ -82,7 +82,13 @@ impl Trial {
 
     /// Inner products with the design as it is now.
     pub fn refresh(&mut self, design: &Design) {
+        self.refresh_from(design, 0);
+    }
+
+    /// The same where neither the trial's own columns nor the design's before `first` have changed.
+    pub fn refresh_from(&mut self, design: &Design, first: usize) {
         let (p, k) = (design.columns.len(), self.columns.len());
+        let old = std::mem::take(&mut self.products);
         self.products = (0..design.joints)
             .map(|j| {
                 let mine: Vec<Option<&[f64]>> = self
@@ -96,15 +102,22 @@ impl Trial {
                 let start = design.of_joint(j).start;
                 design.ranges[j]
                     .iter()
-                    .map(|range| {
+                    .enumerate()
+                    .map(|(g, range)| {
                         let local = range.start - start..range.end - start;
                         let slice = |a: usize| mine[a].map_or(&[][..], |v| &v[local.clone()]);
+                        let before = old.get(j).and_then(|segments| segments.get(g));
+                        let kept = before.map_or(0, |_| first);
                         Products {
-                            with: DMatrix::from_fn(p, k, |i, a| {
-                                dot_or_zero(&design.columns[i][range.clone()], slice(a))
+                            with: DMatrix::from_fn(p, k, |i, a| match before {
+                                Some(before) if i < kept => before.with[(i, a)],
+                                _ => dot_or_zero(&design.columns[i][range.clone()], slice(a)),
                             }),
                             y: (0..k).map(|a| dot_or_zero(&design.y[range.clone()], slice(a))).collect(),
-                            own: DMatrix::from_fn(k, k, |a, b| dot_or_zero(slice(a), slice(b))),
+                            own: match before {
+                                Some(before) if kept > 0 => before.own.clone(),
+                                _ => DMatrix::from_fn(k, k, |a, b| dot_or_zero(slice(a), slice(b))),
+                            },
                         }
                     })
                     .collect()

@@ -21,9 +21,9 @@ pub(super) struct Contacts {
 }
 
 /// An instant counts as pushed when its mean squared residual passes this many noise variances.
-const PUSHED: f64 = 30.0;
+const PUSHED: f64 = 14.0;
 /// A single joint counts as pushed beyond this many standard deviations.
-const JOINT_PUSHED: f64 = 5.0;
+const JOINT_PUSHED: f64 = 3.5;
 /// Shortest push, s: shorter bursts are impacts inside of the robot.
 const SHORTEST: f64 = 0.15;
 /// A push is an exception: together at most this share of the motion.
@@ -188,6 +188,29 @@ pub(super) fn find(context: &Context<'_>, design: &Design, signals: &[Signals]) 
         }
     }
     (!contacts.wrenches.is_empty()).then_some(contacts)
+}
+
+/// Whether the instants of the contacts still stand out of the noise (`sigma` per joint) in a residual.
+pub(super) fn remain(
+    contacts: &Contacts,
+    design: &Design,
+    residual: &[f64],
+    sigma: &[f64],
+    signals: &[Signals],
+) -> bool {
+    let (mut sum, mut count) = (0.0, 0);
+    for (&(k, t), &(squares, rows, _)) in &energies(design, residual, sigma) {
+        let time = signals[k].time(t);
+        if contacts
+            .wrenches
+            .iter()
+            .any(|w| w.motion == signals[k].name && (w.window[0]..=w.window[1]).contains(&time))
+        {
+            sum += squares;
+            count += rows;
+        }
+    }
+    sum > 0.5 * PUSHED * count as f64
 }
 
 /// The link and the force that explain a window, if one force on one link does.

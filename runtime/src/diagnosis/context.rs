@@ -3,8 +3,8 @@
 use super::DiagnosisError;
 use super::signals::{ModelTorques, Signals, joint_kinds};
 use crate::effects::{
-    At, CoupledTransmission, EffectKind, Form, Place, Scale, Transmission, body_columns, deflection,
-    derivable, derivative,
+    At, CoupledTransmission, Direction, EffectKind, Form, Place, Scale, Transmission, body_columns,
+    deflection, derivable, derivative,
 };
 use crate::model::{JointKind, Link, Model, RecursiveModel};
 use crate::signal::{Butterworth, Stencil, central_difference};
@@ -110,14 +110,15 @@ impl<'a> Context<'a> {
                 let s = &self.signals[signal];
                 wanted
                     .iter()
-                    .map(|variant| {
+                    .enumerate()
+                    .map(|(which, _)| {
                         let mut out = vec![Vec::new(); s.q.len()];
                         derivative(
                             &self.engine,
                             self.model.robot().gravity,
                             &self.chi,
                             law,
-                            variant,
+                            &Direction { variants: wanted, which, at: shape },
                             [&s.q, &s.dq, &s.ddq, &s.jerk],
                             &mut out,
                         );

@@ -50,7 +50,7 @@ pub(super) struct Plan<'a> {
     pub slowest: &'a [f64],
     /// Linear forms of dq whose sign enters each joint's row.
     pub directions: &'a [Vec<Vec<f64>>],
-    /// Segments per motion, where there is only one motion to hold back from.
+    /// Segments per motion of the recording that is diagnosed, where there are few motions to hold back.
     pub chunks: usize,
     /// Length of a block, s.
     pub block: f64,
@@ -79,7 +79,7 @@ impl Design {
             let half = design.kernels[k].len() / 2;
             let first = s.spoiled.max(half);
             let last = s.len().saturating_sub(first).max(first);
-            let chunks = plan.chunks.max(1);
+            let chunks = if s.fresh { plan.chunks.max(1) } else { 1 };
             let bounds: Vec<usize> = (0..=chunks).map(|c| first + (last - first) * c / chunks).collect();
             let per_block = (plan.block * s.rate).max(1.0) as usize;
             for c in 0..chunks {
@@ -144,6 +144,11 @@ impl Design {
         self.refresh();
     }
 
+    /// Whether motions are held back in stretches.
+    pub fn in_stretches(&self) -> bool {
+        self.segments.windows(2).any(|s| s[0].signal == s[1].signal)
+    }
+
     /// Ranges of a joint's rows in one motion, with their segments.
     pub fn of_signal(&self, joint: usize, signal: usize) -> Vec<(Range<usize>, usize)> {
         (0..self.segments.len())
@@ -185,26 +190,39 @@ impl Design {
 
     /// Recomputes the inner products.
     pub fn refresh(&mut self) {
+        self.refresh_from(0);
+    }
+
+    /// Recomputes the inner products of y and of the columns from `first` on; those before have not changed.
+    pub fn refresh_from(&mut self, first: usize) {
         let p = self.columns.len();
         let all: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).chain([self.y.as_slice()]).collect();
-        self.gram = self
-            .ranges
-            .iter()
-            .map(|segments| {
-                segments
-                    .iter()
-                    .map(|range| {
-                        let mut g = vec![0.0; (p + 1) * (p + 1)];
-                        let live: Vec<usize> =
-                            (0..=p).filter(|&k| all[k][range.clone()].iter().any(|&x| x != 0.0)).collect();
-                        for (a, &i) in live.iter().enumerate() {
-                            for &k in &live[..=a] {
-                                let value = dot(&all[i][range.clone()], &all[k][range.clone()]);
-                                g[i * (p + 1) + k] = value;
-                                g[k * (p + 1) + i] = value;
+        let old = std::mem::take(&mut self.gram);
+        self.gram = (0..self.joints)
+            .map(|j| {
+                (0..self.segments.len())
+                    .map(|g| {
+                        let range = self.ranges[j][g].clone();
+                        let mut new = vec![0.0; (p + 1) * (p + 1)];
+                        let before = old.get(j).and_then(|segments| segments.get(g));
+                        let kept = before.map_or(0, |_| first);
+                        if let Some(before) = before {
+                            let width = before.len().isqrt();
+                            for i in 0..kept {
+                                new[i * (p + 1)..i * (p + 1) + kept]
+                                    .copy_from_slice(&before[i * width..i * width + kept]);
                             }
                         }
-                        g
+                        let live: Vec<usize> =
+                            (0..=p).filter(|&k| all[k][range.clone()].iter().any(|&x| x != 0.0)).collect();
+                        for (a, &i) in live.iter().enumerate().filter(|(_, i)| **i >= kept) {
+                            for &k in &live[..=a] {
+                                let value = dot(&all[i][range.clone()], &all[k][range.clone()]);
+                                new[i * (p + 1) + k] = value;
+                                new[k * (p + 1) + i] = value;
+                            }
+                        }
+                        new
                     })
                     .collect()
             })

@@ -55,17 +55,21 @@ const FITTED_SHARE: f64 = 0.6;
 pub(super) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> HeldBack {
     let n = design.joints;
     let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
+    let without = |held: &dyn Fn(usize) -> bool| {
+        let train: Vec<bool> = (0..design.segments.len()).map(|g| !held(g)).collect();
+        (train, fresh.iter().copied().filter(|&g| held(g)).collect::<Vec<usize>>())
+    };
+    let mut moved: Vec<usize> = fresh.iter().map(|&g| design.segments[g].signal).collect();
+    moved.dedup();
     let splits: Vec<(Vec<bool>, Vec<usize>)> = if from_baseline {
         vec![(design.segments.iter().map(|s| !s.fresh).collect(), fresh.clone())]
     } else if single_motion(design) && fresh.len() > 1 {
         let cut = ((fresh.len() as f64 * FITTED_SHARE).round() as usize).clamp(1, fresh.len() - 1);
-        let train = (0..design.segments.len()).map(|g| !fresh[cut..].contains(&g)).collect();
-        vec![(train, fresh[cut..].to_vec())]
+        vec![without(&|g| fresh[cut..].contains(&g))]
+    } else if moved.len() > 1 {
+        moved.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
     } else {
-        fresh
-            .iter()
-            .map(|&held| ((0..design.segments.len()).map(|g| g != held).collect(), vec![held]))
-            .collect()
+        fresh.iter().map(|&held| without(&|g| g == held)).collect()
     };
     let mut out = HeldBack { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
     let p = design.columns.len();
@@ -221,7 +225,12 @@ pub(super) fn explain(
 }
 
 fn how(search: &Search<'_, '_>) -> String {
-    if search.change {
+    let design = &search.slow.design;
+    let mut fresh = design.segments.iter().filter(|s| s.fresh).map(|s| s.signal);
+    let first = fresh.next();
+    if search.change && fresh.all(|s| Some(s) == first) {
+        "every stretch of the new motion predicted from the baseline and its other stretches".into()
+    } else if search.change {
         "every new motion predicted from the baseline and the other new motions".into()
     } else if single_motion(&search.slow.design) {
         "forward in time".into()
@@ -304,11 +313,11 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
     };
     // Without this term, everything else refitted.
     search.terms.remove(k);
-    search.settle();
+    search.refit();
     let side = search.side(which);
     let without = hold_back(&side.design, &side.sigma, false);
     search.terms.insert(k, accepted.clone());
-    search.settle();
+    search.refit();
     let (before, after) = (without.error_on(&accepted.own), with.error_on(&accepted.own));
     let share = 1.0 - (after / before).powi(2);
     let tail = Normal::standard().sf(accepted.significance);
@@ -338,6 +347,7 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
         effect: accepted.effect.id().into(),
         joints,
         confidence,
+        significance: accepted.significance,
         parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
         held_out_before: before,
         held_out_after: after,
@@ -369,7 +379,9 @@ fn uncertainty(
     };
     let start = design.columns.len();
     let mut varied = Vec::new();
-    for (i, &value) in term.shape.iter().enumerate() {
+    // The shape of a sensitivity is its amplitude once more.
+    let own_shape = !matches!(term.effect.form(), Form::Sensitivity(_));
+    for (i, &value) in term.shape.iter().enumerate().filter(|_| own_shape) {
         let step = 0.02 * value.abs().max(1e-6);
         let moved = |s: f64| {
             let mut shape = term.shape.clone();
@@ -389,7 +401,7 @@ fn uncertainty(
             varied.push(i);
         }
     }
-    design.refresh();
+    design.refresh_from(start);
     let fit = Fit::new(&design, &side.sigma, |_| true);
     let variances = fit.variances();
     let sd = |c: usize| variances[c].max(0.0).sqrt();
@@ -435,7 +447,11 @@ fn parameters(
             wanted
                 .iter()
                 .zip(amplitude.iter().zip(sigma.iter()))
-                .map(|(x, (a, s))| Parameter::new(x.name, *a, *s, x.unit))
+                .map(|(x, (a, s))| match term.effect {
+                    // Along the way to it a factor grows exponentially.
+                    EffectKind::WrongSampleRate => Parameter::new(x.name, a.exp_m1(), s * a.exp(), x.unit),
+                    _ => Parameter::new(x.name, *a, *s, x.unit),
+                })
                 .collect()
         }
         (Form::Body(_), _) => {
@@ -499,6 +515,7 @@ fn contact_finding(contacts: &Contacts) -> Finding {
         effect: EffectKind::Contact.id().into(),
         joints: Vec::new(),
         confidence: 0.9999,
+        significance: 0.0,
         parameters,
         held_out_before: before,
         held_out_after: after,
@@ -544,6 +561,7 @@ fn delay_finding(search: &mut Search<'_, '_>, skew: f64, settings: &Settings) ->
         effect: EffectKind::TimeDelay.id().into(),
         joints: Vec::new(),
         confidence: 0.9999,
+        significance: 0.0,
         parameters: [(
             "delay".to_string(),
             ParameterValue { value: skew, sigma: variance.sqrt(), unit: "s".into() },

@@ -23,6 +23,8 @@ pub(super) struct Verdict {
     pub held_out: Vec<f64>,
     /// Held-out gain as a share of the held-out squares of its own joints.
     pub share: f64,
+    /// In-sample gain as a share of the squares of its own joints.
+    pub fitted_share: f64,
 }
 
 impl Verdict {
@@ -189,14 +191,17 @@ pub(super) fn judge(
         held_out.push(sum);
     }
     let share = held_out.iter().sum::<f64>().min(own_gain) / before.max(1e-300);
-    Some(Verdict { trial, gain, held_out, share })
+    let squares = |j: usize| {
+        let fresh = (0..design.segments.len()).filter(|&g| design.segments[g].fresh);
+        fresh.map(|g| whole.squares(design, j, g)).sum::<f64>() / (sigma[j] * sigma[j])
+    };
+    let fitted_share = gain / candidate.own.iter().map(|&j| squares(j)).sum::<f64>().max(1e-300);
+    Some(Verdict { trial, gain, held_out, share, fitted_share })
 }
 
-/// Whether all fresh segments are stretches of one motion.
+/// Whether all segments are stretches of one motion.
 pub(super) fn single_motion(design: &Design) -> bool {
-    let mut fresh = design.segments.iter().filter(|s| s.fresh).map(|s| s.signal);
-    let first = fresh.next();
-    first.is_some() && fresh.all(|s| Some(s) == first)
+    design.segments.windows(2).all(|s| s[0].signal == s[1].signal)
 }
 
 /// Inner products of the candidate's own part (over all motion) on the training segments only.

@@ -45,8 +45,10 @@ use design::{Design, Plan};
 use search::Search;
 use signals::{Signals, directions};
 
-/// Stretches that a single motion is split into.
+/// Stretches that few motions are split into, all together.
 const STRETCHES: usize = 8;
+/// From this many motions on, whole motions are held back.
+const ENOUGH_MOTIONS: usize = 3;
 /// A delay is named from this many samples and seconds; a smaller one is part of sampling and silently taken out.
 const NAMED_DELAY: (f64, f64) = (0.75, 1e-3);
 
@@ -95,20 +97,21 @@ fn examine(
     let settings = &settings;
     let mut signals = prepare_all(baseline, trajectories, delay, cutoff)?;
     let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
-    let chunks = if trajectories.len() == 1 && !change { STRETCHES } else { 1 };
+    let motions = trajectories.len();
+    let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
     // The narrower window needs less margin to a standstill.
     let slow_limits = slowest.clone();
     let fast_limits: Vec<f64> = slowest.iter().map(|v| v / 1.5).collect();
-    let plan = |half: f64, excluded| Plan {
+    let plan = |half: f64| Plan {
         half,
         slowest: if half < settings.slow_window { &fast_limits } else { &slow_limits },
         directions: &forms,
         chunks,
         block: settings.block,
-        excluded,
+        excluded: &nothing,
     };
-    let open = Design::new(model, &signals, &plan(settings.slow_window, &nothing));
+    let open = Design::new(model, &signals, &plan(settings.slow_window));
     check(model, &open)?;
     let mut sigma = vec![1.0; n];
     let first = fit::fit_weighted(&open, &mut sigma, |_| true);
@@ -119,7 +122,7 @@ fn examine(
     for _ in 0..2 {
         let found = {
             let context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
-            let design = Design::new(model, &signals, &plan(settings.slow_window, &nothing));
+            let design = Design::new(model, &signals, &plan(settings.slow_window));
             explain::delay_of(&context, design)
         };
         let rate = signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
@@ -131,25 +134,41 @@ fn examine(
     }
     progress.at(0.05, "contacts");
     let mut context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
-    let aligned = Design::new(model, &signals, &plan(settings.slow_window, &nothing));
-    let contacts = contact_search::find(&context, &aligned, &signals);
-    let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
-    let slow = Design::new(model, &signals, &plan(settings.slow_window, excluded));
-    let fast = Design::new(model, &signals, &plan(settings.fast_window, excluded));
-    if contacts.is_some() {
-        let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);
-        let chi: Vec<f64> = fit.chi.iter().take(slow.parameters).copied().collect();
-        context.update(chi);
-    }
-    progress.at(0.1, "candidates");
-    let mut search = Search::new(&mut context, slow, fast, slowest.clone(), change, settings, progress)?;
-    let bare = explain::Bare::new(&search, &aligned);
-    match known {
-        Some(known) => search.force(known),
-        None => search.run(settings, progress),
-    }
-    progress.at(0.92, "explanations");
-    let diagnosis = explain::explain(model, search, &bare, contacts.as_ref(), delay, settings)?;
+    let aligned = Design::new(model, &signals, &plan(settings.slow_window));
+    let mut contacts = contact_search::find(&context, &aligned, &signals);
+    let diagnosis = loop {
+        let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
+        let slow = Design::new(model, &signals, &Plan { excluded, ..plan(settings.slow_window) });
+        let fast = Design::new(model, &signals, &Plan { excluded, ..plan(settings.fast_window) });
+        if contacts.is_some() {
+            let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);
+            let chi: Vec<f64> = fit.chi.iter().take(slow.parameters).copied().collect();
+            context.update(chi);
+        }
+        progress.at(0.1, "candidates");
+        let mut search = Search::new(&mut context, slow, fast, slowest.clone(), change, settings, progress)?;
+        let bare = explain::Bare::new(&search, &aligned);
+        match known {
+            Some(known) => search.force(known),
+            None => search.run(settings, progress),
+        }
+        if let Some(found) = &contacts
+            && !contact_search::remain(
+                found,
+                &aligned,
+                &search.residual_on(&aligned),
+                &search.slow.sigma,
+                &signals,
+            )
+        {
+            // What looked like pushes from outside is explained by what is now in the model.
+            contacts = None;
+            context.update(chi.clone());
+            continue;
+        }
+        progress.at(0.92, "explanations");
+        break explain::explain(model, search, &bare, contacts.as_ref(), delay, settings)?;
+    };
     progress.at(1.0, "done");
     Ok(diagnosis)
 }

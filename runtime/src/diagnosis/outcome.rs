@@ -127,6 +127,9 @@ pub struct Finding {
     pub joints: Vec<usize>,
     /// One minus the probability that held-out motion improves so much by chance, all tries counted.
     pub confidence: f64,
+    /// Mean held-out gain of a block of motion in standard errors; 0 where it was not measured by blocks.
+    #[serde(default)]
+    pub significance: f64,
     /// Its quantities by name.
     pub parameters: std::collections::BTreeMap<String, ParameterValue>,
     /// Held-out relative error of its joints without it (everything else in the model).

@@ -54,7 +54,7 @@ pub(super) struct Side {
 
 impl Side {
     fn refit(&mut self) {
-        self.design.refresh();
+        self.design.refresh_from(self.fixed_columns);
         self.fit = fit_weighted(&self.design, &mut self.sigma, |_| true);
         self.folds = folds(&self.design, &self.sigma);
     }
@@ -104,6 +104,9 @@ fn follows_parameters(effect: EffectKind) -> bool {
     )
 }
 
+/// Largest error, in units of its number, along the way to which derivatives are taken.
+const LARGEST_ERROR: f64 = 0.7;
+
 /// Shapes that a refinement tries at most.
 const MOST_EVALUATIONS: usize = 80;
 
@@ -150,8 +153,17 @@ impl<'c, 'a> Search<'c, 'a> {
         };
         let slow = make_side(slow, context);
         let fast = make_side(fast, context);
-        let mut search =
-            Self { context, slow, fast, terms: Vec::new(), spectra: Vec::new(), tried: 0, change, slowest, threads: settings.threads };
+        let mut search = Self {
+            context,
+            slow,
+            fast,
+            terms: Vec::new(),
+            spectra: Vec::new(),
+            tried: 0,
+            change,
+            slowest,
+            threads: settings.threads,
+        };
         search.propose(settings, progress);
         Ok(search)
     }
@@ -258,27 +270,70 @@ impl<'c, 'a> Search<'c, 'a> {
     }
 
     /// Puts the terms into both designs, and lets loads follow the standard parameters.
-    pub fn settle(&mut self) {
-        for _ in 0..2 {
+    pub fn refit(&mut self) {
+        let bent = self.terms.iter().any(|t| matches!(t.effect.form(), Form::Sensitivity(_)));
+        for _ in 0..if bent { 4 } else { 2 } {
             self.slow.set_terms(self.context, &self.terms, self.change);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi);
+            // An error that is not small bends its own column: derivatives are taken along the way to it.
+            for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
+                if matches!(term.effect.form(), Form::Sensitivity(_)) {
+                    term.shape = columns
+                        .clone()
+                        .map(|c| self.slow.fit.chi[c].clamp(-LARGEST_ERROR, LARGEST_ERROR))
+                        .collect();
+                }
+            }
         }
         self.slow.set_terms(self.context, &self.terms, self.change);
         self.fast.set_terms(self.context, &self.terms, self.change);
+    }
+
+    /// Refits, and prepares the candidates for what is left.
+    fn settle(&mut self) {
+        self.refit();
         let (context, change) = (&*self.context, self.change);
         for side in [&mut self.slow, &mut self.fast] {
-            let design = &side.design;
+            let (design, first) = (&side.design, side.fixed_columns);
             parallel::for_each(self.threads, &mut side.candidates, |candidate| {
                 for trial in &mut candidate.trials {
                     if follows_parameters(candidate.effect) {
                         trial.columns =
                             columns(context, design, candidate.effect, candidate.place, &trial.shape, change);
+                        trial.refresh(design);
+                    } else {
+                        trial.refresh_from(design, first);
                     }
-                    trial.refresh(design);
                 }
             });
         }
+    }
+
+    /// What the model with all terms leaves of the torques on the rows of another design of the same motions.
+    pub fn residual_on(&self, design: &Design) -> Vec<f64> {
+        let mut residual = design.y.clone();
+        let mut subtract = |column: &[f64], x: f64| {
+            residual.iter_mut().zip(column).for_each(|(r, c)| *r -= c * x);
+        };
+        let chi = &self.slow.fit.chi;
+        for (column, &x) in design.columns.iter().zip(chi.iter()) {
+            subtract(column, x);
+        }
+        let on_rows = |effect, place, shape: &[f64], change| {
+            let columns = columns(self.context, design, effect, place, shape, change);
+            Trial { shape: Vec::new(), columns, products: Vec::new() }.dense(design)
+        };
+        for column in on_rows(EffectKind::TimeDelay, Place::Variant(0), &[], false) {
+            subtract(&column, chi[design.parameters]);
+        }
+        for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
+            let columns = on_rows(term.effect, term.place, &term.shape, self.change);
+            for (k, column) in columns.iter().enumerate() {
+                subtract(column, term.fixed.unwrap_or_else(|| chi[range.start + k]));
+            }
+        }
+        residual
     }
 
     pub fn side(&self, pace: Pace) -> &Side {
@@ -300,6 +355,31 @@ impl<'c, 'a> Search<'c, 'a> {
             ranked.extend(verdicts.into_iter().enumerate().filter_map(|(k, v)| Some((which, k, v?))));
         }
         ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
+        if std::env::var("DBG").is_ok() {
+            for (which, index, v) in ranked.iter().take(10) {
+                let side = self.side(*which);
+                let c = &side.candidates[*index];
+                let z = significance(&side.design, &side.fit, &side.folds, &side.sigma, c, v);
+                eprintln!(
+                    "   DBG {:?} {:?} {:?} shape {:.3?} gain {:.0} held {:.0?} share {:.3} z {:.2} holds {} fwd {}",
+                    joint,
+                    c.effect,
+                    c.place,
+                    c.trials[v.trial].shape,
+                    v.gain,
+                    v.held_out,
+                    v.share,
+                    z,
+                    self.holds(side, c, v, settings),
+                    if single_motion(&side.design) {
+                        holds_forward(&side.design, &side.sigma, c, v.trial, settings.least_share)
+                    } else {
+                        true
+                    }
+                );
+            }
+            eprintln!("   DBG --- sigma {:.4?} rows {}", self.slow.sigma, self.slow.design.rows.len());
+        }
         let mut checked = 0;
         for (k, (which, index, verdict)) in ranked.iter().enumerate() {
             let side = self.side(*which);
@@ -357,12 +437,15 @@ impl<'c, 'a> Search<'c, 'a> {
         // Of many stretches of one motion a few may be untouched by an effect.
         let needed = if candidate.fixed.is_some() {
             folds / 2 + 1
-        } else if single_motion(&side.design) {
+        } else if side.design.in_stretches() {
             folds - folds / 4
         } else {
             folds - folds / 6
         };
-        verdict.share >= settings.least_share && positive >= needed
+        // A gain in prediction without one in the fit is an accident of extrapolation.
+        verdict.share >= settings.least_share
+            && verdict.fitted_share >= 0.5 * settings.least_share
+            && positive >= needed
     }
 
     /// Refines the shape of the winner on all motion.
@@ -480,7 +563,7 @@ impl<'c, 'a> Search<'c, 'a> {
         let mut k = 0;
         while k < self.terms.len() && self.terms.len() > 1 {
             let term = self.terms.remove(k);
-            self.settle();
+            self.refit();
             let side = self.side(pace(term.effect));
             let candidate = make(
                 self.context,
@@ -496,7 +579,7 @@ impl<'c, 'a> Search<'c, 'a> {
                 self.terms.insert(k, term);
                 k += 1;
             }
-            self.settle();
+            self.refit();
         }
     }
 }

@@ -41,5 +41,5 @@ pub use coupled_transmission::CoupledTransmission;
 pub use joint_law::{At, JointLaw, Scale};
 pub use kind::{EffectKind, Form, Words};
 pub use rigid_body::{BodyOnLink, Lump, body_columns};
-pub use sensitivity::{Seeds, Sensitivity, Variant, derivable, derivative};
+pub use sensitivity::{Direction, Seeds, Sensitivity, Variant, derivable, derivative};
 pub use term::{EffectTerm, Parameter, Place, TermScale};

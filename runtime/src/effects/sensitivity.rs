@@ -59,6 +59,52 @@ pub fn derivable(robot: &crate::model::Robot) -> Result<RecursiveModel, Recursiv
     RecursiveModel::new(tilted)
 }
 
+/// Where a derivative is taken: with respect to `variants[which]`, as the mean along the straight path on which every
+/// variant grows from nothing to `at` (missing values are 0).
+///
+/// The values of `at` times these means add up to the whole change of the torque, however large it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction<'a> {
+    /// The numbers that may be wrong together.
+    pub variants: &'a [Variant],
+    /// The one that the column is for.
+    pub which: usize,
+    /// How wrong each is.
+    pub at: &'a [f64],
+}
+
+/// Points of the path that a mean is taken over (midpoint rule).
+const POINTS: usize = 4;
+
+impl Direction<'_> {
+    fn points(&self) -> usize {
+        if self.at.iter().all(|x| *x == 0.0) { 1 } else { POINTS }
+    }
+
+    /// Share of the path from the point before (from nothing for the first) to a point.
+    fn step(&self, point: usize) -> f64 {
+        (if point == 0 { 0.5 } else { 1.0 }) / self.points() as f64
+    }
+
+    /// Moves everything from one point of the path to the next.
+    fn advance(&self, effect: &dyn Sensitivity, share: f64, seeds: &mut Seeds<'_>) {
+        for (variant, &e) in self.variants.iter().zip(self.at) {
+            if e == 0.0 {
+                continue;
+            }
+            effect.seed(variant, seeds);
+            let moved = |x: &mut Dual| *x = Dual::new(x.value + share * e * x.slope, 0.0);
+            for group in [&mut *seeds.q, &mut *seeds.dq, &mut *seeds.ddq, &mut seeds.gravity[..]] {
+                group.iter_mut().for_each(moved);
+            }
+            for row in seeds.rows.iter_mut() {
+                moved(&mut row.d);
+                moved(&mut row.r);
+            }
+        }
+    }
+}
+
 /// Derivative of the model's torque with respect to one number, for every joint and sample.
 ///
 /// `model` is [`derivable`]; `gravity` is the real one. `states` is q, dq, ddq and jerk, `[j][t]`; `out[j][t]` is filled.
@@ -67,23 +113,43 @@ pub fn derivative(
     gravity: [f64; 3],
     chi: &[f64],
     effect: &dyn Sensitivity,
-    variant: &Variant,
+    direction: &Direction<'_>,
     states: [&[Vec<f64>]; 4],
     out: &mut [Vec<f64>],
 ) {
     let robot = model.robot();
     let n = robot.joints();
     let samples = states[0].first().map_or(0, Vec::len);
-    let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
-    let mut links = Vec::new();
     let mut entries = vec![Dual::default(); model.pattern().columns.len()];
     let (mut q, mut dq, mut ddq) =
         (vec![Dual::default(); n], vec![Dual::default(); n], vec![Dual::default(); n]);
     let mut jerk = vec![0.0; n];
-    let mut gravity = gravity.map(|g| Dual::new(g, 0.0));
     for series in out.iter_mut() {
+        series.clear();
         series.resize(samples, 0.0);
     }
+    let points = direction.points();
+    let variant = &direction.variants[direction.which];
+    let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
+    let mut pull = gravity.map(|g| Dual::new(g, 0.0));
+    // The robot itself at every point, seeded: it is the same for all samples.
+    let robots: Vec<(Vec<crate::model::Link<Dual>>, [Dual; 3])> = (0..points)
+        .map(|point| {
+            let mut seeds = Seeds {
+                q: &mut q,
+                dq: &mut dq,
+                ddq: &mut ddq,
+                jerk: &jerk,
+                rows: &mut rows,
+                gravity: &mut pull,
+            };
+            direction.advance(effect, direction.step(point), &mut seeds);
+            let (mut rows, mut pull) = (seeds.rows.to_vec(), *seeds.gravity);
+            effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
+            let links = robot.frames.iter().zip(&rows).map(|(f, r)| crate::model::Link::new(f, r)).collect();
+            (links, pull)
+        })
+        .collect();
     for t in 0..samples {
         for j in 0..n {
             q[j] = Dual::new(states[0][j][t], 0.0);
@@ -91,36 +157,28 @@ pub fn derivative(
             ddq[j] = Dual::new(states[2][j][t], 0.0);
             jerk[j] = states[3][j][t];
         }
-        if t == 0 {
+        for (point, (links, gravity)) in robots.iter().enumerate() {
             let mut seeds = Seeds {
                 q: &mut q,
                 dq: &mut dq,
                 ddq: &mut ddq,
                 jerk: &jerk,
                 rows: &mut rows,
-                gravity: &mut gravity,
+                gravity: &mut pull,
             };
+            for x in seeds.q.iter_mut().chain(seeds.dq.iter_mut()).chain(seeds.ddq.iter_mut()) {
+                x.slope = 0.0;
+            }
+            direction.advance(effect, direction.step(point), &mut seeds);
             effect.seed(variant, &mut seeds);
-            links = robot.frames.iter().zip(&rows).map(|(f, r)| crate::model::Link::new(f, r)).collect();
-        } else {
-            effect.seed(
-                variant,
-                &mut Seeds {
-                    q: &mut q,
-                    dq: &mut dq,
-                    ddq: &mut ddq,
-                    jerk: &jerk,
-                    rows: &mut rows,
-                    gravity: &mut gravity,
-                },
-            );
-        }
-        model.idm_with(&links, gravity, &q, &dq, &ddq, &mut entries);
-        let pattern = model.pattern();
-        for (j, series) in out.iter_mut().enumerate() {
-            series[t] = (pattern.rows[j]..pattern.rows[j + 1])
-                .map(|e| entries[e].slope * chi[pattern.columns[e]])
-                .sum();
+            model.idm_with(links, *gravity, &q, &dq, &ddq, &mut entries);
+            let pattern = model.pattern();
+            for (j, series) in out.iter_mut().enumerate() {
+                let slope: f64 = (pattern.rows[j]..pattern.rows[j + 1])
+                    .map(|e| entries[e].slope * chi[pattern.columns[e]])
+                    .sum();
+                series[t] += slope / points as f64;
+            }
         }
     }
 }
@@ -203,7 +261,8 @@ mod tests {
             for variant in effect.variants(&robot) {
                 let mut out = vec![Vec::new(); 3];
                 let signals = [&states[0], &states[1], &states[2], &states[3]].map(Vec::as_slice);
-                derivative(&model, robot.gravity, &chi, effect, &variant, signals, &mut out);
+                let alone = Direction { variants: &[variant], which: 0, at: &[] };
+                derivative(&model, robot.gravity, &chi, effect, &alone, signals, &mut out);
                 let moved = |e: f64| {
                     let mut robot = robot.clone();
                     let (mut q, mut dq, mut ddq) = (q, dq, ddq);
@@ -243,5 +302,45 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn means_along_the_path_add_up_to_the_whole_change_of_a_large_error() {
+        let robot = arm();
+        let model = derivable(&robot).unwrap();
+        let chi: Vec<f64> = (0..robot.base.len()).map(|k| 0.3 + (k as f64 * 0.7).sin()).collect();
+        let (q, dq, ddq) = ([0.3, -0.8, 1.1], [0.9, -1.4, 0.6], [2.0, 1.0, -3.0]);
+        let wrap = |x: [f64; 3]| x.iter().map(|&v| vec![v]).collect::<Vec<_>>();
+        let states = [wrap(q), wrap(dq), wrap(ddq), wrap([0.0; 3])];
+        let signals = [&states[0], &states[1], &states[2], &states[3]].map(Vec::as_slice);
+        let whole = |kind: EffectKind, at: &[f64]| {
+            let Form::Sensitivity(effect) = kind.form() else { return vec![0.0; 3] };
+            let variants = effect.variants(&robot);
+            let variants = if effect.together() { &variants[..] } else { &variants[1..2] };
+            let mut sum = vec![0.0; 3];
+            for (which, e) in at.iter().enumerate() {
+                let mut out = vec![Vec::new(); 3];
+                let direction = Direction { variants, which, at };
+                derivative(&model, robot.gravity, &chi, effect, &direction, signals, &mut out);
+                sum.iter_mut().zip(&out).for_each(|(s, o)| *s += e * o[0]);
+            }
+            sum
+        };
+        let before = torque(&robot, &chi, &q, &dq, &ddq);
+        let close = |found: Vec<f64>, after: Vec<f64>| {
+            let change: Vec<f64> = after.iter().zip(&before).map(|(a, b)| a - b).collect();
+            let size = change.iter().map(|x| x * x).sum::<f64>().sqrt();
+            for (f, c) in found.iter().zip(&change) {
+                assert!((f - c).abs() < 0.01 * size, "{found:?} {change:?}");
+            }
+        };
+        close(whole(EffectKind::PositionOffset, &[0.4]), torque(&robot, &chi, &[0.3, -0.4, 1.1], &dq, &ddq));
+        let (x, y) = (0.15, -0.2);
+        let angle = f64::hypot(x, y);
+        let axis = [x / angle, y / angle];
+        let mut tilted = robot.clone();
+        tilted.gravity = [axis[1], -axis[0], 0.0].map(|u| u * -9.81 * angle.sin());
+        tilted.gravity[2] = -9.81 * angle.cos();
+        close(whole(EffectKind::BaseTilt, &[x, y]), torque(&tilted, &chi, &q, &dq, &ddq));
     }
 }
