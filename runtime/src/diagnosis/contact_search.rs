@@ -30,6 +30,8 @@ const SHORTEST: f64 = 0.15;
 const MOST: f64 = 0.35;
 /// One force on one link must explain this share of the squares of a window.
 const EXPLAINED: f64 = 0.7;
+/// The force of the neighbouring instants must predict this share of them: a push is smooth.
+const PREDICTED: f64 = 0.75;
 
 /// Residuals of a fit that single instants cannot pull (iterated weights of Cauchy's kind, shared by all joints at an
 /// instant), with a robust standard deviation per joint.
@@ -267,6 +269,9 @@ fn explain(
             [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|k| forces.get(k)).collect();
         let mean = neighbours.iter().copied().sum::<Vector3<f64>>() / neighbours.len().max(1) as f64;
         predicted += after(&units(context, frame, s, t), rows, sigma, &mean);
+    }
+    if 1.0 - predicted / whole < PREDICTED {
+        return None;
     }
     let torque = instants.values().flatten().map(|(j, _, y)| (y / sigma[*j]).powi(2)).sum::<f64>();
     let mean = forces.iter().sum::<Vector3<f64>>() / forces.len() as f64;

@@ -108,7 +108,7 @@ impl<'a> Context<'a> {
                 let variants = law.variants(self.model.robot());
                 let wanted = if law.together() { &variants[..] } else { &variants[v..=v] };
                 let s = &self.signals[signal];
-                wanted
+                let mut columns: Vec<Series> = wanted
                     .iter()
                     .enumerate()
                     .map(|(which, _)| {
@@ -124,7 +124,11 @@ impl<'a> Context<'a> {
                         );
                         out.into_iter().enumerate().collect()
                     })
-                    .collect()
+                    .collect();
+                if effect == EffectKind::BaseTilt && !shape.is_empty() {
+                    columns.extend(self.hidden_moments(signal));
+                }
+                columns
             }
             (Form::Body(_), Place::Link(frame)) => self.body(signal, frame),
             (Form::Compliance(_), Place::Joint(j)) => vec![self.compliant(signal, j, shape)],
@@ -143,6 +147,29 @@ impl<'a> Context<'a> {
             }
             _ => Vec::new(),
         }
+    }
+
+    /// Gravity that has left the direction of a first axis pulls at first moments that upright gravity never showed:
+    /// a sine and a cosine of that joint's angle.
+    fn hidden_moments(&self, signal: usize) -> Vec<Series> {
+        let robot = self.model.robot();
+        let g = robot.gravity;
+        let size = g.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let joint_of = robot.joint_of_frame();
+        let mut columns = Vec::new();
+        for (frame, joint) in robot.frames.iter().zip(joint_of) {
+            let (Some(j), None, JointKind::Revolute) = (joint, frame.parent, frame.kind) else { continue };
+            // Its axis is z of the frame: turned by gamma about z, then by alpha about x.
+            let (sine, cosine) = frame.alpha.sin_cos();
+            let axis = [frame.gamma.sin() * sine, -frame.gamma.cos() * sine, cosine];
+            let along = axis.iter().zip(g).map(|(a, g)| a * g).sum::<f64>().abs();
+            if along > 0.999 * size {
+                let q = &self.signals[signal].q[j];
+                columns.push(vec![(j, q.iter().map(|q| q.sin()).collect())]);
+                columns.push(vec![(j, q.iter().map(|q| q.cos()).collect())]);
+            }
+        }
+        columns
     }
 
     fn body(&self, signal: usize, frame: usize) -> Vec<Series> {

@@ -14,7 +14,6 @@ use super::settings::Settings;
 use super::{DiagnosisError, NAMED_DELAY, joint_number, unit_term, words};
 use crate::effects::{EffectKind, EffectTerm, Form, Lump, Parameter, Place};
 use crate::model::Model;
-use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Skew of the torques behind the positions in a design, s.
 pub(super) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
@@ -320,8 +319,6 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
     search.refit();
     let (before, after) = (without.error_on(&accepted.own), with.error_on(&accepted.own));
     let share = 1.0 - (after / before).powi(2);
-    let tail = Normal::standard().sf(accepted.significance);
-    let confidence = (1.0 - tail * search.tried as f64).clamp(0.5, 0.9999);
     let alternatives = accepted
         .rivals
         .iter()
@@ -346,7 +343,7 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
     let mut finding = Finding {
         effect: accepted.effect.id().into(),
         joints,
-        confidence,
+        confidence: accepted.confidence,
         significance: accepted.significance,
         parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
         held_out_before: before,

@@ -4,6 +4,7 @@ use super::candidate::{Candidate, Trial};
 use super::design::Design;
 use super::fit::Fit;
 use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Motion that is fitted and motion that is predicted.
 pub(super) struct Fold {
@@ -307,17 +308,82 @@ pub(super) fn holds_forward(
     total > 0.0 && own_gain > least * before
 }
 
+/// How sure it is that a gain is no accident.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Evidence {
+    /// In standard errors.
+    pub significance: f64,
+    /// Degrees of freedom of the standard error.
+    pub freedom: f64,
+}
+
+impl Evidence {
+    pub const NONE: Self = Self { significance: 0.0, freedom: 1.0 };
+
+    /// One minus the probability that the best of `tries` candidates comes as far by accident (Bonferroni), by
+    /// Student's distribution.
+    pub fn confidence(&self, tries: usize) -> f64 {
+        let tail = StudentsT::new(0.0, 1.0, self.freedom.max(1.0)).map_or(1.0, |t| t.sf(self.significance));
+        (1.0 - tail * tries as f64).clamp(0.0, 0.9999)
+    }
+}
+
+/// Shifts in time that a waveform is compared with.
+const SHIFTS: usize = 100;
+
+/// Evidence for a law that leaves no amplitude free: its own part is correlated with the residual as it is, and with
+/// the residual shifted in time, which has the same spectrum and nothing to do with the law.
+pub(super) fn waveform_evidence(
+    design: &Design,
+    whole: &Fit,
+    sigma: &[f64],
+    candidate: &Candidate,
+    trial: usize,
+) -> Evidence {
+    let trial = &candidate.trials[trial];
+    let everything = vec![true; design.segments.len()];
+    let Some(own) = own_part(design, whole, sigma, trial, &everything) else { return Evidence::NONE };
+    let residual = whole.residual(design);
+    let mut waveform = vec![0.0; design.rows.len()];
+    for (k, column) in trial.dense(design).iter().enumerate() {
+        waveform.iter_mut().zip(column).for_each(|(w, c)| *w += c);
+        for (i, made) in design.columns.iter().enumerate() {
+            let x = own.x[(i, k)];
+            if x != 0.0 {
+                waveform.iter_mut().zip(made).for_each(|(w, c)| *w -= x * c);
+            }
+        }
+    }
+    let correlation = |shift: usize| -> f64 {
+        let of_joint = |j: usize| {
+            let range = design.of_joint(j);
+            let rows = range.len();
+            let by = rows * shift / SHIFTS;
+            let (r, w) = (&residual[range.clone()], &waveform[range]);
+            let wrapped =
+                super::design::dot(&r[by..], &w[..rows - by]) + super::design::dot(&r[..by], &w[rows - by..]);
+            wrapped / (sigma[j] * sigma[j])
+        };
+        (0..design.joints).map(of_joint).sum()
+    };
+    let null: Vec<f64> = (2..SHIFTS - 1).map(correlation).collect();
+    let n = null.len() as f64;
+    let mean = null.iter().sum::<f64>() / n;
+    let variance = null.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+    Evidence { significance: (correlation(0) - mean) / variance.sqrt().max(1e-12), freedom: n - 1.0 }
+}
+
 /// Significance of the held-out gain in standard errors over blocks of motion, whatever depends on what in a block.
 ///
 /// Gains of blocks are heavy-tailed, so their signed square roots are compared with zero.
-pub(super) fn significance(
+pub(super) fn block_evidence(
     design: &Design,
     whole: &Fit,
     folds: &[Fold],
     sigma: &[f64],
     candidate: &Candidate,
     verdict: &Verdict,
-) -> f64 {
+) -> Evidence {
     let trial = &candidate.trials[verdict.trial];
     let dense = trial.dense(design);
     let single = single_motion(design);
@@ -326,10 +392,10 @@ pub(super) fn significance(
     for fold in folds {
         let fit = if single { whole } else { &fold.fit };
         let train = if single { &everything } else { &fold.train };
-        let Some(own) = own_part(design, fit, sigma, trial, train) else { return 0.0 };
+        let Some(own) = own_part(design, fit, sigma, trial, train) else { return Evidence::NONE };
         let fitted =
             if single { rest_of_motion(design, whole, sigma, trial, &own, &fold.train) } else { own };
-        let Some((a, _)) = fitted.solve(candidate) else { return 0.0 };
+        let Some((a, _)) = fitted.solve(candidate) else { return Evidence::NONE };
         let d = -(&fitted.x * &a);
         for (j, &s) in sigma.iter().enumerate() {
             for g in (0..design.segments.len()).filter(|&g| fold.test[g]) {
@@ -353,9 +419,9 @@ pub(super) fn significance(
     let roots: Vec<f64> = per_block.values().map(|d| d.signum() * d.abs().sqrt()).collect();
     let n = roots.len() as f64;
     if n < 4.0 {
-        return 0.0;
+        return Evidence::NONE;
     }
     let mean = roots.iter().sum::<f64>() / n;
     let variance = roots.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
-    mean / (variance / n).sqrt().max(1e-12)
+    Evidence { significance: mean / (variance / n).sqrt().max(1e-12), freedom: n - 1.0 }
 }

@@ -8,7 +8,8 @@ use super::context::Context;
 use super::design::Design;
 use super::fit::{Fit, fit_weighted};
 use super::judge::{
-    Fold, Verdict, best_trial, folds, holds_forward, judge, significance, single_motion, whole_gain,
+    Fold, Verdict, best_trial, block_evidence, folds, holds_forward, judge, single_motion, waveform_evidence,
+    whole_gain,
 };
 use super::outcome::OrderSpectrum;
 use super::parallel;
@@ -25,6 +26,7 @@ pub(super) struct Accepted {
     pub shape: Vec<f64>,
     pub fixed: Option<f64>,
     pub significance: f64,
+    pub confidence: f64,
     pub rivals: Vec<Rival>,
 }
 
@@ -107,6 +109,9 @@ fn follows_parameters(effect: EffectKind) -> bool {
 /// Largest error, in units of its number, along the way to which derivatives are taken.
 const LARGEST_ERROR: f64 = 0.7;
 
+/// Share of the gain of a transmission with play that a spring without play must leave over.
+const SPRING_DOES: f64 = 0.9;
+
 /// Shapes that a refinement tries at most.
 const MOST_EVALUATIONS: usize = 80;
 
@@ -116,6 +121,7 @@ struct Winner {
     index: usize,
     verdict: Verdict,
     significance: f64,
+    confidence: f64,
     rivals: Vec<Rival>,
 }
 
@@ -261,7 +267,14 @@ impl<'c, 'a> Search<'c, 'a> {
                 })
                 .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
             if let Some((index, verdict)) = best {
-                let winner = Winner { pace: which, index, verdict, significance: 0.0, rivals: vec![] };
+                let winner = Winner {
+                    pace: which,
+                    index,
+                    verdict,
+                    significance: 0.0,
+                    confidence: 0.5,
+                    rivals: vec![],
+                };
                 let term = self.accept(&winner);
                 self.terms.push(term);
                 self.settle();
@@ -355,31 +368,6 @@ impl<'c, 'a> Search<'c, 'a> {
             ranked.extend(verdicts.into_iter().enumerate().filter_map(|(k, v)| Some((which, k, v?))));
         }
         ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
-        if std::env::var("DBG").is_ok() {
-            for (which, index, v) in ranked.iter().take(10) {
-                let side = self.side(*which);
-                let c = &side.candidates[*index];
-                let z = significance(&side.design, &side.fit, &side.folds, &side.sigma, c, v);
-                eprintln!(
-                    "   DBG {:?} {:?} {:?} shape {:.3?} gain {:.0} held {:.0?} share {:.3} z {:.2} holds {} fwd {}",
-                    joint,
-                    c.effect,
-                    c.place,
-                    c.trials[v.trial].shape,
-                    v.gain,
-                    v.held_out,
-                    v.share,
-                    z,
-                    self.holds(side, c, v, settings),
-                    if single_motion(&side.design) {
-                        holds_forward(&side.design, &side.sigma, c, v.trial, settings.least_share)
-                    } else {
-                        true
-                    }
-                );
-            }
-            eprintln!("   DBG --- sigma {:.4?} rows {}", self.slow.sigma, self.slow.design.rows.len());
-        }
         let mut checked = 0;
         for (k, (which, index, verdict)) in ranked.iter().enumerate() {
             let side = self.side(*which);
@@ -391,15 +379,24 @@ impl<'c, 'a> Search<'c, 'a> {
             if checked > 30 {
                 break;
             }
-            let z = significance(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict);
-            // A law without free amplitudes cannot adapt to noise: chance makes the fit worse with it.
-            let least = settings.least_significance * if candidate.fixed.is_some() { 0.65 } else { 1.0 };
-            if z < least {
+            let evidence = if candidate.fixed.is_some() {
+                waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
+            } else {
+                block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict)
+            };
+            // Free shapes are chosen on other motion than they are judged on; those of a waveform are not.
+            let tries = self.slow.candidates.len() + self.fast.candidates.len();
+            let shapes = if candidate.fixed.is_some() { candidate.trials.len() } else { 1 };
+            let confidence = evidence.confidence(tries * shapes);
+            if confidence < settings.least_confidence {
                 continue;
             }
             if single_motion(&side.design)
                 && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial, settings.least_share)
             {
+                continue;
+            }
+            if candidate.effect == EffectKind::Backlash && self.spring_does(&ranked, candidate, verdict) {
                 continue;
             }
             let rivals = ranked
@@ -418,11 +415,22 @@ impl<'c, 'a> Search<'c, 'a> {
                 pace: *which,
                 index: *index,
                 verdict: verdict.clone(),
-                significance: z,
+                significance: evidence.significance,
+                confidence,
                 rivals,
             });
         }
         None
+    }
+
+    /// Whether a spring without play explains nearly as much: play is one number more.
+    fn spring_does(&self, ranked: &[(Pace, usize, Verdict)], play: &Candidate, verdict: &Verdict) -> bool {
+        ranked.iter().any(|(which, index, spring)| {
+            let candidate = &self.side(*which).candidates[*index];
+            candidate.effect == EffectKind::JointElasticity
+                && candidate.place == play.place
+                && spring.total() > SPRING_DOES * verdict.total()
+        })
     }
 
     fn known(&self, candidate: &Candidate) -> bool {
@@ -443,9 +451,9 @@ impl<'c, 'a> Search<'c, 'a> {
             folds - folds / 6
         };
         // A gain in prediction without one in the fit is an accident of extrapolation.
-        verdict.share >= settings.least_share
-            && verdict.fitted_share >= 0.5 * settings.least_share
-            && positive >= needed
+        // The waveform of a compliant transmission is not mistaken for anything else: less of it will do.
+        let least = settings.least_share * if candidate.fixed.is_some() { 0.5 } else { 1.0 };
+        verdict.share >= least && verdict.fitted_share >= 0.5 * least && positive >= needed
     }
 
     /// Refines the shape of the winner on all motion.
@@ -460,6 +468,7 @@ impl<'c, 'a> Search<'c, 'a> {
             shape,
             fixed: candidate.fixed,
             significance: winner.significance,
+            confidence: winner.confidence,
             rivals: winner.rivals.clone(),
         }
     }

@@ -15,8 +15,8 @@ pub struct Settings {
     pub standstill: f64,
     /// Least share of a joint's unexplained held-out energy that an effect must explain to be named.
     pub least_share: f64,
-    /// Least significance of the held-out gain, in standard errors over blocks of motion.
-    pub least_significance: f64,
+    /// Least confidence: one minus the probability that any of all candidates comes as far by accident.
+    pub least_confidence: f64,
     /// Most effects that are named.
     pub most_effects: usize,
     /// Length of a block of motion in which residuals may depend on each other, s.
@@ -46,7 +46,7 @@ impl Default for Settings {
             fast_window: 0.020,
             standstill: 0.015,
             least_share: 0.12,
-            least_significance: 3.0,
+            least_confidence: 0.99,
             most_effects: 8,
             block: 0.5,
             threads: 2,
