@@ -5,14 +5,16 @@ use super::contact_search::Contacts;
 use super::context::Context;
 use super::curves;
 use super::design::Design;
-use super::fit::{Fit, fit_weighted};
+use super::fit::fit_weighted;
+use super::held_back::{HeldBack, hold_back};
 use super::judge::single_motion;
 use super::outcome::*;
 use super::predict::errors;
+use super::quantities::{parameters, uncertainty};
 use super::search::{Accepted, Search, Side};
 use super::settings::Settings;
 use super::{DiagnosisError, NAMED_DELAY, joint_number, unit_term, words};
-use crate::effects::{EffectKind, EffectTerm, Form, Lump, Parameter, Place};
+use crate::effects::{EffectKind, EffectTerm, Form, Place};
 use crate::model::Model;
 
 /// Skew of the torques behind the positions in a design, s.
@@ -26,69 +28,6 @@ pub(super) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
     let mut sigma = vec![1.0; design.joints];
     let fit = fit_weighted(&design, &mut sigma, |_| true);
     fit.chi[design.columns.len() - 1]
-}
-
-/// Squares of the held-out residual and of the torque, per joint, and per held-back stretch.
-pub(super) struct HeldBack {
-    left: Vec<f64>,
-    whole: Vec<f64>,
-    by_segment: Vec<(usize, f64, f64)>,
-}
-
-impl HeldBack {
-    fn errors(&self) -> Errors {
-        errors(&self.left, &self.whole)
-    }
-
-    fn error_on(&self, joints: &[usize]) -> f64 {
-        let pick = |x: &[f64]| joints.iter().map(|&j| x[j]).sum::<f64>();
-        (pick(&self.left) / pick(&self.whole).max(1e-300)).sqrt()
-    }
-}
-
-/// Share of a single motion that is fitted; the rest comes later in time and is predicted.
-const FITTED_SHARE: f64 = 0.6;
-
-/// Predicts held-back motion with the columns of a design: every motion once from the others; a single motion
-/// forward in time; with a baseline, where `from_baseline` is set, from the baseline alone.
-pub(super) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> HeldBack {
-    let n = design.joints;
-    let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
-    let without = |held: &dyn Fn(usize) -> bool| {
-        let train: Vec<bool> = (0..design.segments.len()).map(|g| !held(g)).collect();
-        (train, fresh.iter().copied().filter(|&g| held(g)).collect::<Vec<usize>>())
-    };
-    let mut moved: Vec<usize> = fresh.iter().map(|&g| design.segments[g].signal).collect();
-    moved.dedup();
-    let splits: Vec<(Vec<bool>, Vec<usize>)> = if from_baseline {
-        vec![(design.segments.iter().map(|s| !s.fresh).collect(), fresh.clone())]
-    } else if single_motion(design) && fresh.len() > 1 {
-        let cut = ((fresh.len() as f64 * FITTED_SHARE).round() as usize).clamp(1, fresh.len() - 1);
-        vec![without(&|g| fresh[cut..].contains(&g))]
-    } else if moved.len() > 1 {
-        moved.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
-    } else {
-        fresh.iter().map(|&held| without(&|g| g == held)).collect()
-    };
-    let mut out = HeldBack { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
-    let p = design.columns.len();
-    for (train, test) in splits {
-        let fit = Fit::new(design, sigma, |g: usize| train[g]);
-        for g in test {
-            let (mut left, mut whole) = (0.0, 0.0);
-            for j in 0..n {
-                let squares = fit.squares(design, j, g);
-                // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
-                let torque = design.gram[j][g][p * (p + 1) + p];
-                out.left[j] += squares;
-                out.whole[j] += torque;
-                left += squares;
-                whole += torque;
-            }
-            out.by_segment.push((g, left, whole));
-        }
-    }
-    out
 }
 
 /// The standard model before anything was added.
@@ -357,144 +296,6 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
     };
     finding.sentence = words::sentence(robot, accepted.effect, &finding);
     finding
-}
-
-/// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
-/// derivative of the columns (variable projection, Golub and Pereyra 1973).
-fn uncertainty(
-    search: &Search<'_, '_>,
-    terms: &[Accepted],
-    k: usize,
-    amplitude: &[f64],
-) -> (Vec<f64>, Vec<f64>) {
-    let term = &terms[k];
-    let side = search.side(pace(term.effect));
-    let mut design = side.design.clone();
-    let dense = |shape: &[f64]| {
-        let c = columns(search.context, &side.design, term.effect, term.place, shape, search.change);
-        Trial { shape: shape.to_vec(), columns: c, products: Vec::new() }.dense(&side.design)
-    };
-    let start = design.columns.len();
-    let mut varied = Vec::new();
-    // The shape of a sensitivity is its amplitude once more.
-    let own_shape = !matches!(term.effect.form(), Form::Sensitivity(_));
-    for (i, &value) in term.shape.iter().enumerate().filter(|_| own_shape) {
-        let step = 0.02 * value.abs().max(1e-6);
-        let moved = |s: f64| {
-            let mut shape = term.shape.clone();
-            shape[i] += s * step;
-            dense(&shape)
-        };
-        let (plus, minus) = (moved(1.0), moved(-1.0));
-        let weights: Vec<f64> = if term.fixed.is_some() { vec![1.0] } else { amplitude.to_vec() };
-        let mut slope = vec![0.0; design.rows.len()];
-        for ((p, m), a) in plus.iter().zip(&minus).zip(&weights) {
-            for ((s, p), m) in slope.iter_mut().zip(p).zip(m) {
-                *s += a * (p - m) / (2.0 * step);
-            }
-        }
-        if slope.iter().any(|x| *x != 0.0) {
-            design.push(slope);
-            varied.push(i);
-        }
-    }
-    design.refresh_from(start);
-    let fit = Fit::new(&design, &side.sigma, |_| true);
-    let variances = fit.variances();
-    let sd = |c: usize| variances[c].max(0.0).sqrt();
-    let amplitudes = side.term_columns[k].clone().map(sd).collect();
-    let mut shapes = vec![0.0; term.shape.len()];
-    for (at, &i) in varied.iter().enumerate() {
-        shapes[i] = sd(start + at).min(10.0 * term.shape[i].abs());
-    }
-    (amplitudes, shapes)
-}
-
-/// The quantities a person knows, with the uncertainty of shapes propagated to first order.
-fn parameters(
-    search: &Search<'_, '_>,
-    term: &Accepted,
-    amplitude: &mut Vec<f64>,
-    sigma: &mut Vec<f64>,
-    shape_sigma: &[f64],
-    model: &dyn Model,
-) -> Vec<Parameter> {
-    let robot = model.robot();
-    let context = &*search.context;
-    match (term.effect.form(), term.place) {
-        (Form::Joint(law), Place::Joint(j)) => {
-            let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, amplitude, sigma);
-            propagate(of, &term.shape, shape_sigma)
-        }
-        (Form::Compliance(law), Place::Joint(j)) => {
-            let of = |shape: &[f64]| {
-                law.describe(&context.transmission(j, shape))
-                    .into_iter()
-                    .map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
-                    .collect()
-            };
-            let t = context.transmission(j, &term.shape);
-            *amplitude = vec![t.stiffness, t.damping, t.rotor, t.play];
-            *sigma = vec![0.0; 4];
-            propagate(of, &term.shape, shape_sigma)
-        }
-        (Form::Sensitivity(law), Place::Variant(v)) => {
-            let variants = law.variants(robot);
-            let wanted = if law.together() { &variants[..] } else { &variants[v..=v] };
-            wanted
-                .iter()
-                .zip(amplitude.iter().zip(sigma.iter()))
-                .map(|(x, (a, s))| match term.effect {
-                    // Along the way to it a factor grows exponentially.
-                    EffectKind::WrongSampleRate => Parameter::new(x.name, a.exp_m1(), s * a.exp(), x.unit),
-                    _ => Parameter::new(x.name, *a, *s, x.unit),
-                })
-                .collect()
-        }
-        (Form::Body(_), _) => {
-            let slack = 3.0 * sigma.iter().take(6).fold(0.0_f64, |a, b| a.max(*b));
-            let lump = Lump::from_parameters(amplitude, slack);
-            let s = |k: usize| sigma.get(k).copied().unwrap_or(0.0);
-            let m = lump.mass.abs().max(1e-9);
-            vec![
-                Parameter::new("mass", lump.mass, s(9), "kg"),
-                Parameter::new("x", lump.centre[0], s(6) / m, "m"),
-                Parameter::new("y", lump.centre[1], s(7) / m, "m"),
-                Parameter::new("z", lump.centre[2], s(8) / m, "m"),
-                Parameter::new("I1", lump.principal[0], s(0), "kg.m2"),
-                Parameter::new("I2", lump.principal[1], s(3), "kg.m2"),
-                Parameter::new("I3", lump.principal[2], s(5), "kg.m2"),
-                Parameter::new("physically_consistent", f64::from(lump.consistent), 0.0, "1"),
-            ]
-        }
-        (Form::Coupled, _) => {
-            let names = [("viscous", "N.m.s/rad"), ("coulomb", "N.m"), ("inertia", "kg.m2")];
-            let mut list: Vec<Parameter> = names
-                .iter()
-                .zip(amplitude.iter().zip(sigma.iter()))
-                .map(|((name, unit), (a, s))| Parameter::new(name, *a, *s, unit))
-                .collect();
-            list.push(Parameter::new("ratio", term.shape[0], shape_sigma[0], "1"));
-            list
-        }
-        _ => Vec::new(),
-    }
-}
-
-fn propagate(of: impl Fn(&[f64]) -> Vec<Parameter>, shape: &[f64], shape_sigma: &[f64]) -> Vec<Parameter> {
-    let mut list = of(shape);
-    for (i, &s) in shape_sigma.iter().enumerate() {
-        if s == 0.0 {
-            continue;
-        }
-        let step = 1e-4 * shape[i].abs().max(1e-9);
-        let mut moved = shape.to_vec();
-        moved[i] += step;
-        for (p, q) in list.iter_mut().zip(of(&moved)) {
-            p.sigma = p.sigma.hypot((q.value - p.value) / step * s);
-        }
-    }
-    list
 }
 
 fn contact_finding(contacts: &Contacts) -> Finding {

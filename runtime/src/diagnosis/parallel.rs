@@ -56,3 +56,20 @@ pub(super) fn for_each<T: Send>(threads: usize, items: &mut [T], work: impl Fn(&
         }
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_the_outcome_does_not_depend_on_the_threads() {
+        let square = |k: usize| k * k;
+        let expected: Vec<usize> = (0..100).map(square).collect();
+        for threads in [0, 1, 2, 7] {
+            assert_eq!(map(threads, 100, square), expected);
+            let mut items: Vec<usize> = (0..100).collect();
+            for_each(threads, &mut items, |x| *x *= *x);
+            assert_eq!(items, expected);
+        }
+    }
+}

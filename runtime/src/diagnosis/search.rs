@@ -7,12 +7,10 @@ use super::candidate::{Candidate, Pace, Trial, build, columns, make, pace, propo
 use super::context::Context;
 use super::design::Design;
 use super::fit::{Fit, fit_weighted};
-use super::judge::{
-    Fold, Verdict, best_trial, block_evidence, folds, holds_forward, judge, single_motion, waveform_evidence,
-    whole_gain,
-};
+use super::judge::{Fold, folds, judge};
 use super::outcome::OrderSpectrum;
 use super::parallel;
+use super::select::Winner;
 use super::settings::{Progress, Settings};
 use super::spectrum::{order_spectrum, peaks};
 use crate::effects::{EffectKind, Form, Place};
@@ -45,7 +43,7 @@ pub(super) struct Side {
     pub sigma: Vec<f64>,
     pub fit: Fit,
     pub folds: Vec<Fold>,
-    candidates: Vec<Candidate>,
+    pub candidates: Vec<Candidate>,
     /// y without any term of fixed amplitude.
     measured: Vec<f64>,
     /// Columns that are always there: base parameters and nuisances.
@@ -92,7 +90,7 @@ pub(super) struct Search<'c, 'a> {
     pub tried: usize,
     pub change: bool,
     slowest: Vec<f64>,
-    threads: usize,
+    pub threads: usize,
 }
 
 /// Effects whose columns follow the standard parameters.
@@ -108,22 +106,6 @@ fn follows_parameters(effect: EffectKind) -> bool {
 
 /// Largest error, in units of its number, along the way to which derivatives are taken.
 const LARGEST_ERROR: f64 = 0.7;
-
-/// Share of the gain of a transmission with play that a spring without play must leave over.
-const SPRING_DOES: f64 = 0.9;
-
-/// Shapes that a refinement tries at most.
-const MOST_EVALUATIONS: usize = 80;
-
-/// What passed a round: the side it is on, the candidate's index, and its verdict.
-struct Winner {
-    pace: Pace,
-    index: usize,
-    verdict: Verdict,
-    significance: f64,
-    confidence: f64,
-    rivals: Vec<Rival>,
-}
 
 impl<'c, 'a> Search<'c, 'a> {
     pub fn new(
@@ -193,24 +175,6 @@ impl<'c, 'a> Search<'c, 'a> {
         self.fast.candidates = build(context, &self.fast.design, &fast, change, threads, &|done| {
             progress.at(0.35 + 0.2 * done, "fast effects");
         });
-    }
-
-    /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
-    /// refined on what nothing else explains.
-    fn polish(&mut self, threads: usize) {
-        let (this, fast) = (&*self, &self.fast);
-        let polished = parallel::map(threads, fast.candidates.len(), |k| {
-            let candidate = &fast.candidates[k];
-            candidate.fixed?;
-            let start = best_trial(&fast.design, &fast.fit, &fast.sigma, candidate)?;
-            let shape = this.refined(fast, candidate, &candidate.trials[start].shape);
-            let columns =
-                columns(this.context, &fast.design, candidate.effect, candidate.place, &shape, this.change);
-            Some(Trial::new(&fast.design, shape, columns))
-        });
-        for (candidate, trial) in self.fast.candidates.iter_mut().zip(polished) {
-            candidate.trials.extend(trial);
-        }
     }
 
     fn order_spectra(&self) -> Vec<OrderSpectrum> {
@@ -353,109 +317,6 @@ impl<'c, 'a> Search<'c, 'a> {
         if pace == Pace::Slow { &self.slow } else { &self.fast }
     }
 
-    /// The best candidate that holds, among those on `joint` where one is given.
-    fn best(&self, settings: &Settings, joint: Option<usize>) -> Option<Winner> {
-        let mut ranked: Vec<(Pace, usize, Verdict)> = Vec::new();
-        for which in [Pace::Slow, Pace::Fast] {
-            let side = self.side(which);
-            let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
-                let candidate = &side.candidates[index];
-                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.known(candidate) {
-                    return None;
-                }
-                judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate)
-            });
-            ranked.extend(verdicts.into_iter().enumerate().filter_map(|(k, v)| Some((which, k, v?))));
-        }
-        ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
-        let mut checked = 0;
-        for (k, (which, index, verdict)) in ranked.iter().enumerate() {
-            let side = self.side(*which);
-            let candidate = &side.candidates[*index];
-            if !self.holds(side, candidate, verdict, settings) {
-                continue;
-            }
-            checked += 1;
-            if checked > 30 {
-                break;
-            }
-            let evidence = if candidate.fixed.is_some() {
-                waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
-            } else {
-                block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict)
-            };
-            // Free shapes are chosen on other motion than they are judged on; those of a waveform are not.
-            let tries = self.slow.candidates.len() + self.fast.candidates.len();
-            let shapes = if candidate.fixed.is_some() { candidate.trials.len() } else { 1 };
-            let confidence = evidence.confidence(tries * shapes);
-            if confidence < settings.least_confidence {
-                continue;
-            }
-            if single_motion(&side.design)
-                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial, settings.least_share)
-            {
-                continue;
-            }
-            if candidate.effect == EffectKind::Backlash && self.spring_does(&ranked, candidate, verdict) {
-                continue;
-            }
-            let rivals = ranked
-                .iter()
-                .enumerate()
-                .filter(|(i, (p, c, _))| {
-                    *i != k && self.side(*p).candidates[*c].own.iter().any(|j| candidate.own.contains(j))
-                })
-                .take(5)
-                .map(|(_, (p, c, v))| {
-                    let rival = &self.side(*p).candidates[*c];
-                    Rival { effect: rival.effect, place: rival.place, share: v.share, total: v.total() }
-                })
-                .collect();
-            return Some(Winner {
-                pace: *which,
-                index: *index,
-                verdict: verdict.clone(),
-                significance: evidence.significance,
-                confidence,
-                rivals,
-            });
-        }
-        None
-    }
-
-    /// Whether a spring without play explains nearly as much: play is one number more.
-    fn spring_does(&self, ranked: &[(Pace, usize, Verdict)], play: &Candidate, verdict: &Verdict) -> bool {
-        ranked.iter().any(|(which, index, spring)| {
-            let candidate = &self.side(*which).candidates[*index];
-            candidate.effect == EffectKind::JointElasticity
-                && candidate.place == play.place
-                && spring.total() > SPRING_DOES * verdict.total()
-        })
-    }
-
-    fn known(&self, candidate: &Candidate) -> bool {
-        self.terms.iter().any(|t| {
-            t.place == candidate.place && t.effect == candidate.effect && t.effect != EffectKind::TorqueRipple
-        })
-    }
-
-    fn holds(&self, side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
-        let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
-        let folds = verdict.held_out.len();
-        // Of many stretches of one motion a few may be untouched by an effect.
-        let needed = if candidate.fixed.is_some() {
-            folds / 2 + 1
-        } else if side.design.in_stretches() {
-            folds - folds / 4
-        } else {
-            folds - folds / 6
-        };
-        // A gain in prediction without one in the fit is an accident of extrapolation.
-        // The waveform of a compliant transmission is not mistaken for anything else: less of it will do.
-        let least = settings.least_share * if candidate.fixed.is_some() { 0.5 } else { 1.0 };
-        verdict.share >= least && verdict.fitted_share >= 0.5 * least && positive >= needed
-    }
-
     /// Refines the shape of the winner on all motion.
     fn accept(&self, winner: &Winner) -> Accepted {
         let side = self.side(winner.pace);
@@ -471,73 +332,6 @@ impl<'c, 'a> Search<'c, 'a> {
             confidence: winner.confidence,
             rivals: winner.rivals.clone(),
         }
-    }
-
-    fn refined(&self, side: &Side, candidate: &Candidate, start: &[f64]) -> Vec<f64> {
-        let gain = |shape: &[f64]| -> f64 {
-            let one = make(
-                self.context,
-                &side.design,
-                candidate.effect,
-                candidate.place,
-                &[shape.to_vec()],
-                self.change,
-            );
-            whole_gain(&side.design, &side.fit, &side.sigma, &one)
-        };
-        let steps: Vec<Step> = match candidate.effect.form() {
-            Form::Joint(_) if candidate.effect == EffectKind::TorqueRipple => {
-                let Place::Joint(j) = candidate.place else { return start.to_vec() };
-                vec![Step::Add(std::f64::consts::PI / self.context.scales[j].range)]
-            }
-            Form::Joint(law) => law.refinement().iter().map(|&f| Step::Times(f)).collect(),
-            Form::Compliance(_) => {
-                vec![Step::Times(1.12), Step::Times(1.9), Step::Add(0.15), Step::Times(1.4)]
-            }
-            Form::Coupled => vec![Step::Times(1.4)],
-            _ => Vec::new(),
-        };
-        // Pattern search (Hooke and Jeeves 1961): one parameter at a time, and frequency with rotor, which trade
-        // against each other along the ridge of one stiffness.
-        let mut moves: Vec<Vec<(usize, f64)>> = Vec::new();
-        for k in 0..steps.len().min(start.len()) {
-            moves.extend([vec![(k, 1.0)], vec![(k, -1.0)]]);
-        }
-        if matches!(candidate.effect.form(), Form::Compliance(_)) {
-            moves.extend([vec![(0, 0.4), (2, 1.0)], vec![(0, -0.4), (2, -1.0)]]);
-        }
-        let mut shape = start.to_vec();
-        let mut value = gain(&shape);
-        let mut size = 1.0;
-        let mut evaluations = 0;
-        while size > 0.02 && evaluations < MOST_EVALUATIONS {
-            let mut better = false;
-            for directions in &moves {
-                let mut next = shape.clone();
-                for &(k, direction) in directions {
-                    match steps[k] {
-                        Step::Times(f) => next[k] *= f.powf(direction * size),
-                        Step::Add(d) => next[k] = (next[k] + d * direction * size).max(0.0),
-                    }
-                }
-                if matches!(candidate.effect.form(), Form::Compliance(_)) {
-                    // The rotor is a part of the inertia that the motor sees.
-                    next[2] = next[2].min(0.95);
-                }
-                if next == shape {
-                    continue;
-                }
-                let tried = gain(&next);
-                evaluations += 1;
-                if tried > value {
-                    (shape, value, better) = (next, tried, true);
-                }
-            }
-            if !better {
-                size *= 0.5;
-            }
-        }
-        shape
     }
 
     /// With a new effect in the model an earlier one may turn out to have been its imitator: each is taken out, and
@@ -591,11 +385,4 @@ impl<'c, 'a> Search<'c, 'a> {
             self.refit();
         }
     }
-}
-
-/// How a shape parameter is varied.
-#[derive(Debug, Clone, Copy)]
-enum Step {
-    Times(f64),
-    Add(f64),
 }

@@ -1,0 +1,104 @@
+//! Shapes between the values of a grid.
+
+use super::candidate::{Candidate, Trial, columns, make};
+use super::judge::{best_trial, whole_gain};
+use super::parallel;
+use super::search::{Search, Side};
+use crate::effects::{EffectKind, Form, Place};
+
+/// Shapes that a refinement tries at most.
+const MOST_EVALUATIONS: usize = 80;
+
+/// How a shape parameter is varied.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    Times(f64),
+    Add(f64),
+}
+
+impl Search<'_, '_> {
+    /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
+    /// refined on what nothing else explains.
+    pub(super) fn polish(&mut self, threads: usize) {
+        let (this, fast) = (&*self, &self.fast);
+        let polished = parallel::map(threads, fast.candidates.len(), |k| {
+            let candidate = &fast.candidates[k];
+            candidate.fixed?;
+            let start = best_trial(&fast.design, &fast.fit, &fast.sigma, candidate)?;
+            let shape = this.refined(fast, candidate, &candidate.trials[start].shape);
+            let columns =
+                columns(this.context, &fast.design, candidate.effect, candidate.place, &shape, this.change);
+            Some(Trial::new(&fast.design, shape, columns))
+        });
+        for (candidate, trial) in self.fast.candidates.iter_mut().zip(polished) {
+            candidate.trials.extend(trial);
+        }
+    }
+
+    pub(super) fn refined(&self, side: &Side, candidate: &Candidate, start: &[f64]) -> Vec<f64> {
+        let gain = |shape: &[f64]| -> f64 {
+            let one = make(
+                self.context,
+                &side.design,
+                candidate.effect,
+                candidate.place,
+                &[shape.to_vec()],
+                self.change,
+            );
+            whole_gain(&side.design, &side.fit, &side.sigma, &one)
+        };
+        let steps: Vec<Step> = match candidate.effect.form() {
+            Form::Joint(_) if candidate.effect == EffectKind::TorqueRipple => {
+                let Place::Joint(j) = candidate.place else { return start.to_vec() };
+                vec![Step::Add(std::f64::consts::PI / self.context.scales[j].range)]
+            }
+            Form::Joint(law) => law.refinement().iter().map(|&f| Step::Times(f)).collect(),
+            Form::Compliance(_) => {
+                vec![Step::Times(1.12), Step::Times(1.9), Step::Add(0.15), Step::Times(1.4)]
+            }
+            Form::Coupled => vec![Step::Times(1.4)],
+            _ => Vec::new(),
+        };
+        // Pattern search (Hooke and Jeeves 1961): one parameter at a time, and frequency with rotor, which trade
+        // against each other along the ridge of one stiffness.
+        let mut moves: Vec<Vec<(usize, f64)>> = Vec::new();
+        for k in 0..steps.len().min(start.len()) {
+            moves.extend([vec![(k, 1.0)], vec![(k, -1.0)]]);
+        }
+        if matches!(candidate.effect.form(), Form::Compliance(_)) {
+            moves.extend([vec![(0, 0.4), (2, 1.0)], vec![(0, -0.4), (2, -1.0)]]);
+        }
+        let mut shape = start.to_vec();
+        let mut value = gain(&shape);
+        let mut size = 1.0;
+        let mut evaluations = 0;
+        while size > 0.02 && evaluations < MOST_EVALUATIONS {
+            let mut better = false;
+            for directions in &moves {
+                let mut next = shape.clone();
+                for &(k, direction) in directions {
+                    match steps[k] {
+                        Step::Times(f) => next[k] *= f.powf(direction * size),
+                        Step::Add(d) => next[k] = (next[k] + d * direction * size).max(0.0),
+                    }
+                }
+                if matches!(candidate.effect.form(), Form::Compliance(_)) {
+                    // The rotor is a part of the inertia that the motor sees.
+                    next[2] = next[2].min(0.95);
+                }
+                if next == shape {
+                    continue;
+                }
+                let tried = gain(&next);
+                evaluations += 1;
+                if tried > value {
+                    (shape, value, better) = (next, tried, true);
+                }
+            }
+            if !better {
+                size *= 0.5;
+            }
+        }
+        shape
+    }
+}

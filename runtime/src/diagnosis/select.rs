@@ -1,0 +1,127 @@
+//! Which candidate of a round holds.
+
+use super::candidate::{Candidate, Pace};
+use super::evidence::{block_evidence, waveform_evidence};
+use super::judge::{Verdict, holds_forward, judge, single_motion};
+use super::parallel;
+use super::search::{Rival, Search, Side};
+use super::settings::Settings;
+use crate::effects::EffectKind;
+
+/// Share of the gain of a transmission with play that a spring without play must leave over.
+const SPRING_DOES: f64 = 0.9;
+
+/// What passed a round: the side it is on, the candidate's index, and its verdict.
+pub(super) struct Winner {
+    pub pace: Pace,
+    pub index: usize,
+    pub verdict: Verdict,
+    pub significance: f64,
+    pub confidence: f64,
+    pub rivals: Vec<Rival>,
+}
+
+impl Search<'_, '_> {
+    /// The best candidate that holds, among those on `joint` where one is given.
+    pub(super) fn best(&self, settings: &Settings, joint: Option<usize>) -> Option<Winner> {
+        let mut ranked: Vec<(Pace, usize, Verdict)> = Vec::new();
+        for which in [Pace::Slow, Pace::Fast] {
+            let side = self.side(which);
+            let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
+                let candidate = &side.candidates[index];
+                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.known(candidate) {
+                    return None;
+                }
+                judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate)
+            });
+            ranked.extend(verdicts.into_iter().enumerate().filter_map(|(k, v)| Some((which, k, v?))));
+        }
+        ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
+        let mut checked = 0;
+        for (k, (which, index, verdict)) in ranked.iter().enumerate() {
+            let side = self.side(*which);
+            let candidate = &side.candidates[*index];
+            if !self.holds(side, candidate, verdict, settings) {
+                continue;
+            }
+            checked += 1;
+            if checked > 30 {
+                break;
+            }
+            let evidence = if candidate.fixed.is_some() {
+                waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
+            } else {
+                block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict)
+            };
+            // Free shapes are chosen on other motion than they are judged on; those of a waveform are not.
+            let tries = self.slow.candidates.len() + self.fast.candidates.len();
+            let shapes = if candidate.fixed.is_some() { candidate.trials.len() } else { 1 };
+            let confidence = evidence.confidence(tries * shapes);
+            if confidence < settings.least_confidence {
+                continue;
+            }
+            if single_motion(&side.design)
+                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial, settings.least_share)
+            {
+                continue;
+            }
+            if candidate.effect == EffectKind::Backlash && self.spring_does(&ranked, candidate, verdict) {
+                continue;
+            }
+            let rivals = ranked
+                .iter()
+                .enumerate()
+                .filter(|(i, (p, c, _))| {
+                    *i != k && self.side(*p).candidates[*c].own.iter().any(|j| candidate.own.contains(j))
+                })
+                .take(5)
+                .map(|(_, (p, c, v))| {
+                    let rival = &self.side(*p).candidates[*c];
+                    Rival { effect: rival.effect, place: rival.place, share: v.share, total: v.total() }
+                })
+                .collect();
+            return Some(Winner {
+                pace: *which,
+                index: *index,
+                verdict: verdict.clone(),
+                significance: evidence.significance,
+                confidence,
+                rivals,
+            });
+        }
+        None
+    }
+
+    /// Whether a spring without play explains nearly as much: play is one number more.
+    fn spring_does(&self, ranked: &[(Pace, usize, Verdict)], play: &Candidate, verdict: &Verdict) -> bool {
+        ranked.iter().any(|(which, index, spring)| {
+            let candidate = &self.side(*which).candidates[*index];
+            candidate.effect == EffectKind::JointElasticity
+                && candidate.place == play.place
+                && spring.total() > SPRING_DOES * verdict.total()
+        })
+    }
+
+    fn known(&self, candidate: &Candidate) -> bool {
+        self.terms.iter().any(|t| {
+            t.place == candidate.place && t.effect == candidate.effect && t.effect != EffectKind::TorqueRipple
+        })
+    }
+
+    fn holds(&self, side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
+        let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
+        let folds = verdict.held_out.len();
+        // Of many stretches of one motion a few may be untouched by an effect.
+        let needed = if candidate.fixed.is_some() {
+            folds / 2 + 1
+        } else if side.design.in_stretches() {
+            folds - folds / 4
+        } else {
+            folds - folds / 6
+        };
+        // A gain in prediction without one in the fit is an accident of extrapolation.
+        // The waveform of a compliant transmission is not mistaken for anything else: less of it will do.
+        let least = settings.least_share * if candidate.fixed.is_some() { 0.5 } else { 1.0 };
+        verdict.share >= least && verdict.fitted_share >= 0.5 * least && positive >= needed
+    }
+}
