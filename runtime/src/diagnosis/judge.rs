@@ -83,12 +83,24 @@ pub(super) fn own_part(
     for a in 0..k {
         x.set_column(a, &fit.solve(&z.column(a).into_owned()));
     }
-    let s = &c - z.transpose() * &x;
-    let b = y - z.transpose() * &fit.chi;
+    let mut s = &c - z.transpose() * &x;
+    let mut b = y - z.transpose() * &fit.chi;
     let alive = (0..k).filter(|&a| c[(a, a)] > 0.0).count();
-    let determined = (0..k).filter(|&a| c[(a, a)] > 0.0 && s[(a, a)] > OWN_PART * c[(a, a)]).count();
-    // A body has ten columns of which the standard model makes some: the others still count.
-    (alive > 0 && determined > 0 && (k >= 10 || determined == k)).then_some(Own { x, s, b })
+    let own: Vec<bool> = (0..k).map(|a| c[(a, a)] > 0.0 && s[(a, a)] > OWN_PART * c[(a, a)]).collect();
+    for a in (0..k).filter(|&a| !own[a]) {
+        s.row_mut(a).fill(0.0);
+        s.column_mut(a).fill(0.0);
+        b[a] = 0.0;
+    }
+    let determined = own.iter().filter(|own| **own).count();
+    // Of the ten columns of a body the standard model makes some, of the three of a rotor at times its inertia:
+    // the others still count. A wave of which only the sine can be seen is none.
+    let needed = match k {
+        0..3 => k,
+        3..10 => k - 1,
+        _ => 1,
+    };
+    (alive > 0 && determined >= needed).then_some(Own { x, s, b })
 }
 
 impl Own {

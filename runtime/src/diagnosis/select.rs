@@ -120,8 +120,7 @@ impl Search<'_, '_> {
             folds - folds / 6
         };
         // A gain in prediction without one in the fit is an accident of extrapolation.
-        // The waveform of a compliant transmission is not mistaken for anything else: less of it will do.
-        let least = settings.least_share * if candidate.fixed.is_some() { 0.5 } else { 1.0 };
+        let least = settings.least_share;
         verdict.share >= least && verdict.fitted_share >= 0.5 * least && positive >= needed
     }
 }
