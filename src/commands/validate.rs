@@ -16,6 +16,10 @@ use crate::models;
 use crate::output::{Bar, print, table, write_json};
 use crate::recorded::{Recorded, RecordingOptions, left_out_words, observe_failure, read};
 
+/// Band in which models are compared unless something else is asked for, Hz: models that were identified in wider bands
+/// are judged on the same rows as those of a diagnosis.
+const COMPARED: f64 = 25.0;
+
 /// What to predict, with what.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -32,11 +36,11 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let identified = read_model(&arguments.model)?;
     let mut options = arguments.recording.clone();
-    // The model was identified for a robot and a band; the same are used unless something else is asked for.
+    // The model was identified for a robot; the same is used unless something else is asked for.
     // A robot whose YAML is not where it was then is the one that the recording names.
     let still_there = models::find(&identified.robot).is_some() || Path::new(&identified.robot).is_file();
     options.robot = options.robot.or_else(|| still_there.then(|| identified.robot.clone()));
-    options.sampling.band = options.sampling.band.or(Some(identified.band));
+    options.sampling.band = options.sampling.band.or(Some(identified.band.min(COMPARED)));
     let recorded = read(&options)?;
     let Prediction { observation, errors } = prediction(&recorded, &identified, &arguments.model)?;
     if let Some(path) = &arguments.json {

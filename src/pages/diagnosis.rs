@@ -121,11 +121,9 @@ pub(crate) fn joint_words(joints: &[usize]) -> String {
     }
 }
 
-/// The confidence, and a warning where it is too low to build on.
+/// The confidence in words.
 pub(crate) fn confidence_words(confidence: f64) -> String {
-    const PROVEN: f64 = 0.95;
-    let doubt = if confidence < PROVEN { " (weak: record more motion before you build on it)" } else { "" };
-    format!("confidence {}{doubt}", significant(confidence, 4))
+    format!("confidence {}", significant(confidence, 4))
 }
 
 fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {

@@ -5,6 +5,7 @@ use super::contact_search::Contacts;
 use super::context::Context;
 use super::curves;
 use super::design::Design;
+use super::evidence::Evidence;
 use super::fit::fit_weighted;
 use super::held_back::{HeldBack, hold_back};
 use super::judge::single_motion;
@@ -355,11 +356,16 @@ fn delay_finding(search: &mut Search<'_, '_>, skew: f64, settings: &Settings) ->
         return None;
     }
     let variance = side.fit.variances()[p].max(0.0);
+    let blocks = 1 + side.design.rows.iter().map(|r| r.block).max().unwrap_or(0);
+    let evidence = Evidence {
+        significance: skew.abs() / variance.sqrt().max(1e-300),
+        freedom: blocks.saturating_sub(1) as f64,
+    };
     let mut finding = Finding {
         effect: EffectKind::TimeDelay.id().into(),
         joints: Vec::new(),
-        confidence: 0.9999,
-        significance: 0.0,
+        confidence: evidence.confidence(1),
+        significance: evidence.significance,
         parameters: [(
             "delay".to_string(),
             ParameterValue { value: skew, sigma: variance.sqrt(), unit: "s".into() },

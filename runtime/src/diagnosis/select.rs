@@ -8,8 +8,8 @@ use super::search::{Rival, Search, Side};
 use super::settings::Settings;
 use crate::effects::EffectKind;
 
-/// Share of the gain of a transmission with play that a spring without play must leave over.
-const SPRING_DOES: f64 = 0.9;
+/// A law gives way to the one that it extends where that one makes this share of its gain.
+const SIMPLER_DOES: f64 = 0.9;
 
 /// What passed a round: the side it is on, the candidate's index, and its verdict.
 pub(super) struct Winner {
@@ -65,7 +65,7 @@ impl Search<'_, '_> {
             {
                 continue;
             }
-            if candidate.effect == EffectKind::Backlash && self.spring_does(&ranked, candidate, verdict) {
+            if self.simpler_does(&ranked, candidate, verdict) {
                 continue;
             }
             let rivals = ranked
@@ -92,13 +92,20 @@ impl Search<'_, '_> {
         None
     }
 
-    /// Whether a spring without play explains nearly as much: play is one number more.
-    fn spring_does(&self, ranked: &[(Pace, usize, Verdict)], play: &Candidate, verdict: &Verdict) -> bool {
-        ranked.iter().any(|(which, index, spring)| {
+    /// Whether the simpler law of which this one is an extension explains nearly as much at the same place.
+    fn simpler_does(&self, ranked: &[(Pace, usize, Verdict)], more: &Candidate, verdict: &Verdict) -> bool {
+        let simpler = match more.effect {
+            // Play is one number more than a spring.
+            EffectKind::Backlash => EffectKind::JointElasticity,
+            // A level that changes slowly, against one that has changed since the baseline.
+            EffectKind::FrictionDrift => EffectKind::FrictionLevelChange,
+            _ => return false,
+        };
+        ranked.iter().any(|(which, index, found)| {
             let candidate = &self.side(*which).candidates[*index];
-            candidate.effect == EffectKind::JointElasticity
-                && candidate.place == play.place
-                && spring.total() > SPRING_DOES * verdict.total()
+            candidate.effect == simpler
+                && candidate.place == more.place
+                && found.total() > SIMPLER_DOES * verdict.total()
         })
     }
 
