@@ -385,14 +385,7 @@ mod tests {
             shape: vec![10.0, 0.05, 0.5, 0.0],
             amplitude: vec![stiffness, 0.5, 0.12, 0.0],
             sigma: vec![0.0; 4],
-            scale: Some(TermScale {
-                speed: 1.0,
-                range: 1.0,
-                torque: 1.0,
-                duration: 1.0,
-                gear: 1.0,
-                prismatic: false,
-            }),
+            scale: Some(TermScale::UNIT),
             wrenches: Vec::new(),
         };
         let motion = motion(4);

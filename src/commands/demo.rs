@@ -102,14 +102,7 @@ fn hidden_effect(robot: &Robot, standard: &[f64], seed: u64) -> EffectTerm {
         shape,
         amplitude: vec![amplitude],
         sigma: vec![0.0],
-        scale: Some(TermScale {
-            speed: 1.0,
-            range: 1.0,
-            torque: 1.0,
-            duration: 1.0,
-            gear: 1.0,
-            prismatic: false,
-        }),
+        scale: Some(TermScale::UNIT),
         wrenches: Vec::new(),
     }
 }

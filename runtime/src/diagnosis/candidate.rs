@@ -73,6 +73,31 @@ pub(super) fn columns(
     out
 }
 
+/// The same on all rows of the design, zero where a column does not act.
+pub(super) fn dense_columns(
+    context: &Context<'_>,
+    design: &Design,
+    effect: EffectKind,
+    place: Place,
+    shape: &[f64],
+    change: bool,
+) -> Vec<Vec<f64>> {
+    columns(context, design, effect, place, shape, change).iter().map(|c| dense(design, c)).collect()
+}
+
+/// The skew of the torques behind the positions, which is always fitted along.
+pub(super) fn delay_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
+    dense_columns(context, design, EffectKind::TimeDelay, Place::Variant(0), &[], false)
+}
+
+fn dense(design: &Design, column: &Sparse) -> Vec<f64> {
+    let mut full = vec![0.0; design.rows.len()];
+    for (j, values) in column {
+        full[design.of_joint(*j)].copy_from_slice(values);
+    }
+    full
+}
+
 impl Trial {
     pub fn new(design: &Design, shape: Vec<f64>, columns: Vec<Sparse>) -> Self {
         let mut trial = Self { shape, columns, products: Vec::new() };
@@ -127,16 +152,7 @@ impl Trial {
 
     /// The trial's columns on all rows of the design.
     pub fn dense(&self, design: &Design) -> Vec<Vec<f64>> {
-        self.columns
-            .iter()
-            .map(|column| {
-                let mut full = vec![0.0; design.rows.len()];
-                for (j, values) in column {
-                    full[design.of_joint(*j)].copy_from_slice(values);
-                }
-                full
-            })
-            .collect()
+        self.columns.iter().map(|column| dense(design, column)).collect()
     }
 }
 

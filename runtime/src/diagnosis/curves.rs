@@ -1,6 +1,6 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
-use super::candidate::{Trial, columns, pace};
+use super::candidate::{dense_columns, pace};
 use super::design::{Design, RowAt};
 use super::explain::Bare;
 use super::fit::Fit;
@@ -76,12 +76,7 @@ pub(super) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Opt
     let joint = *term.own.first()?;
     let side = search.side(pace(term.effect));
     let design = &side.design;
-    let trial = Trial {
-        shape: term.shape.clone(),
-        columns: columns(search.context, design, term.effect, term.place, &term.shape, search.change),
-        products: Vec::new(),
-    };
-    let dense = trial.dense(design);
+    let dense = dense_columns(search.context, design, term.effect, term.place, &term.shape, search.change);
     let amplitude: Vec<f64> = match term.fixed {
         Some(a) => vec![a],
         None => side.term_columns[k].clone().map(|c| side.fit.chi[c]).collect(),

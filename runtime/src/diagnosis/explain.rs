@@ -1,6 +1,6 @@
 //! From accepted terms to findings: numbers with their uncertainty, held-out errors, curves, sentences.
 
-use super::candidate::{Trial, columns, pace};
+use super::candidate::{delay_columns, pace};
 use super::contact_search::Contacts;
 use super::context::Context;
 use super::curves;
@@ -20,9 +20,7 @@ use crate::model::Model;
 
 /// Skew of the torques behind the positions in a design, s.
 pub(super) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
-    let delay = columns(context, &design, EffectKind::TimeDelay, Place::Variant(0), &[], false);
-    let trial = Trial { shape: vec![], columns: delay, products: Vec::new() };
-    for column in trial.dense(&design) {
+    for column in delay_columns(context, &design) {
         design.push(column);
     }
     design.refresh();

@@ -106,11 +106,10 @@ fn examine(
     let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
     // The narrower window needs less margin to a standstill.
-    let slow_limits = slowest.clone();
     let fast_limits: Vec<f64> = slowest.iter().map(|v| v / 1.5).collect();
     let plan = |half: f64| Plan {
         half,
-        slowest: if half < settings.slow_window { &fast_limits } else { &slow_limits },
+        slowest: if half < settings.slow_window { &fast_limits } else { &slowest },
         directions: &forms,
         chunks,
         block: settings.block,

@@ -1,6 +1,6 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
-use super::candidate::{Trial, columns, pace};
+use super::candidate::{dense_columns, pace};
 use super::fit::Fit;
 use super::search::{Accepted, Search};
 use crate::effects::{EffectKind, Form, Lump, Parameter, Place};
@@ -18,8 +18,7 @@ pub(super) fn uncertainty(
     let side = search.side(pace(term.effect));
     let mut design = side.design.clone();
     let dense = |shape: &[f64]| {
-        let c = columns(search.context, &side.design, term.effect, term.place, shape, search.change);
-        Trial { shape: shape.to_vec(), columns: c, products: Vec::new() }.dense(&side.design)
+        dense_columns(search.context, &side.design, term.effect, term.place, shape, search.change)
     };
     let start = design.columns.len();
     let mut varied = Vec::new();

@@ -3,7 +3,9 @@
 //! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held back.
 
 use super::DiagnosisError;
-use super::candidate::{Candidate, Pace, Trial, build, columns, make, pace, proposals};
+use super::candidate::{
+    Candidate, Pace, build, columns, delay_columns, dense_columns, make, pace, proposals,
+};
 use super::context::Context;
 use super::design::Design;
 use super::fit::{Fit, fit_weighted};
@@ -66,9 +68,7 @@ impl Side {
         self.term_columns.clear();
         for term in terms {
             let start = self.design.columns.len();
-            let columns = columns(context, &self.design, term.effect, term.place, &term.shape, change);
-            let trial = Trial { shape: term.shape.clone(), columns, products: Vec::new() };
-            for column in trial.dense(&self.design) {
+            for column in dense_columns(context, &self.design, term.effect, term.place, &term.shape, change) {
                 match term.fixed {
                     Some(a) => self.design.y.iter_mut().zip(&column).for_each(|(y, c)| *y -= a * c),
                     None => self.design.push(column),
@@ -118,9 +118,7 @@ impl<'c, 'a> Search<'c, 'a> {
         progress: &dyn Progress,
     ) -> Result<Self, DiagnosisError> {
         let make_side = |mut design: Design, context: &Context<'_>| {
-            let delay = columns(context, &design, EffectKind::TimeDelay, Place::Variant(0), &[], false);
-            let trial = Trial { shape: vec![], columns: delay, products: Vec::new() };
-            for column in trial.dense(&design) {
+            for column in delay_columns(context, &design) {
                 design.push(column);
             }
             design.refresh();
@@ -297,15 +295,12 @@ impl<'c, 'a> Search<'c, 'a> {
         for (column, &x) in design.columns.iter().zip(chi.iter()) {
             subtract(column, x);
         }
-        let on_rows = |effect, place, shape: &[f64], change| {
-            let columns = columns(self.context, design, effect, place, shape, change);
-            Trial { shape: Vec::new(), columns, products: Vec::new() }.dense(design)
-        };
-        for column in on_rows(EffectKind::TimeDelay, Place::Variant(0), &[], false) {
+        for column in delay_columns(self.context, design) {
             subtract(&column, chi[design.parameters]);
         }
         for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
-            let columns = on_rows(term.effect, term.place, &term.shape, self.change);
+            let columns =
+                dense_columns(self.context, design, term.effect, term.place, &term.shape, self.change);
             for (k, column) in columns.iter().enumerate() {
                 subtract(column, term.fixed.unwrap_or_else(|| chi[range.start + k]));
             }

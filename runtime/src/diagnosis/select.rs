@@ -127,7 +127,8 @@ impl Search<'_, '_> {
             folds - folds / 6
         };
         // A gain in prediction without one in the fit is an accident of extrapolation.
-        let least = settings.least_share;
-        verdict.share >= least && verdict.fitted_share >= 0.5 * least && positive >= needed
+        verdict.share >= settings.least_share
+            && verdict.fitted_share >= 0.5 * settings.least_share
+            && positive >= needed
     }
 }

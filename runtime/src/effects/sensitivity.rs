@@ -86,21 +86,40 @@ impl Direction<'_> {
         (if point == 0 { 0.5 } else { 1.0 }) / self.points() as f64
     }
 
-    /// Moves everything from one point of the path to the next.
-    fn advance(&self, effect: &dyn Sensitivity, share: f64, seeds: &mut Seeds<'_>) {
+    /// Moves the states to a point of the path from the point before.
+    fn advance_states(&self, effect: &dyn Sensitivity, point: usize, seeds: &mut Seeds<'_>) {
+        self.advance(effect, point, seeds, |seeds, moved| {
+            for group in [&mut *seeds.q, &mut *seeds.dq, &mut *seeds.ddq] {
+                group.iter_mut().for_each(moved);
+            }
+        });
+    }
+
+    /// Moves the table and gravity.
+    fn advance_robot(&self, effect: &dyn Sensitivity, point: usize, seeds: &mut Seeds<'_>) {
+        self.advance(effect, point, seeds, |seeds, moved| {
+            seeds.gravity.iter_mut().for_each(moved);
+            for row in seeds.rows.iter_mut() {
+                moved(&mut row.d);
+                moved(&mut row.r);
+            }
+        });
+    }
+
+    fn advance(
+        &self,
+        effect: &dyn Sensitivity,
+        point: usize,
+        seeds: &mut Seeds<'_>,
+        each: impl Fn(&mut Seeds<'_>, &dyn Fn(&mut Dual)),
+    ) {
+        let share = self.step(point);
         for (variant, &e) in self.variants.iter().zip(self.at) {
             if e == 0.0 {
                 continue;
             }
             effect.seed(variant, seeds);
-            let moved = |x: &mut Dual| *x = Dual::new(x.value + share * e * x.slope, 0.0);
-            for group in [&mut *seeds.q, &mut *seeds.dq, &mut *seeds.ddq, &mut seeds.gravity[..]] {
-                group.iter_mut().for_each(moved);
-            }
-            for row in seeds.rows.iter_mut() {
-                moved(&mut row.d);
-                moved(&mut row.r);
-            }
+            each(seeds, &|x| *x = Dual::new(x.value + share * e * x.slope, 0.0));
         }
     }
 }
@@ -143,7 +162,7 @@ pub fn derivative(
                 rows: &mut rows,
                 gravity: &mut pull,
             };
-            direction.advance(effect, direction.step(point), &mut seeds);
+            direction.advance_robot(effect, point, &mut seeds);
             let (mut rows, mut pull) = (seeds.rows.to_vec(), *seeds.gravity);
             effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
             let links = robot.frames.iter().zip(&rows).map(|(f, r)| crate::model::Link::new(f, r)).collect();
@@ -169,7 +188,7 @@ pub fn derivative(
             for x in seeds.q.iter_mut().chain(seeds.dq.iter_mut()).chain(seeds.ddq.iter_mut()) {
                 x.slope = 0.0;
             }
-            direction.advance(effect, direction.step(point), &mut seeds);
+            direction.advance_states(effect, point, &mut seeds);
             effect.seed(variant, &mut seeds);
             model.idm_with(links, *gravity, &q, &dq, &ddq, &mut entries);
             let pattern = model.pattern();

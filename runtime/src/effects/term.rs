@@ -73,6 +73,12 @@ pub struct TermScale {
     pub prismatic: bool,
 }
 
+impl TermScale {
+    /// A revolute joint with speed, travel, torque, time and gear of one: shapes are numbers in SI as they stand.
+    pub const UNIT: Self =
+        Self { speed: 1.0, range: 1.0, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
+}
+
 impl From<Scale> for TermScale {
     fn from(s: Scale) -> Self {
         Self {

@@ -2,31 +2,12 @@
 use super::*;
 use crate::estimation::observe::{Equations, ObserveSettings, Standstill, observe};
 use crate::estimation::{EstimateSettings, estimate};
-use crate::model::{Drive, Frame, JointKind, Limits, Model, RecursiveModel, Robot};
+use crate::model::{Model, RecursiveModel};
 use crate::signal::Motion;
 
 /// A pendulum about a horizontal axis; every standard parameter is an unknown.
 fn pendulum() -> RecursiveModel {
-    let frame = Frame {
-        parent: None,
-        kind: JointKind::Revolute,
-        gamma: 0.0,
-        b: 0.0,
-        alpha: 0.0,
-        d: 0.0,
-        theta: 0.0,
-        r: 0.0,
-    };
-    let drive = Drive { gear: vec![1.0].into(), coupled_friction: Vec::new().into() };
-    let gravity = [9.81, 0.0, 0.0];
-    RecursiveModel::new(Robot::with_standard_as_base(
-        "pendulum",
-        gravity,
-        vec![frame],
-        drive,
-        Limits::default(),
-    ))
-    .unwrap()
+    crate::simulation::testing::pendulum(0.0, 0.0, 0.0, 0.0).0
 }
 
 /// Fits a swing whose torque is `zz` ddq + `weight` sin q + friction(dq): the free estimate and the physical one.

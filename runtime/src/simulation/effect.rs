@@ -148,8 +148,7 @@ mod tests {
     use crate::simulation::testing::pendulum;
 
     fn term(effect: EffectKind, place: Place, shape: &[f64], amplitude: &[f64]) -> EffectTerm {
-        let scale =
-            TermScale { speed: 1.0, range: 1.0, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
+        let scale = TermScale::UNIT;
         EffectTerm {
             effect,
             place,
