@@ -13,8 +13,6 @@ use std::ops::Range;
 pub(super) struct RowAt {
     pub signal: usize,
     pub centre: usize,
-    /// Block of motion, for statistics: the same for all joints.
-    pub block: usize,
 }
 
 /// A stretch of motion that is held back together.
@@ -38,6 +36,8 @@ pub(super) struct Design {
     pub columns: Vec<Vec<f64>>,
     pub y: Vec<f64>,
     kernels: Vec<Vec<f64>>,
+    /// From one row to the next in a motion, s.
+    pub step: f64,
     /// Inner products of the columns and, last, y: `gram[joint][segment]`, square and row-major.
     pub gram: Vec<Vec<Vec<f64>>>,
 }
@@ -52,8 +52,6 @@ pub(super) struct Plan<'a> {
     pub directions: &'a [Vec<Vec<f64>>],
     /// Segments per motion of the recording that is diagnosed, where there are few motions to hold back.
     pub chunks: usize,
-    /// Length of a block, s.
-    pub block: f64,
     /// Times that no row may use, per signal: `[from, to]`.
     pub excluded: &'a [Vec<[f64; 2]>],
 }
@@ -71,17 +69,16 @@ impl Design {
             columns: vec![Vec::new(); parameters],
             y: Vec::new(),
             kernels: signals.iter().map(|s| hann((plan.half * s.rate).round().max(2.0) as usize)).collect(),
+            step: plan.half,
             gram: Vec::new(),
         };
         let mut kept: Vec<Vec<Vec<RowAt>>> = vec![Vec::new(); n];
-        let mut block = 0;
         for (k, s) in signals.iter().enumerate() {
             let half = design.kernels[k].len() / 2;
             let first = s.spoiled.max(half);
             let last = s.len().saturating_sub(first).max(first);
             let chunks = if s.fresh { plan.chunks.max(1) } else { 1 };
             let bounds: Vec<usize> = (0..=chunks).map(|c| first + (last - first) * c / chunks).collect();
-            let per_block = (plan.block * s.rate).max(1.0) as usize;
             for c in 0..chunks {
                 design.segments.push(Segment { signal: k, fresh: s.fresh });
                 for (j, kept) in kept.iter_mut().enumerate() {
@@ -94,12 +91,11 @@ impl Design {
                                 let (a, b) = (s.time(t - half), s.time(t + half));
                                 !plan.excluded[k].iter().any(|w| w[0] < b && w[1] > a)
                             })
-                            .map(|t| RowAt { signal: k, centre: t, block: block + (t - first) / per_block })
+                            .map(|t| RowAt { signal: k, centre: t })
                             .collect(),
                     );
                 }
             }
-            block += (last - first) / per_block + 1;
         }
         for (j, kept) in kept.into_iter().enumerate() {
             for segment in kept {
@@ -160,6 +156,11 @@ impl Design {
     /// Samples from one row to the next in a motion.
     pub fn spacing(&self, signal: usize) -> usize {
         (self.kernels[signal].len() / 2).max(1)
+    }
+
+    /// The block of motion that a row is in, where blocks are `rows` rows long: the same for all joints.
+    pub fn block(&self, row: RowAt, rows: usize) -> (usize, usize) {
+        (row.signal, row.centre / (self.spacing(row.signal) * rows.max(1)))
     }
 
     /// All rows of a joint.

@@ -5,7 +5,7 @@ use super::contact_search::Contacts;
 use super::context::Context;
 use super::curves;
 use super::design::Design;
-use super::evidence::Evidence;
+use super::evidence::{Evidence, LONGEST_BLOCK};
 use super::fit::fit_weighted;
 use super::held_back::{HeldBack, hold_back};
 use super::judge::single_motion;
@@ -17,6 +17,10 @@ use super::settings::Settings;
 use super::{DiagnosisError, NAMED_DELAY, joint_number, unit_term, words};
 use crate::effects::{EffectKind, EffectTerm, Form, Place};
 use crate::model::Model;
+use std::collections::BTreeSet;
+
+/// Laws are told apart where the better one is so by accident with less than this probability.
+const MOST_DOUBT: f64 = 0.05;
 
 /// Skew of the torques behind the positions in a design, s.
 pub(super) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
@@ -99,8 +103,7 @@ pub(super) fn explain(
     for k in 0..terms.len() {
         let finding = finding(model, &mut search, &terms, k);
         for rival in &terms[k].rivals {
-            let top = terms[k].rivals.iter().map(|r| r.total).fold(0.0, f64::max);
-            if rival.total >= top && rival.share > 0.985 * finding.share && rival.place == terms[k].place {
+            if rival.doubt > MOST_DOUBT {
                 cannot_tell.push(CannotTell {
                     between: vec![finding.effect.clone(), rival.effect.id().into()],
                     joints: finding.joints.clone(),
@@ -354,10 +357,12 @@ fn delay_finding(search: &mut Search<'_, '_>, skew: f64, settings: &Settings) ->
         return None;
     }
     let variance = side.fit.variances()[p].max(0.0);
-    let blocks = 1 + side.design.rows.iter().map(|r| r.block).max().unwrap_or(0);
+    let per_block = (LONGEST_BLOCK / side.design.step).ceil() as usize;
+    let blocks: BTreeSet<_> = side.design.rows.iter().map(|&r| side.design.block(r, per_block)).collect();
     let evidence = Evidence {
         significance: skew.abs() / variance.sqrt().max(1e-300),
-        freedom: blocks.saturating_sub(1) as f64,
+        freedom: blocks.len().saturating_sub(1) as f64,
+        looks: 1,
     };
     let mut finding = Finding {
         effect: EffectKind::TimeDelay.id().into(),

@@ -137,6 +137,12 @@ pub(super) fn whole_gain(design: &Design, fit: &Fit, sigma: &[f64], candidate: &
         .map_or(f64::NEG_INFINITY, |(_, gain)| gain)
 }
 
+/// Whether the motion determines a candidate beside the design's columns.
+pub(super) fn is_shown(design: &Design, fit: &Fit, sigma: &[f64], candidate: &Candidate) -> bool {
+    let everything = vec![true; design.segments.len()];
+    candidate.trials.iter().any(|t| own_part(design, fit, sigma, t, &everything).is_some())
+}
+
 /// The shape with the largest in-sample gain over all motion, however small.
 pub(super) fn best_trial(design: &Design, fit: &Fit, sigma: &[f64], candidate: &Candidate) -> Option<usize> {
     let everything = vec![true; design.segments.len()];
@@ -209,6 +215,10 @@ pub(super) fn judge(
         held_out.push(sum);
     }
     let share = held_out.iter().sum::<f64>().min(own_gain) / before.max(1e-300);
+    // Nobody explains more than there is: the numbers of columns that the design nearly makes itself.
+    if share > 1.0 {
+        return None;
+    }
     let squares = |j: usize| {
         let fresh = (0..design.segments.len()).filter(|&g| design.segments[g].fresh);
         fresh.map(|g| whole.squares(design, j, g)).sum::<f64>() / (sigma[j] * sigma[j])
@@ -293,34 +303,39 @@ fn change(
     2.0 * linear - square
 }
 
-/// Whether a candidate improves later time of a single motion when everything, standard parameters included, is fitted
-/// to the time before: on its own joints by at least `least` of their squares, and not at the cost of the others.
-pub(super) fn holds_forward(
+/// Share of its joints' squares on later time that a candidate takes away when its amplitude is fitted to the time
+/// before: the smallest over several cuts of a single motion.
+///
+/// The candidate's own part is taken over the whole motion: refitting all standard parameters to the beginning alone
+/// would drown it in their extrapolation.
+pub(super) fn forward_share(
     design: &Design,
+    whole: &Fit,
     sigma: &[f64],
     candidate: &Candidate,
     trial: usize,
-    least: f64,
-) -> bool {
+) -> f64 {
     let segments = design.segments.len();
-    let (mut own_gain, mut before, mut total) = (0.0, 0.0, 0.0);
-    for cut in [segments * 5 / 8, segments * 3 / 4] {
+    let everything = vec![true; segments];
+    let trial = &candidate.trials[trial];
+    let Some(own) = own_part(design, whole, sigma, trial, &everything) else { return 0.0 };
+    let share = |cut: usize| {
         let train: Vec<bool> = (0..segments).map(|g| g < cut).collect();
-        let fit = Fit::new(design, sigma, |g| train[g]);
-        let trial = &candidate.trials[trial];
-        let Some(own) = own_part(design, &fit, sigma, trial, &train) else { return false };
-        let Some((a, _)) = own.solve(candidate) else { return false };
+        let fitted = rest_of_motion(design, whole, sigma, trial, &own, &train);
+        let Some((a, _)) = fitted.solve(candidate) else { return 0.0 };
         let d = -(&own.x * &a);
+        let (mut own_gain, mut before, mut total) = (0.0, 0.0, 0.0);
         for (j, &s) in sigma.iter().enumerate() {
             for g in cut..segments {
-                let gain = change(design, &fit, trial, &a, &d, j, g) / (s * s);
+                let gain = change(design, whole, trial, &a, &d, j, g) / (s * s);
                 total += gain;
                 if candidate.own.contains(&j) {
                     own_gain += gain;
-                    before += fit.squares(design, j, g) / (s * s);
+                    before += whole.squares(design, j, g) / (s * s);
                 }
             }
         }
-    }
-    total > 0.0 && own_gain > least * before
+        own_gain.min(total) / before.max(1e-300)
+    };
+    share(segments / 2).min(share(segments * 3 / 4))
 }

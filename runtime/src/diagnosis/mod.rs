@@ -45,7 +45,7 @@ pub use settings::{DiagnosisError, Progress, Settings, Silent};
 use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
-use context::{Context, scales, top_speeds};
+use context::{Context, reversal_interval, scales, top_speeds};
 use design::{Design, Plan};
 use search::Search;
 use signals::{Signals, directions};
@@ -54,6 +54,8 @@ use signals::{Signals, directions};
 const STRETCHES: usize = 8;
 /// From this many motions on, whole motions are held back.
 const ENOUGH_MOTIONS: usize = 3;
+/// Smoothing of effects that are as slow as the motion, as a share of the time from one reversal to the next.
+const SMOOTHED_SHARE: f64 = 0.03;
 /// A delay is named from this many samples and seconds; a smaller one is part of sampling and silently taken out.
 const NAMED_DELAY: (f64, f64) = (0.75, 1e-3);
 
@@ -102,6 +104,8 @@ fn examine(
     let settings = &settings;
     let mut signals = prepare_all(baseline, trajectories, delay, cutoff)?;
     let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
+    let slow_window = (SMOOTHED_SHARE * reversal_interval(&signals, &slowest))
+        .clamp(settings.fast_window, settings.slow_window.max(settings.fast_window));
     let motions = trajectories.len();
     let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
@@ -112,7 +116,6 @@ fn examine(
         slowest: if half < settings.slow_window { &fast_limits } else { &slowest },
         directions: &forms,
         chunks,
-        block: settings.block,
         excluded: &nothing,
     };
     let open = Design::new(model, &signals, &plan(settings.slow_window));
@@ -142,7 +145,7 @@ fn examine(
     let mut contacts = contact_search::find(&context, &aligned, &signals);
     let diagnosis = loop {
         let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
-        let slow = Design::new(model, &signals, &Plan { excluded, ..plan(settings.slow_window) });
+        let slow = Design::new(model, &signals, &Plan { excluded, ..plan(slow_window) });
         let fast = Design::new(model, &signals, &Plan { excluded, ..plan(settings.fast_window) });
         if contacts.is_some() {
             let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);

@@ -83,14 +83,8 @@ pub fn predict_errors(
         trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff)).collect::<Result<_, _>>()?;
     let forms = directions(model.robot());
     let nothing = vec![Vec::new(); signals.len()];
-    let plan = Plan {
-        half: settings.fast_window,
-        slowest,
-        directions: &forms,
-        chunks: 1,
-        block: settings.block,
-        excluded: &nothing,
-    };
+    let plan =
+        Plan { half: settings.fast_window, slowest, directions: &forms, chunks: 1, excluded: &nothing };
     let design = Design::new(model, &signals, &plan);
     let added = torques_on(model, &parameters.chi, terms, &signals)?;
     let n = design.joints;

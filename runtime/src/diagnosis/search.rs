@@ -9,7 +9,8 @@ use super::candidate::{
 use super::context::Context;
 use super::design::Design;
 use super::fit::{Fit, fit_weighted};
-use super::judge::{Fold, folds, judge};
+use super::held_back::hold_back;
+use super::judge::{Fold, folds, is_shown, judge};
 use super::outcome::OrderSpectrum;
 use super::parallel;
 use super::select::Winner;
@@ -36,7 +37,9 @@ pub(super) struct Rival {
     pub effect: EffectKind,
     pub place: Place,
     pub share: f64,
-    pub total: f64,
+    /// Probability that it is only by accident that it explains less, where it holds at all and acts on the same
+    /// joints; else 0.
+    pub doubt: f64,
 }
 
 /// The rows at one pace with everything that is fitted on them.
@@ -86,6 +89,8 @@ pub(super) struct Search<'c, 'a> {
     pub slow: Side,
     pub fast: Side,
     pub terms: Vec<Accepted>,
+    /// What was taken out again.
+    rejected: Vec<Accepted>,
     pub spectra: Vec<OrderSpectrum>,
     pub tried: usize,
     pub change: bool,
@@ -144,6 +149,7 @@ impl<'c, 'a> Search<'c, 'a> {
             slow,
             fast,
             terms: Vec::new(),
+            rejected: Vec::new(),
             spectra: Vec::new(),
             tried: 0,
             change,
@@ -173,6 +179,11 @@ impl<'c, 'a> Search<'c, 'a> {
         self.fast.candidates = build(context, &self.fast.design, &fast, change, threads, &|done| {
             progress.at(0.35 + 0.2 * done, "fast effects");
         });
+        // What this motion cannot show is not tried.
+        for side in [&mut self.slow, &mut self.fast] {
+            let (design, fit, sigma) = (&side.design, &side.fit, &side.sigma);
+            side.candidates.retain(|c| is_shown(design, fit, sigma, c));
+        }
     }
 
     fn order_spectra(&self) -> Vec<OrderSpectrum> {
@@ -192,8 +203,21 @@ impl<'c, 'a> Search<'c, 'a> {
         })
     }
 
-    /// Adds effects as long as one improves held-back motion.
+    /// Adds effects as long as one improves held-back motion; takes out what does not hold beside the others.
     pub fn run(&mut self, settings: &Settings, progress: &dyn Progress) {
+        loop {
+            self.extend(settings, progress);
+            progress.at(0.87, "pruning");
+            let rejected = self.prune(settings);
+            if rejected.is_empty() {
+                break;
+            }
+            self.rejected.extend(rejected);
+            self.settle();
+        }
+    }
+
+    fn extend(&mut self, settings: &Settings, progress: &dyn Progress) {
         while self.terms.len() < settings.most_effects {
             let done = self.terms.len() as f64 / settings.most_effects as f64;
             progress.at(0.6 + 0.25 * done, "held-out tests");
@@ -207,8 +231,6 @@ impl<'c, 'a> Search<'c, 'a> {
             self.settle();
             self.reconsider(settings);
         }
-        progress.at(0.87, "pruning");
-        self.prune(settings);
     }
 
     /// Takes the given effects as known, on a joint where one is given: only shapes and amplitudes are fitted.
@@ -308,6 +330,13 @@ impl<'c, 'a> Search<'c, 'a> {
         residual
     }
 
+    /// Whether a candidate is in the model already, or has been taken out of it.
+    pub fn settled(&self, candidate: &Candidate) -> bool {
+        let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
+        candidate.effect != EffectKind::TorqueRipple && self.terms.iter().any(same)
+            || self.rejected.iter().any(same)
+    }
+
     pub fn side(&self, pace: Pace) -> &Side {
         if pace == Pace::Slow { &self.slow } else { &self.fast }
     }
@@ -342,7 +371,7 @@ impl<'c, 'a> Search<'c, 'a> {
             let replacement = self.best(settings, joint).map(|w| self.accept(&w));
             let keep = match replacement {
                 Some(new) if new.effect == old.effect && new.place == old.place => {
-                    Some(Accepted { shape: new.shape, rivals: new.rivals, ..old })
+                    Some(Accepted { shape: new.shape, rivals: new.rivals, ..old.clone() })
                 }
                 other => other,
             };
@@ -350,18 +379,26 @@ impl<'c, 'a> Search<'c, 'a> {
                 self.terms.insert(k, term);
                 self.settle();
             } else {
-                // What no longer holds is left out; the terms after it move up.
+                // What no longer holds is left out for good, or it might come and go for ever; those after it move up.
+                self.rejected.push(old);
                 return self.reconsider(settings);
             }
         }
     }
 
-    /// Takes out what no longer earns its place beside the others.
-    fn prune(&mut self, settings: &Settings) {
+    /// Takes out what no longer earns its place beside the others, and returns it.
+    fn prune(&mut self, settings: &Settings) -> Vec<Accepted> {
+        let mut rejected = Vec::new();
         let mut k = 0;
-        while k < self.terms.len() && self.terms.len() > 1 {
+        while k < self.terms.len() {
+            let error = |search: &Self, term: &Accepted| {
+                let side = search.side(pace(term.effect));
+                hold_back(&side.design, &side.sigma, false).error_on(&term.own)
+            };
+            let with = error(self, &self.terms[k]);
             let term = self.terms.remove(k);
             self.refit();
+            let without = error(self, &term);
             let side = self.side(pace(term.effect));
             let candidate = make(
                 self.context,
@@ -373,11 +410,14 @@ impl<'c, 'a> Search<'c, 'a> {
             );
             let worth = judge(&side.design, &side.fit, &side.folds, &side.sigma, &candidate)
                 .is_some_and(|v| v.share >= 0.6 * settings.least_share && v.total() > 0.0);
-            if worth {
+            if worth && with < without {
                 self.terms.insert(k, term);
                 k += 1;
+            } else {
+                rejected.push(term);
             }
             self.refit();
         }
+        rejected
     }
 }

@@ -1,8 +1,8 @@
 //! Which candidate of a round holds.
 
 use super::candidate::{Candidate, Pace};
-use super::evidence::{block_evidence, waveform_evidence};
-use super::judge::{Verdict, holds_forward, judge, single_motion};
+use super::evidence::{Evidence, block_evidence, doubt, waveform_evidence};
+use super::judge::{Verdict, forward_share, judge, single_motion};
 use super::parallel;
 use super::search::{Rival, Search, Side};
 use super::settings::Settings;
@@ -10,6 +10,8 @@ use crate::effects::EffectKind;
 
 /// A law gives way to the one that it extends where that one makes this share of its gain.
 const SIMPLER_DOES: f64 = 0.9;
+/// Most candidates of a round whose evidence is worked out.
+const MOST_CHECKED: usize = 30;
 
 /// What passed a round: the side it is on, the candidate's index, and its verdict.
 pub(super) struct Winner {
@@ -29,7 +31,7 @@ impl Search<'_, '_> {
             let side = self.side(which);
             let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
                 let candidate = &side.candidates[index];
-                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.known(candidate) {
+                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.settled(candidate) {
                     return None;
                 }
                 judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate)
@@ -37,31 +39,35 @@ impl Search<'_, '_> {
             ranked.extend(verdicts.into_iter().enumerate().filter_map(|(k, v)| Some((which, k, v?))));
         }
         ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
-        let mut checked = 0;
-        for (k, (which, index, verdict)) in ranked.iter().enumerate() {
+        let holding: Vec<usize> = (0..ranked.len())
+            .filter(|&k| {
+                let (which, index, verdict) = &ranked[k];
+                let side = self.side(*which);
+                holds(side, &side.candidates[*index], verdict, settings)
+            })
+            .take(MOST_CHECKED)
+            .collect();
+        let evidence = parallel::map(self.threads, holding.len(), |h| {
+            let (which, index, verdict) = &ranked[holding[h]];
+            let side = self.side(*which);
+            self.evidence(side, &side.candidates[*index], verdict)
+        });
+        let own = |k: usize| &self.side(ranked[k].0).candidates[ranked[k].1].own;
+        for (h, &k) in holding.iter().enumerate() {
+            let (which, index, verdict) = &ranked[k];
             let side = self.side(*which);
             let candidate = &side.candidates[*index];
-            if !self.holds(side, candidate, verdict, settings) {
-                continue;
-            }
-            checked += 1;
-            if checked > 30 {
-                break;
-            }
-            let evidence = if candidate.fixed.is_some() {
-                waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
-            } else {
-                block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict)
-            };
-            // Free shapes are chosen on other motion than they are judged on; those of a waveform are not.
-            let tries = self.slow.candidates.len() + self.fast.candidates.len();
-            let shapes = if candidate.fixed.is_some() { candidate.trials.len() } else { 1 };
-            let confidence = evidence.confidence(tries * shapes);
+            // Whatever explains more of a joint than something that is no accident is no accident either.
+            let confidence = (h..holding.len())
+                .filter(|&l| *own(holding[l]) == candidate.own)
+                .map(|l| evidence[l].1)
+                .fold(0.0, f64::max);
             if confidence < settings.least_confidence {
                 continue;
             }
             if single_motion(&side.design)
-                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial, settings.least_share)
+                && forward_share(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
+                    < settings.least_share
             {
                 continue;
             }
@@ -77,14 +83,22 @@ impl Search<'_, '_> {
                 .take(5)
                 .map(|(_, (p, c, v))| {
                     let rival = &self.side(*p).candidates[*c];
-                    Rival { effect: rival.effect, place: rival.place, share: v.share, total: v.total() }
+                    let comparable =
+                        p == which && rival.own == candidate.own && holds(side, rival, v, settings);
+                    let doubt = if comparable {
+                        let (law, rival) = ((candidate, verdict.trial), (rival, v.trial));
+                        doubt(&side.design, &side.fit, &side.folds, &side.sigma, law, rival)
+                    } else {
+                        0.0
+                    };
+                    Rival { effect: rival.effect, place: rival.place, share: v.share, doubt }
                 })
                 .collect();
             return Some(Winner {
                 pace: *which,
                 index: *index,
                 verdict: verdict.clone(),
-                significance: evidence.significance,
+                significance: evidence[h].0.significance,
                 confidence,
                 rivals,
             });
@@ -109,26 +123,32 @@ impl Search<'_, '_> {
         })
     }
 
-    fn known(&self, candidate: &Candidate) -> bool {
-        self.terms.iter().any(|t| {
-            t.place == candidate.place && t.effect == candidate.effect && t.effect != EffectKind::TorqueRipple
-        })
+    /// Evidence for a candidate, and the confidence that it gives after all that was tried.
+    fn evidence(&self, side: &Side, candidate: &Candidate, verdict: &Verdict) -> (Evidence, f64) {
+        let tries = self.slow.candidates.len() + self.fast.candidates.len();
+        if candidate.fixed.is_some() {
+            let found = waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial);
+            // Free shapes are chosen on other motion than they are judged on; those of a waveform are not.
+            return (found, found.confidence(tries * candidate.trials.len()));
+        }
+        let found = block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict);
+        (found, found.confidence(tries))
     }
+}
 
-    fn holds(&self, side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
-        let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
-        let folds = verdict.held_out.len();
-        // Of many stretches of one motion a few may be untouched by an effect.
-        let needed = if candidate.fixed.is_some() {
-            folds / 2 + 1
-        } else if side.design.in_stretches() {
-            folds - folds / 4
-        } else {
-            folds - folds / 6
-        };
-        // A gain in prediction without one in the fit is an accident of extrapolation.
-        verdict.share >= settings.least_share
-            && verdict.fitted_share >= 0.5 * settings.least_share
-            && positive >= needed
-    }
+fn holds(side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
+    let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
+    let folds = verdict.held_out.len();
+    // Of many stretches of one motion a few may be untouched by an effect.
+    let needed = if candidate.fixed.is_some() {
+        folds / 2 + 1
+    } else if side.design.in_stretches() {
+        folds - folds / 4
+    } else {
+        folds - folds / 6
+    };
+    // A gain in prediction without one in the fit is an accident of extrapolation.
+    verdict.share >= settings.least_share
+        && verdict.fitted_share >= 0.5 * settings.least_share
+        && positive >= needed
 }

@@ -19,8 +19,6 @@ pub struct Settings {
     pub least_confidence: f64,
     /// Most effects that are named.
     pub most_effects: usize,
-    /// Length of a block of motion in which residuals may depend on each other, s.
-    pub block: f64,
     /// Threads.
     pub threads: usize,
 }
@@ -47,8 +45,7 @@ impl Default for Settings {
             standstill: 0.015,
             least_share: 0.12,
             least_confidence: 0.99,
-            most_effects: 8,
-            block: 0.5,
+            most_effects: 12,
             threads: 2,
         }
     }
