@@ -108,13 +108,7 @@ impl Search<'_, '_> {
 
     /// Whether the simpler law of which this one is an extension explains nearly as much at the same place.
     fn simpler_does(&self, ranked: &[(Pace, usize, Verdict)], more: &Candidate, verdict: &Verdict) -> bool {
-        let simpler = match more.effect {
-            // Play is one number more than a spring.
-            EffectKind::Backlash => EffectKind::JointElasticity,
-            // A level that changes slowly, against one that has changed since the baseline.
-            EffectKind::FrictionDrift => EffectKind::FrictionLevelChange,
-            _ => return false,
-        };
+        let Some(simpler) = simpler_than(more.effect) else { return false };
         ranked.iter().any(|(which, index, found)| {
             let candidate = &self.side(*which).candidates[*index];
             candidate.effect == simpler
@@ -133,6 +127,17 @@ impl Search<'_, '_> {
         }
         let found = block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict);
         (found, found.confidence(tries))
+    }
+}
+
+/// The law that another one extends, and that it comes back to where its own number vanishes.
+fn simpler_than(effect: EffectKind) -> Option<EffectKind> {
+    match effect {
+        // Play is one number more than a spring.
+        EffectKind::Backlash => Some(EffectKind::JointElasticity),
+        // A level that changes slowly, against one that has changed since the baseline.
+        EffectKind::FrictionDrift => Some(EffectKind::FrictionLevelChange),
+        _ => None,
     }
 }
 
