@@ -316,17 +316,3 @@ pub(super) fn top_speeds(signals: &[Signals], joints: usize) -> Vec<f64> {
         })
         .collect()
 }
-
-/// Time from one reversal to the next of the joint that reverses most often, s; what is slower than `slowest` stands
-/// still. Infinite where no joint reverses.
-pub(super) fn reversal_interval(signals: &[Signals], slowest: &[f64]) -> f64 {
-    let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
-    let reversals = slowest.iter().enumerate().map(|(j, least)| {
-        let of_motion = |s: &Signals| {
-            let moving = || s.dq[j].iter().filter(|v| v.abs() > *least);
-            moving().zip(moving().skip(1)).filter(|(a, b)| **a * **b < 0.0).count()
-        };
-        signals.iter().map(of_motion).sum::<usize>()
-    });
-    duration / reversals.max().unwrap_or(0) as f64
-}

@@ -82,13 +82,12 @@ pub(super) fn waveform_evidence(
     }
 }
 
-/// Evidence that what a candidate predicts for held-back motion is really there: the slope of the residual of that
-/// motion on the predicted change of torque, against zero.
+/// Evidence that what a candidate predicts for held-back motion is really there, whatever depends on what within a
+/// block of motion.
 ///
-/// A change that is an accident of the other motion has a slope of zero; one that is real and known exactly has one.
-/// The slope's standard error is that of leaving out blocks of motion one by one, so that residuals may depend on
-/// each other within a block, and its degrees of freedom count the blocks that the change is spread over. Blocks are
-/// as long as the residual remembers.
+/// With enough blocks it is their mean gain. A short recording has too few for any mean of gains to say much: there
+/// blocks are only as long as the residual remembers, and the slope of the residual on the predicted change of torque
+/// is looked at as well.
 pub(super) fn block_evidence(
     design: &Design,
     whole: &Fit,
@@ -97,12 +96,19 @@ pub(super) fn block_evidence(
     candidate: &Candidate,
     verdict: &Verdict,
 ) -> Evidence {
-    let per_block = rows_per_block(design, &whole.residual(design), &candidate.own);
-    let Some(blocks) = blocks(design, whole, folds, sigma, (candidate, verdict.trial), per_block) else {
+    let of = |per_block| {
+        let blocks = blocks(design, whole, folds, sigma, (candidate, verdict.trial), per_block);
+        blocks.map(|b| b.into_values().collect::<Vec<Block>>())
+    };
+    let longest = (LONGEST_BLOCK / design.step).ceil() as usize;
+    let Some(long) = of(longest) else { return Evidence::NONE };
+    if long.len() >= ENOUGH_BLOCKS {
+        return mean_gain(&long);
+    }
+    let Some(short) = of(rows_per_block(design, &whole.residual(design), &candidate.own)) else {
         return Evidence::NONE;
     };
-    let blocks: Vec<Block> = blocks.into_values().collect();
-    let (slope, gain) = (slope(&blocks), mean_gain(&blocks));
+    let (slope, gain) = (slope(&short), mean_gain(&short));
     let better = if slope.tail() < gain.tail() { slope } else { gain };
     Evidence { looks: 2, ..better }
 }
@@ -168,8 +174,10 @@ fn blocks(
     Some(blocks)
 }
 
-/// Longest block of motion, s: a residual that remembers longer is one that something in the catalogue explains.
+/// Longest block of motion, s.
 pub(super) const LONGEST_BLOCK: f64 = 0.5;
+/// From this many blocks of that length on, their mean gain decides alone.
+const ENOUGH_BLOCKS: usize = 24;
 /// Shortest block, s.
 const SHORTEST_BLOCK: f64 = 0.1;
 /// Autocorrelation below which a residual has forgotten.
@@ -226,6 +234,9 @@ impl Block {
 }
 
 /// The slope of the residual on the predicted change, in standard errors of a jackknife over blocks.
+///
+/// A change that is an accident of the other motion has a slope of zero; one that is real and known exactly has one.
+/// Its degrees of freedom count the blocks that the change is spread over.
 fn slope(blocks: &[Block]) -> Evidence {
     let squares: f64 = blocks.iter().map(|b| b.squares).sum();
     // Blocks that carry the change: their number if it is spread evenly, fewer if few of them hold most of it.

@@ -303,39 +303,34 @@ fn change(
     2.0 * linear - square
 }
 
-/// Share of its joints' squares on later time that a candidate takes away when its amplitude is fitted to the time
-/// before: the smallest over several cuts of a single motion.
-///
-/// The candidate's own part is taken over the whole motion: refitting all standard parameters to the beginning alone
-/// would drown it in their extrapolation.
-pub(super) fn forward_share(
+/// Whether a candidate improves later time of a single motion when everything, standard parameters included, is fitted
+/// to the time before: on its own joints by at least `least` of their squares, and not at the cost of the others.
+pub(super) fn holds_forward(
     design: &Design,
-    whole: &Fit,
     sigma: &[f64],
     candidate: &Candidate,
     trial: usize,
-) -> f64 {
+    least: f64,
+) -> bool {
     let segments = design.segments.len();
-    let everything = vec![true; segments];
-    let trial = &candidate.trials[trial];
-    let Some(own) = own_part(design, whole, sigma, trial, &everything) else { return 0.0 };
-    let share = |cut: usize| {
+    let (mut own_gain, mut before, mut total) = (0.0, 0.0, 0.0);
+    for cut in [segments * 5 / 8, segments * 3 / 4] {
         let train: Vec<bool> = (0..segments).map(|g| g < cut).collect();
-        let fitted = rest_of_motion(design, whole, sigma, trial, &own, &train);
-        let Some((a, _)) = fitted.solve(candidate) else { return 0.0 };
+        let fit = Fit::new(design, sigma, |g| train[g]);
+        let trial = &candidate.trials[trial];
+        let Some(own) = own_part(design, &fit, sigma, trial, &train) else { return false };
+        let Some((a, _)) = own.solve(candidate) else { return false };
         let d = -(&own.x * &a);
-        let (mut own_gain, mut before, mut total) = (0.0, 0.0, 0.0);
         for (j, &s) in sigma.iter().enumerate() {
             for g in cut..segments {
-                let gain = change(design, whole, trial, &a, &d, j, g) / (s * s);
+                let gain = change(design, &fit, trial, &a, &d, j, g) / (s * s);
                 total += gain;
                 if candidate.own.contains(&j) {
                     own_gain += gain;
-                    before += whole.squares(design, j, g) / (s * s);
+                    before += fit.squares(design, j, g) / (s * s);
                 }
             }
         }
-        own_gain.min(total) / before.max(1e-300)
-    };
-    share(segments / 2).min(share(segments * 3 / 4))
+    }
+    total > 0.0 && own_gain > least * before
 }

@@ -45,7 +45,7 @@ pub use settings::{DiagnosisError, Progress, Settings, Silent};
 use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
-use context::{Context, reversal_interval, scales, top_speeds};
+use context::{Context, scales, top_speeds};
 use design::{Design, Plan};
 use search::Search;
 use signals::{Signals, directions};
@@ -54,8 +54,8 @@ use signals::{Signals, directions};
 const STRETCHES: usize = 8;
 /// From this many motions on, whole motions are held back.
 const ENOUGH_MOTIONS: usize = 3;
-/// Smoothing of effects that are as slow as the motion, as a share of the time from one reversal to the next.
-const SMOOTHED_SHARE: f64 = 0.03;
+/// A recording shorter than this has no rows to spare, s: slow effects are smoothed no more than fast ones.
+const SHORT: f64 = 12.0;
 /// A delay is named from this many samples and seconds; a smaller one is part of sampling and silently taken out.
 const NAMED_DELAY: (f64, f64) = (0.75, 1e-3);
 
@@ -104,8 +104,8 @@ fn examine(
     let settings = &settings;
     let mut signals = prepare_all(baseline, trajectories, delay, cutoff)?;
     let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
-    let slow_window = (SMOOTHED_SHARE * reversal_interval(&signals, &slowest))
-        .clamp(settings.fast_window, settings.slow_window.max(settings.fast_window));
+    let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
+    let slow_window = if duration < SHORT { settings.fast_window } else { settings.slow_window };
     let motions = trajectories.len();
     let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];

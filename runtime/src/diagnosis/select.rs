@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, Pace};
 use super::evidence::{Evidence, block_evidence, doubt, waveform_evidence};
-use super::judge::{Verdict, forward_share, judge, single_motion};
+use super::judge::{Verdict, holds_forward, judge, single_motion};
 use super::parallel;
 use super::search::{Rival, Search, Side};
 use super::settings::Settings;
@@ -66,8 +66,7 @@ impl Search<'_, '_> {
                 continue;
             }
             if single_motion(&side.design)
-                && forward_share(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
-                    < settings.least_share
+                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial, settings.least_share)
             {
                 continue;
             }
@@ -120,13 +119,15 @@ impl Search<'_, '_> {
     /// Evidence for a candidate, and the confidence that it gives after all that was tried.
     fn evidence(&self, side: &Side, candidate: &Candidate, verdict: &Verdict) -> (Evidence, f64) {
         let tries = self.slow.candidates.len() + self.fast.candidates.len();
-        if candidate.fixed.is_some() {
-            let found = waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial);
-            // Free shapes are chosen on other motion than they are judged on; those of a waveform are not.
-            return (found, found.confidence(tries * candidate.trials.len()));
-        }
-        let found = block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict);
-        (found, found.confidence(tries))
+        let found = if candidate.fixed.is_some() {
+            waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
+        } else {
+            block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict)
+        };
+        // Free shapes are chosen on other motion than they are judged on; those of a waveform, and of a single
+        // motion's stretches, are not.
+        let chosen_here = candidate.fixed.is_some() || single_motion(&side.design);
+        (found, found.confidence(if chosen_here { tries * candidate.trials.len() } else { tries }))
     }
 }
 
