@@ -19,7 +19,7 @@ use dynid_runtime::diagnosis::{Settings, Silent, diagnose};
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::{Manifest, Trajectory, load};
 
-use story::{STORIES, Story, Told};
+use story::{Part, STORIES, Story, Told};
 
 /// Anything that ends a run.
 pub type Failure = Box<dyn std::error::Error>;
@@ -91,8 +91,44 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
             }
         }
     }
-    Ok(story::told(&Told { story, found: &found, counted: &counted, pictures: &pictures, seconds }))
+    let parts: Vec<Part> =
+        story.parts.iter().map(|&span| part(model, &path, span)).collect::<Result<_, _>>()?;
+    Ok(story::told(&Told {
+        story,
+        found: &found,
+        counted: &counted,
+        pictures: &pictures,
+        parts: &parts,
+        seconds,
+    }))
 }
+
+/// Diagnoses one part of a single motion and judges on what comes before and after it.
+fn part(model: &dyn Model, path: &Path, span: (f64, f64)) -> Result<Part, Failure> {
+    let all = motions(model, path)?;
+    let motion = all.first().ok_or("the recording has no motion")?;
+    let fitted = [between(motion, span.0, span.1)];
+    let found = diagnose(model, &fitted, &[], &Settings::default(), &Silent)?;
+    let (first, last) = (motion.time[0], motion.time[motion.time.len() - 1]);
+    let rest: Vec<Trajectory> = [(first, span.0), (span.1, last)]
+        .into_iter()
+        .filter(|(from, to)| to - from > SHORTEST_REST)
+        .map(|(from, to)| between(motion, from, to))
+        .collect();
+    let counted = if rest.is_empty() { Vec::new() } else { tested::errors(model, &found, &fitted, &rest)? };
+    let named = found.findings.iter().map(|f| {
+        let on: Vec<String> = f.joints.iter().map(ToString::to_string).collect();
+        format!("{}@{}", f.effect, on.join("+"))
+    });
+    Ok(Part {
+        span,
+        named: named.collect(),
+        rest: counted.first().map(|c| [c.before.relative_error, c.after.relative_error]),
+    })
+}
+
+/// Shortest rest that is worth a prediction, s.
+const SHORTEST_REST: f64 = 1.0;
 
 /// The part of a motion between two times.
 fn between(motion: &Trajectory, from: f64, to: f64) -> Trajectory {

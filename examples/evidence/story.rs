@@ -20,6 +20,8 @@ pub struct Story {
     pub test: Option<&'static str>,
     /// Where it is divided, s; `None`: after 60 %.
     pub cut: Option<f64>,
+    /// Other parts of the recording that are diagnosed as well, each for itself, s.
+    pub parts: &'static [(f64, f64)],
     /// What was recorded.
     pub recorded: &'static str,
     /// How it is divided.
@@ -45,6 +47,7 @@ pub const STORIES: [Story; 3] = [
         recording: "recording.yaml",
         test: None,
         cut: Some(4.5),
+        parts: &[(0.0, 5.0), (2.5, 7.4), (0.0, 7.4)],
         recorded: "A single exciting motion of 7.4 s at 5 kHz, motor angles and motor torques (public repository \
                    figaroh-examples).",
         divided: "Diagnosed on 0.05 to 4.5 s, judged on 4.5 to 7.4 s.",
@@ -56,6 +59,7 @@ pub const STORIES: [Story; 3] = [
         recording: "train.yaml",
         test: Some("test.yaml"),
         cut: None,
+        parts: &[],
         recorded: "Exciting motions at about 95 Hz with jittery stamps; the torque is the motor current times the \
                    published drive gains (public repository dynamic_calibration).",
         divided: "Diagnosed on three motions of 21 to 42 s, judged on two other motions, one of them recorded a week later.",
@@ -67,6 +71,7 @@ pub const STORIES: [Story; 3] = [
         recording: "recording.yaml",
         test: None,
         cut: None,
+        parts: &[],
         recorded: "A single exciting motion of 20 s at 1 kHz. Its torque sensors sit behind the gears, so that there is \
                    next to no drive physics to be missed: a check for false alarms.",
         divided: "Diagnosed on the first 60 % of the motion, judged on the rest.",
@@ -84,8 +89,20 @@ pub struct Told<'a> {
     pub counted: &'a [Counted],
     /// Name and file of each figure.
     pub pictures: &'a [(&'static str, String)],
+    /// What the other parts say.
+    pub parts: &'a [Part],
     /// Time of the diagnosis, s.
     pub seconds: f64,
+}
+
+/// What one part of a recording says when it is diagnosed for itself.
+pub struct Part {
+    /// Where it begins and ends, s.
+    pub span: (f64, f64),
+    /// What is named on it.
+    pub named: Vec<String>,
+    /// Errors on the rest of the recording, of the standard model and with what was found; `None`: there is no rest.
+    pub rest: Option<[f64; 2]>,
 }
 
 /// The page.
@@ -115,6 +132,7 @@ pub fn told(told: &Told<'_>) -> String {
         shifts(&mut text, found);
     }
     proof(&mut text, story, counted, picture(told, "held_out"));
+    parts(&mut text, told.parts);
     open(&mut text, found);
     text
 }
@@ -251,6 +269,22 @@ fn proof(text: &mut String, story: &Story, counted: &[Counted], picture: Option<
     };
     if let Some(words) = words {
         let _ = writeln!(text, "\n{words}");
+    }
+}
+
+fn parts(text: &mut String, parts: &[Part]) {
+    if parts.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n### The same on other parts\n\nEach part is diagnosed for itself; the rest of the recording is predicted, on \
+         rows where the joint moves, at 25 Hz.\n\n| part | named | rest, standard model | rest, with what was found |\n|---|---|---|---|\n",
+    );
+    for part in parts {
+        let rest = part.rest.map(|r| r.map(percent));
+        let [before, after] = rest.unwrap_or_else(|| ["-".into(), "-".into()]);
+        let (from, to) = part.span;
+        let _ = writeln!(text, "| {from} to {to} s | {} | {before} | {after} |", part.named.join(", "));
     }
 }
 

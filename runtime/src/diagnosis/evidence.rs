@@ -4,34 +4,8 @@ use super::candidate::Candidate;
 use super::design::Design;
 use super::fit::Fit;
 use super::judge::{Fold, Verdict, own_part, rest_of_motion, single_motion};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use super::significance::{Block, Evidence, mean_gain, mean_root, slope};
 use std::collections::BTreeMap;
-
-/// How sure it is that a gain is no accident.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Evidence {
-    /// In standard errors.
-    pub significance: f64,
-    /// Degrees of freedom of the standard error.
-    pub freedom: f64,
-    /// Ways of looking at the same rows, of which this is the best.
-    pub looks: usize,
-}
-
-impl Evidence {
-    pub const NONE: Self = Self { significance: 0.0, freedom: 1.0, looks: 1 };
-
-    /// One minus the probability that the best of `tries` candidates comes as far by accident (Bonferroni), by
-    /// Student's distribution.
-    pub fn confidence(&self, tries: usize) -> f64 {
-        (1.0 - self.tail() * (tries * self.looks) as f64).clamp(0.0, 0.9999)
-    }
-
-    /// Probability that an accident comes as far.
-    fn tail(&self) -> f64 {
-        StudentsT::new(0.0, 1.0, self.freedom.max(1.0)).map_or(1.0, |t| t.sf(self.significance))
-    }
-}
 
 /// Shifts in time that a waveform is compared with.
 const SHIFTS: usize = 100;
@@ -110,7 +84,7 @@ pub(super) fn block_evidence(
     };
     let (slope, gain) = (slope(&short), mean_gain(&short));
     let better = if slope.tail() < gain.tail() { slope } else { gain };
-    Evidence { looks: 2, ..better }
+    Evidence { looks: 2 * LEANING, ..better }
 }
 
 /// Probability that a law which gains more than its rival on held-back motion does so by accident: their gains are
@@ -185,92 +159,42 @@ const FORGOTTEN: f64 = 0.2;
 /// Blocks are this many times as long as the residual remembers.
 const MEMORIES: usize = 2;
 
+/// Accidents come this many times as often as the tail says where neighbouring blocks still lean on each other.
+const LEANING: usize = 2;
+
 /// Rows of a block: a few times the lag at which the residual of the slowest of these joints has forgotten itself.
 fn rows_per_block(design: &Design, residual: &[f64], joints: &[usize]) -> usize {
     let longest = (LONGEST_BLOCK / design.step).ceil() as usize;
     let shortest = (SHORTEST_BLOCK / design.step).ceil() as usize;
-    let forgotten =
-        |j: usize| (1..longest).find(|&lag| autocorrelation(design, residual, j, lag) < FORGOTTEN);
-    let memory = joints.iter().map(|&j| forgotten(j).unwrap_or(longest)).max().unwrap_or(longest);
+    let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
+    let memory = |j: usize| {
+        let motion = |signal: usize| {
+            let rows = design.of_signal(j, signal).into_iter().flat_map(|(range, _)| range);
+            rows.map(|r| (design.rows[r].centre / design.spacing(signal), residual[r])).collect()
+        };
+        let series: Vec<Vec<(usize, f64)>> = (0..motions).map(motion).collect();
+        (1..longest).find(|&lag| autocorrelation(&series, lag) < FORGOTTEN).unwrap_or(longest)
+    };
+    let memory = joints.iter().map(|&j| memory(j)).max().unwrap_or(longest);
     (MEMORIES * memory).clamp(shortest, longest.max(shortest))
 }
 
-/// Correlation of a joint's residual with itself `lag` rows later, over pairs of rows that are there.
-fn autocorrelation(design: &Design, residual: &[f64], joint: usize, lag: usize) -> f64 {
-    let (mut products, mut pairs, mut squares, mut rows) = (0.0, 0, 0.0, 0);
-    for signal in 0..=design.segments.iter().map(|s| s.signal).max().unwrap_or(0) {
-        let at: Vec<usize> =
-            design.of_signal(joint, signal).into_iter().flat_map(|(range, _)| range).collect();
-        let step = lag * design.spacing(signal);
-        let mut later = at.iter().peekable();
-        for &r in &at {
-            squares += residual[r] * residual[r];
-            rows += 1;
-            let wanted = design.rows[r].centre + step;
-            while later.next_if(|&&l| design.rows[l].centre < wanted).is_some() {}
-            if let Some(&&l) = later.peek()
-                && design.rows[l].centre == wanted
-            {
-                products += residual[r] * residual[l];
+/// Correlation of series with themselves `lag` places later, over pairs of places that are there.
+fn autocorrelation(series: &[Vec<(usize, f64)>], lag: usize) -> f64 {
+    let (mut products, mut pairs, mut squares, mut places) = (0.0, 0, 0.0, 0);
+    for series in series {
+        let mut later = series.iter().peekable();
+        for &(place, x) in series {
+            squares += x * x;
+            places += 1;
+            while later.next_if(|(l, _)| *l < place + lag).is_some() {}
+            if let Some((_, y)) = later.peek().filter(|(l, _)| *l == place + lag) {
+                products += x * y;
                 pairs += 1;
             }
         }
     }
-    if pairs == 0 || squares == 0.0 { 0.0 } else { products / pairs as f64 / (squares / rows as f64) }
-}
-
-/// Inner products over a block of motion of the predicted change with the residual and with itself.
-#[derive(Debug, Clone, Copy, Default)]
-struct Block {
-    with_residual: f64,
-    squares: f64,
-}
-
-impl Block {
-    /// Squares of the residual that the change takes away.
-    fn gain(&self) -> f64 {
-        2.0 * self.with_residual - self.squares
-    }
-}
-
-/// The slope of the residual on the predicted change, in standard errors of a jackknife over blocks.
-///
-/// A change that is an accident of the other motion has a slope of zero; one that is real and known exactly has one.
-/// Its degrees of freedom count the blocks that the change is spread over.
-fn slope(blocks: &[Block]) -> Evidence {
-    let squares: f64 = blocks.iter().map(|b| b.squares).sum();
-    // Blocks that carry the change: their number if it is spread evenly, fewer if few of them hold most of it.
-    let carrying = squares * squares / blocks.iter().map(|b| b.squares * b.squares).sum::<f64>().max(1e-300);
-    if carrying < 3.0 {
-        return Evidence::NONE;
-    }
-    let slope = blocks.iter().map(|b| b.with_residual).sum::<f64>() / squares;
-    let variance: f64 = blocks
-        .iter()
-        .map(|b| {
-            let without = (b.with_residual - slope * b.squares) / (squares - b.squares).max(1e-9 * squares);
-            without * without
-        })
-        .sum();
-    Evidence { significance: slope / variance.sqrt().max(1e-12), freedom: carrying - 1.0, looks: 1 }
-}
-
-/// The mean gain of a block in standard errors: weaker than the slope where few blocks say little, stronger where few
-/// blocks say nearly everything.
-fn mean_gain(blocks: &[Block]) -> Evidence {
-    mean_root(&blocks.iter().map(Block::gain).collect::<Vec<f64>>())
-}
-
-/// Gains are heavy-tailed, so their signed square roots are compared with zero.
-fn mean_root(gains: &[f64]) -> Evidence {
-    let roots: Vec<f64> = gains.iter().map(|g| g.signum() * g.abs().sqrt()).collect();
-    let n = roots.len() as f64;
-    if n < 4.0 {
-        return Evidence::NONE;
-    }
-    let mean = roots.iter().sum::<f64>() / n;
-    let variance = roots.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
-    Evidence { significance: mean / (variance / n).sqrt().max(1e-12), freedom: n - 1.0, looks: 1 }
+    if pairs == 0 || squares == 0.0 { 0.0 } else { products / pairs as f64 / (squares / places as f64) }
 }
 
 #[cfg(test)]
@@ -278,13 +202,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn confidence_counts_every_candidate_and_knows_that_few_blocks_say_little() {
-        let at = |significance, freedom| Evidence { significance, freedom, looks: 1 };
-        assert!(at(5.0, 100.0).confidence(100) > 0.999);
-        assert!(at(5.0, 100.0).confidence(100_000) < at(5.0, 100.0).confidence(100));
-        // Student's tail beyond 4 standard errors with 8 degrees of freedom is 0.0019749 (scipy.stats.t.sf).
-        assert!((at(4.0, 8.0).confidence(100) - (1.0 - 100.0 * 0.001_974_886)).abs() < 1e-6);
-        assert_eq!(at(0.0, 100.0).confidence(100), 0.0);
-        assert_eq!(Evidence::NONE.confidence(1), 0.5);
+    fn correlation_looks_at_pairs_of_rows_that_are_there() {
+        // A square wave of period 4, with rows missing: 1 after four rows, -1 after two, nothing after one.
+        let wave = |k: usize| if k % 4 < 2 { 1.0 } else { -1.0 };
+        let rows: Vec<(usize, f64)> = (0..400).filter(|k| k % 37 != 0).map(|k| (k, wave(k))).collect();
+        assert!((autocorrelation(&[rows.clone()], 4) - 1.0).abs() < 1e-12);
+        assert!((autocorrelation(&[rows.clone()], 2) + 1.0).abs() < 1e-12);
+        assert!(autocorrelation(&[rows], 1).abs() < 0.02);
+        assert_eq!(autocorrelation(&[vec![(0, 1.0), (9, 1.0)]], 1), 0.0);
     }
 }

@@ -32,6 +32,7 @@ mod search;
 mod select;
 mod settings;
 mod signals;
+mod significance;
 mod spectrum;
 mod words;
 

@@ -59,6 +59,21 @@ impl Search<'_, '_> {
             Form::Coupled => vec![Step::Times(1.4)],
             _ => Vec::new(),
         };
+        // A law of a joint stays within a step of its grid: a power of nearly 0 is a second Coulomb level.
+        let bounds: Vec<(f64, f64)> = match candidate.effect.form() {
+            Form::Joint(law) => law
+                .refinement()
+                .iter()
+                .enumerate()
+                .map(|(k, f)| {
+                    let values = candidate.trials.iter().filter_map(|t| t.shape.get(k));
+                    let (low, high) =
+                        values.fold((f64::INFINITY, 0.0_f64), |(low, high), &x| (low.min(x), high.max(x)));
+                    (low / f, high * f)
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
         // Pattern search (Hooke and Jeeves 1961): one parameter at a time, and frequency with rotor, which trade
         // against each other along the ridge of one stiffness.
         let mut moves: Vec<Vec<(usize, f64)>> = Vec::new();
@@ -78,7 +93,14 @@ impl Search<'_, '_> {
                 let mut next = shape.clone();
                 for &(k, direction) in directions {
                     match steps[k] {
-                        Step::Times(f) => next[k] *= f.powf(direction * size),
+                        Step::Times(f) => {
+                            next[k] *= f.powf(direction * size);
+                            if let Some(&(low, high)) = bounds.get(k)
+                                && low < high
+                            {
+                                next[k] = next[k].clamp(low, high);
+                            }
+                        }
                         Step::Add(d) => next[k] = (next[k] + d * direction * size).max(0.0),
                     }
                 }

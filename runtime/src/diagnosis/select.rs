@@ -1,11 +1,12 @@
 //! Which candidate of a round holds.
 
 use super::candidate::{Candidate, Pace};
-use super::evidence::{Evidence, block_evidence, doubt, waveform_evidence};
+use super::evidence::{block_evidence, doubt, waveform_evidence};
 use super::judge::{Verdict, holds_forward, judge, single_motion};
 use super::parallel;
 use super::search::{Rival, Search, Side};
 use super::settings::Settings;
+use super::significance::Evidence;
 use crate::effects::EffectKind;
 
 /// A law gives way to the one that it extends where that one makes this share of its gain.

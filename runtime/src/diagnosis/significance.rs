@@ -1,0 +1,170 @@
+//! Tests over blocks of motion: whatever depends on what within a block, and however many candidates were tried.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// How sure it is that a gain is no accident.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Evidence {
+    /// In standard errors.
+    pub significance: f64,
+    /// Degrees of freedom of the standard error.
+    pub freedom: f64,
+    /// Chances that an accident has at the same rows: ways of looking at them, of which this is the best.
+    pub looks: usize,
+}
+
+impl Evidence {
+    pub const NONE: Self = Self { significance: 0.0, freedom: 1.0, looks: 1 };
+
+    /// One minus the probability that the best of `tries` candidates comes as far by accident (Bonferroni), by
+    /// Student's distribution.
+    pub fn confidence(&self, tries: usize) -> f64 {
+        (1.0 - self.tail() * (tries * self.looks) as f64).clamp(0.0, 0.9999)
+    }
+
+    /// Probability that an accident comes as far.
+    pub fn tail(&self) -> f64 {
+        StudentsT::new(0.0, 1.0, self.freedom.max(1.0)).map_or(1.0, |t| t.sf(self.significance))
+    }
+}
+
+/// Inner products over a block of motion of the predicted change with the residual and with itself.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Block {
+    pub with_residual: f64,
+    pub squares: f64,
+}
+
+impl Block {
+    /// Squares of the residual that the change takes away.
+    pub fn gain(&self) -> f64 {
+        2.0 * self.with_residual - self.squares
+    }
+}
+
+/// The slope of the residual on the predicted change, in standard errors of a jackknife over blocks.
+///
+/// A change that is an accident of the other motion has a slope of zero; one that is real and known exactly has one.
+/// Its degrees of freedom count the blocks that the change is spread over.
+pub(super) fn slope(blocks: &[Block]) -> Evidence {
+    let squares: f64 = blocks.iter().map(|b| b.squares).sum();
+    // Blocks that carry the change: their number if it is spread evenly, fewer if few of them hold most of it.
+    let carrying = squares * squares / blocks.iter().map(|b| b.squares * b.squares).sum::<f64>().max(1e-300);
+    if carrying < 3.0 {
+        return Evidence::NONE;
+    }
+    let slope = blocks.iter().map(|b| b.with_residual).sum::<f64>() / squares;
+    let variance: f64 = blocks
+        .iter()
+        .map(|b| {
+            let without = (b.with_residual - slope * b.squares) / (squares - b.squares).max(1e-9 * squares);
+            without * without
+        })
+        .sum();
+    Evidence { significance: slope / variance.sqrt().max(1e-12), freedom: carrying - 1.0, looks: 1 }
+}
+
+/// The mean gain of a block in standard errors: weaker than the slope where few blocks say little, stronger where few
+/// blocks say nearly everything.
+pub(super) fn mean_gain(blocks: &[Block]) -> Evidence {
+    mean_root(&blocks.iter().map(Block::gain).collect::<Vec<f64>>())
+}
+
+/// Gains are heavy-tailed, so their signed square roots are compared with zero.
+pub(super) fn mean_root(gains: &[f64]) -> Evidence {
+    let roots: Vec<f64> = gains.iter().map(|g| g.signum() * g.abs().sqrt()).collect();
+    let n = roots.len() as f64;
+    if n < 4.0 {
+        return Evidence::NONE;
+    }
+    let mean = roots.iter().sum::<f64>() / n;
+    let variance = roots.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+    Evidence { significance: mean / (variance / n).sqrt().max(1e-12), freedom: n - 1.0, looks: 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    #[test]
+    fn confidence_counts_every_candidate_and_knows_that_few_blocks_say_little() {
+        let at = |significance, freedom| Evidence { significance, freedom, looks: 1 };
+        assert!(at(5.0, 100.0).confidence(100) > 0.999);
+        assert!(at(5.0, 100.0).confidence(100_000) < at(5.0, 100.0).confidence(100));
+        // Student's tail beyond 4 standard errors with 8 degrees of freedom is 0.0019749 (scipy.stats.t.sf).
+        assert!((at(4.0, 8.0).confidence(100) - (1.0 - 100.0 * 0.001_974_886)).abs() < 1e-6);
+        assert_eq!(at(0.0, 100.0).confidence(100), 0.0);
+        assert_eq!(Evidence::NONE.confidence(1), 0.5);
+    }
+
+    /// A series that remembers: each value is `memory` times the one before, and something new.
+    fn remembering(rng: &mut Pcg64, rows: usize, memory: f64) -> Vec<f64> {
+        let mut x = 0.0;
+        (0..rows + 50)
+            .map(|_| {
+                let new: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
+                x = memory * x + new;
+                x
+            })
+            .skip(50)
+            .collect()
+    }
+
+    fn blocks_of(change: &[f64], residual: &[f64], rows: usize) -> Vec<Block> {
+        let pairs = change.chunks(rows).zip(residual.chunks(rows));
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        pairs.map(|(c, r)| Block { with_residual: dot(c, r), squares: dot(c, c) }).collect()
+    }
+
+    /// How often a change that has nothing to do with the residual comes below each of these tails.
+    fn accidents(rows: usize, per_block: usize, levels: [f64; 2]) -> [f64; 2] {
+        let mut rng = Pcg64::seed_from_u64(20);
+        let runs = 50_000;
+        let mut below = [0; 2];
+        for _ in 0..runs {
+            let change = remembering(&mut rng, rows, 0.9);
+            let residual = remembering(&mut rng, rows, 0.5);
+            let tail = slope(&blocks_of(&change, &residual, per_block)).tail();
+            below.iter_mut().zip(levels).for_each(|(b, level)| *b += usize::from(tail < level));
+        }
+        below.map(|b| b as f64 / runs as f64)
+    }
+
+    #[test]
+    fn an_accident_passes_the_slope_at_most_twice_as_often_as_its_tail_says_where_residuals_remember() {
+        // 0.5, 0.25, 0.125: forgotten after three rows; blocks of six.
+        let [often, seldom] = accidents(180, 6, [0.01, 0.001]);
+        println!("{:.2} % below 1 %, {:.3} % below 0.1 %", 100.0 * often, 100.0 * seldom);
+        assert!(often < 0.02, "{often}");
+        assert!(seldom < 0.002, "{seldom}");
+    }
+
+    #[test]
+    fn a_real_change_passes_with_a_slope_where_its_gains_are_too_uneven_for_a_mean() {
+        let mut rng = Pcg64::seed_from_u64(21);
+        let change: Vec<f64> =
+            (0..108).map(|k| if k % 18 < 6 { 3.0 } else { 0.3 } * f64::from(k % 2)).collect();
+        let noise = remembering(&mut rng, 108, 0.5);
+        let residual: Vec<f64> = change.iter().zip(&noise).map(|(c, n)| c + 0.3 * n).collect();
+        let blocks = blocks_of(&change, &residual, 6);
+        assert!(slope(&blocks).tail() < 1e-4, "{:?}", slope(&blocks));
+        assert!(slope(&blocks).tail() < mean_gain(&blocks).tail());
+    }
+
+    #[test]
+    fn one_block_that_carries_everything_is_no_evidence() {
+        let mut blocks = vec![Block { with_residual: 0.01, squares: 0.01 }; 20];
+        blocks[7] = Block { with_residual: 100.0, squares: 100.0 };
+        assert_eq!(slope(&blocks).significance, 0.0);
+        assert_eq!(mean_gain(&blocks[..3]).significance, 0.0);
+    }
+
+    #[test]
+    fn nothing_at_all_is_no_evidence() {
+        assert_eq!(slope(&[]).significance, 0.0);
+        assert_eq!(slope(&[Block::default(); 10]).significance, 0.0);
+        assert_eq!(mean_root(&[0.0; 10]).significance, 0.0);
+    }
+}
