@@ -205,10 +205,10 @@ mod tests {
     fn correlation_looks_at_pairs_of_rows_that_are_there() {
         // A square wave of period 4, with rows missing: 1 after four rows, -1 after two, nothing after one.
         let wave = |k: usize| if k % 4 < 2 { 1.0 } else { -1.0 };
-        let rows: Vec<(usize, f64)> = (0..400).filter(|k| k % 37 != 0).map(|k| (k, wave(k))).collect();
-        assert!((autocorrelation(&[rows.clone()], 4) - 1.0).abs() < 1e-12);
-        assert!((autocorrelation(&[rows.clone()], 2) + 1.0).abs() < 1e-12);
-        assert!(autocorrelation(&[rows], 1).abs() < 0.02);
+        let rows = [(0..400).filter(|k| k % 37 != 0).map(|k| (k, wave(k))).collect()];
+        assert!((autocorrelation(&rows, 4) - 1.0).abs() < 1e-12);
+        assert!((autocorrelation(&rows, 2) + 1.0).abs() < 1e-12);
+        assert!(autocorrelation(&rows, 1).abs() < 0.02);
         assert_eq!(autocorrelation(&[vec![(0, 1.0), (9, 1.0)]], 1), 0.0);
     }
 }

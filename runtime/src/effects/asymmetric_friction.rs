@@ -29,10 +29,6 @@ impl JointLaw for AsymmetricFriction {
         out[0] = at.dq * at.sign;
     }
 
-    fn is_dry(&self) -> bool {
-        false
-    }
-
     fn parameters(&self, scale: &Scale, _: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
         let unit = if scale.prismatic { "N.s/m" } else { "N.m.s/rad" };
         vec![Parameter::new("half_difference", a[0], s[0], unit)]

@@ -48,7 +48,7 @@ impl JointLaw for FrictionDrift {
         }
     }
 
-    fn is_dry(&self) -> bool {
+    fn is_dry(&self, _: &[f64], _: &[f64]) -> bool {
         true
     }
 

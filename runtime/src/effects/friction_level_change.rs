@@ -29,7 +29,7 @@ impl JointLaw for FrictionLevelChange {
         out[0] = at.friction;
     }
 
-    fn is_dry(&self) -> bool {
+    fn is_dry(&self, _: &[f64], _: &[f64]) -> bool {
         true
     }
 

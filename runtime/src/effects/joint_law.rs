@@ -83,7 +83,7 @@ pub trait JointLaw: Sync {
     }
 
     /// Whether the law has the sign of the velocity, so that it also holds the joint at rest.
-    fn is_dry(&self) -> bool {
+    fn is_dry(&self, _shape: &[f64], _amplitude: &[f64]) -> bool {
         false
     }
 

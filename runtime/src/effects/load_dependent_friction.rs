@@ -33,7 +33,7 @@ impl JointLaw for LoadDependentFriction {
         out[0] = at.load.abs() * at.sign;
     }
 
-    fn is_dry(&self) -> bool {
+    fn is_dry(&self, _: &[f64], _: &[f64]) -> bool {
         true
     }
 

@@ -33,8 +33,9 @@ impl JointLaw for NonlinearViscous {
         out[0] = (at.dq / scale.speed).abs().powf(shape[0]) * at.sign;
     }
 
-    fn is_dry(&self) -> bool {
-        true
+    /// A power below 1 rises from rest so steeply that it sticks; what bends upwards, or takes off, is smooth there.
+    fn is_dry(&self, shape: &[f64], amplitude: &[f64]) -> bool {
+        shape[0] < 1.0 && amplitude[0] > 0.0
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {

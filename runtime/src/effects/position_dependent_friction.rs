@@ -42,7 +42,7 @@ impl JointLaw for PositionDependentFriction {
         out[1] = s * at.sign;
     }
 
-    fn is_dry(&self) -> bool {
+    fn is_dry(&self, _: &[f64], _: &[f64]) -> bool {
         true
     }
 

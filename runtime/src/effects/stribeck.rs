@@ -37,7 +37,7 @@ impl JointLaw for Stribeck {
         out[0] = (-(at.dq / shape[0]).powi(2)).exp() * at.sign;
     }
 
-    fn is_dry(&self) -> bool {
+    fn is_dry(&self, _: &[f64], _: &[f64]) -> bool {
         true
     }
 

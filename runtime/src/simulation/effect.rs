@@ -92,6 +92,10 @@ impl EffectTorque {
         }
     }
 
+    fn is_dry(&self) -> bool {
+        self.law.is_dry(&self.shape, &self.amplitude)
+    }
+
     /// The torque if the joint moves in the direction `sign`.
     fn toward(&self, at: &Instant<'_>, sign: f64) -> f64 {
         let dq = at.dq[self.joint];
@@ -116,20 +120,20 @@ impl EffectTorque {
 
 impl ExtraTorque for EffectTorque {
     fn torque(&self, at: &Instant<'_>, out: &mut [f64]) {
-        if !self.law.is_dry() {
+        if !self.is_dry() {
             out[self.joint] += self.toward(at, if at.dq[self.joint] < 0.0 { -1.0 } else { 1.0 });
         }
     }
 
     fn dry_friction(&self, at: &Instant<'_>, levels: &mut [[f64; 2]]) {
-        if self.law.is_dry() {
+        if self.is_dry() {
             levels[self.joint][0] -= self.toward(at, -1.0);
             levels[self.joint][1] += self.toward(at, 1.0);
         }
     }
 
     fn has_dry_friction(&self) -> bool {
-        self.law.is_dry()
+        self.is_dry()
     }
 
     fn advance(&mut self, at: &Instant<'_>, _: f64) {
@@ -175,6 +179,25 @@ mod tests {
         assert_eq!(level(0.0), [2.0, 2.0]);
         assert!((level(0.1)[1] - 2.0 * (-1.0_f64).exp()).abs() < 1e-15);
         assert!(simulated.torques[0].has_dry_friction());
+    }
+
+    #[test]
+    fn friction_that_bends_upwards_or_takes_off_does_not_hold_a_joint_at_rest() {
+        let (model, chi) = pendulum(0.0, 1.0, 1.0, 0.0);
+        let torques = |power: f64, f: f64| {
+            let terms = [term(EffectKind::NonlinearViscous, Place::Joint(0), &[power], &[f])];
+            let simulated = SimulatedEffects::new(&model, &chi, &terms);
+            let at = Instant { time: 0.0, q: &[0.3], dq: &[-0.5], load: &[0.0] };
+            let (mut torque, mut levels) = ([0.0], [[0.0; 2]]);
+            simulated.torques[0].torque(&at, &mut torque);
+            simulated.torques[0].dry_friction(&at, &mut levels);
+            (torque[0], levels[0])
+        };
+        assert_eq!(torques(2.0, 3.0), (-0.75, [0.0; 2]));
+        assert_eq!(torques(2.0, -3.0), (0.75, [0.0; 2]));
+        let (torque, levels) = torques(0.5, 3.0);
+        assert_eq!(torque, 0.0);
+        assert!((levels[0] - 3.0 * 0.5_f64.sqrt()).abs() < 1e-15 && levels[0] == levels[1]);
     }
 
     #[test]
