@@ -111,7 +111,9 @@ pub fn page(stories: &[String]) -> String {
         "# Evidence on real recordings\n\nWhat the standard model (rigid links, rotors, viscous and Coulomb friction, \
          offsets) leaves out in three public recordings, found by `dynid diagnose` without a hint. The diagnosis sees one \
          part of each recording; the other part is predicted afterwards, once. Errors are |measured - predicted| / \
-         |measured| of the torques, all joints together unless a joint is named. Every number on this page, every \
+         |measured| of the torques, all joints together unless a joint is named.\n\nThe rules of the diagnosis were chosen by people who had seen \
+         these recordings and their errors on both parts. Those for short recordings were chosen with the TX-40's second \
+         part and the Panda in view: these are development data, not an independent test. Every number on this page, every \
          figure, and every statement whether a goal was reached was written by\n\n```\ncargo run --release --example evidence -- ../shared/data --out docs\n```\n\n",
     );
     text.push_str(&stories.join("\n"));
