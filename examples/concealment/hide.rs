@@ -65,8 +65,11 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
     let mut hidden = Vec::new();
     for &effect in &case.effects {
         let taken = secrets.first().and_then(|(s, _)| s.joint);
-        let secret = Secret::draw(effect, model, taken, &mut random)
+        let mut secret = Secret::draw(effect, model, taken, &mut random)
             .ok_or_else(|| format!("{} has no joint that can hide {}", case.robot, effect.id()))?;
+        if let (EffectKind::TorqueSaturation, Some(joint)) = (effect, secret.joint) {
+            secret.most_torque = most_torque(&recorded(&World::plain(model)?, &motions, &[], noise)?, joint);
+        }
         let (size, seen) = sized(model, &secret, VISIBLE[case.size], &motions[..1], noise)?;
         hidden.push(Hidden {
             effect,
@@ -109,6 +112,11 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
     }
     let motions = recorded(&world, &motions, &secrets, noise)?;
     Ok(Recordings { hidden, motions, baseline, test })
+}
+
+/// Largest torque of a joint in recordings, N.m or N.
+fn most_torque(motions: &[Trajectory], joint: usize) -> f64 {
+    motions.iter().flat_map(|m| &m.torque[joint]).fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// The magnitude at which an effect shows as much as is wanted, as far as a robot may have it, and what is then seen.

@@ -14,6 +14,8 @@ pub struct Secret {
     pub joint: Option<usize>,
     /// What its law needs of chance, each uniform in 0..1.
     pub chance: [f64; 4],
+    /// Largest torque of its joint in what is diagnosed, N.m or N; 0 where its law does not count against it.
+    pub most_torque: f64,
 }
 
 impl Secret {
@@ -34,7 +36,7 @@ impl Secret {
                 Some(*joints.get(random.below(joints.len()))?)
             }
         };
-        Some(Self { effect, joint, chance: std::array::from_fn(|_| random.share()) })
+        Some(Self { effect, joint, chance: std::array::from_fn(|_| random.share()), most_torque: 0.0 })
     }
 
     /// The k-th number of chance, uniform in `low..high`.

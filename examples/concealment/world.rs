@@ -89,11 +89,10 @@ impl World {
                 vec![("level", level), ("distance", distance)]
             }
             // What the drive or the clock report is altered afterwards.
-            E::TorqueConstantError
-            | E::TorqueSaturation
-            | E::TimeDelay
-            | E::WrongSampleRate
-            | E::PositionOffset => vec![("size", magnitude)],
+            E::TorqueSaturation => vec![("size", magnitude), ("at_torque", secret.most_torque)],
+            E::TorqueConstantError | E::TimeDelay | E::WrongSampleRate | E::PositionOffset => {
+                vec![("size", magnitude)]
+            }
             _ => self.law(secret, j, magnitude),
         })
     }
@@ -295,17 +294,22 @@ fn elastic(model: &dyn Model, secret: &Secret, magnitude: f64) -> Result<Elastic
     Ok(ElasticJoint { joint, stiffness, damping, play })
 }
 
+/// Torque that a drive reports whose motor gives `torque`, where its constant droops by `size` at `most_torque`.
+fn reported(torque: f64, size: f64, most_torque: f64) -> f64 {
+    torque + size * most_torque * (torque / most_torque.max(1e-9)).powi(3)
+}
+
 /// What a recording says wrongly about the motion. `rate`: its control rate; a delayed recording holds every control
 /// sample, and `every` of them becomes a row.
 pub fn distort(motion: &mut Trajectory, secret: &Secret, size: f64, rate: f64, every: usize) {
     let j = secret.joint.unwrap_or(0);
     match secret.effect {
         EffectKind::TorqueConstantError => motion.torque[j].iter_mut().for_each(|x| *x *= 1.0 + size),
-        // The drive reports current times its constant: more than the torque where the constant droops.
+        // The drive reports current times its constant: more than the torque where the constant droops. The motor is
+        // the same in every motion: what it gives at a torque does not depend on how far the motion goes.
         EffectKind::TorqueSaturation => {
-            let largest = motion.torque[j].iter().fold(0.0_f64, |a, x| a.max(x.abs()));
             for x in &mut motion.torque[j] {
-                *x += size * largest * (*x / largest).powi(3);
+                *x = reported(*x, size, secret.most_torque);
             }
         }
         EffectKind::PositionOffset => motion.position[j].iter_mut().for_each(|q| *q += size),
@@ -319,5 +323,36 @@ pub fn distort(motion: &mut Trajectory, secret: &Secret, size: f64, rate: f64, e
             motion.time = pick(&motion.time, 0);
         }
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motor_droops_alike_in_every_motion() {
+        let secret = Secret {
+            effect: EffectKind::TorqueSaturation,
+            joint: Some(0),
+            chance: [0.0; 4],
+            most_torque: 4.0,
+        };
+        let report = |torque: [f64; 2]| {
+            let mut motion = Trajectory {
+                name: String::new(),
+                time: vec![0.0, 1.0],
+                position: vec![vec![0.0; 2]],
+                velocity: None,
+                torque: vec![torque.to_vec()],
+                fixed: Vec::new(),
+            };
+            distort(&mut motion, &secret, 0.2, 2000.0, 4);
+            motion.torque[0].clone()
+        };
+        let (gentle, hard) = (report([1.0, -2.0]), report([1.0, -4.0]));
+        assert_eq!(gentle[0], hard[0]);
+        assert!((hard[1] + 4.0 * 1.2).abs() < 1e-12);
+        assert!((gentle[1] + 2.0 * 1.05).abs() < 1e-12);
     }
 }
