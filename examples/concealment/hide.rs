@@ -57,8 +57,11 @@ pub struct Drawn {
 pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
     let ids: Vec<&str> = case.effects.iter().map(|e| e.id()).collect();
     let mut random = Random::of(&[&[&*case.robot, case.size_name()], &ids[..]].concat(), case.seed);
-    let count = 1 + random.below(3);
-    let length = [16.0, 10.0, 8.0][count - 1];
+    let drawn = random.below(3);
+    let (count, length) = match case.seconds {
+        Some(seconds) => (1, seconds),
+        None => (1 + drawn, [16.0, 10.0, 8.0][drawn]),
+    };
     let motions = planned(model, count, length, &mut random)?;
     let noise = random.bits();
     let mut secrets: Vec<(Secret, f64)> = Vec::new();

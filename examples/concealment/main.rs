@@ -56,6 +56,9 @@ pub struct Options {
     /// Hide two effects at once: each effect with another one of the list
     #[arg(long)]
     pairs: bool,
+    /// One motion of this duration, s, instead of one to three of 16 to 24 s together
+    #[arg(long)]
+    seconds: Option<f64>,
     /// Threads; the result does not depend on them
     #[arg(long, default_value_t = 2)]
     threads: usize,
@@ -81,6 +84,8 @@ pub struct Case {
     pub size: usize,
     /// Seed.
     pub seed: u64,
+    /// Duration of its one motion, s; `None` for one to three of the usual length.
+    pub seconds: Option<f64>,
 }
 
 impl Case {
@@ -206,7 +211,8 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
                         hidden.extend(partner(first, &effects, robot, name, seed));
                     }
                     // Without an effect a size is only another run.
-                    cases.push(Case { robot: robot.clone(), effects: hidden, size, seed });
+                    let seconds = options.seconds;
+                    cases.push(Case { robot: robot.clone(), effects: hidden, size, seed, seconds });
                 }
             }
         }

@@ -148,10 +148,14 @@ pub fn what_can_be_seen(
 fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes: f64) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let how = if options.pairs { "two at a time" } else { "one at a time" };
+    let motions = options.seconds.map_or_else(
+        || "one to three random motions, 16 to 24 s together".to_owned(),
+        |seconds| format!("one random motion of {seconds} s"),
+    );
     let _ = writeln!(
         text,
         "Every effect of the catalogue is hidden in simulated robots, {how}, and diagnosed without being told. A run is \
-         one to three random motions, 16 to 24 s together (Fourier series of 4 to 12 harmonics, or points joined by a \
+         {motions} (Fourier series of 4 to 12 harmonics, or points joined by a \
          profile), at 500 Hz in closed loop, with the nominal noise of the robot. Joint, shape and motions are drawn \
          for each run. Only after the diagnosis is it compared with what was hidden.\n"
     );
@@ -210,6 +214,9 @@ fn command(options: &Options) -> String {
     }
     if options.pairs {
         command.push_str(" --pairs");
+    }
+    if let Some(seconds) = options.seconds {
+        let _ = write!(command, " --seconds {seconds}");
     }
     command
 }

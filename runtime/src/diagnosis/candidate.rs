@@ -36,6 +36,8 @@ pub(super) struct Candidate {
     /// Joints whose residual the effect must explain a share of.
     pub own: Vec<usize>,
     pub trials: Vec<Trial>,
+    /// How many shapes were tried to find the best.
+    pub shapes: usize,
     /// The amplitude, where the effect's law leaves none free.
     pub fixed: Option<f64>,
     /// Whether a negative amplitude is something else.
@@ -274,5 +276,5 @@ pub(super) fn make(
     };
     let fixed = matches!(effect.form(), Form::Compliance(_)).then_some(1.0);
     let only_positive = matches!(effect.form(), Form::Joint(law) if law.only_positive());
-    Candidate { effect, place, own, trials, fixed, only_positive }
+    Candidate { effect, place, own, shapes: trials.len(), trials, fixed, only_positive }
 }

@@ -6,7 +6,13 @@
 
 use super::signals::{Signals, each_block};
 use crate::model::Model;
+use std::collections::BTreeSet;
 use std::ops::Range;
+
+/// Longest block of motion, s.
+pub(super) const LONGEST_BLOCK: f64 = 0.5;
+/// From this many blocks of that length on, their gains are compared.
+const ENOUGH_BLOCKS: usize = 24;
 
 /// One row.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +44,8 @@ pub(super) struct Design {
     kernels: Vec<Vec<f64>>,
     /// From one row to the next in a motion, s.
     pub step: f64,
+    /// Whether there are too few blocks of motion for gains to be compared block by block.
+    pub short: bool,
     /// Inner products of the columns and, last, y: `gram[joint][segment]`, square and row-major.
     pub gram: Vec<Vec<Vec<f64>>>,
 }
@@ -70,6 +78,7 @@ impl Design {
             y: Vec::new(),
             kernels: signals.iter().map(|s| hann((plan.half * s.rate).round().max(2.0) as usize)).collect(),
             step: plan.half,
+            short: false,
             gram: Vec::new(),
         };
         let mut kept: Vec<Vec<Vec<RowAt>>> = vec![Vec::new(); n];
@@ -104,6 +113,10 @@ impl Design {
                 design.ranges[j].push(start..design.rows.len());
             }
         }
+        let fresh = design.rows.iter().filter(|r| signals[r.signal].fresh);
+        let per_block = design.rows_within(LONGEST_BLOCK);
+        let blocks: BTreeSet<(usize, usize)> = fresh.map(|&r| design.block(r, per_block)).collect();
+        design.short = blocks.len() < ENOUGH_BLOCKS;
         design.fill(model, signals);
         design
     }
@@ -156,6 +169,11 @@ impl Design {
     /// Samples from one row to the next in a motion.
     pub fn spacing(&self, signal: usize) -> usize {
         (self.kernels[signal].len() / 2).max(1)
+    }
+
+    /// Rows in a stretch of motion of this duration, s.
+    pub fn rows_within(&self, duration: f64) -> usize {
+        (duration / self.step).ceil() as usize
     }
 
     /// The block of motion that a row is in, where blocks are `rows` rows long: the same for all joints.

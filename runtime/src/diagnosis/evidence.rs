@@ -1,10 +1,12 @@
 //! How sure it is that a gain is no accident, where residuals are not white and many candidates were tried.
 
 use super::candidate::Candidate;
-use super::design::Design;
+use super::design::{Design, LONGEST_BLOCK};
 use super::fit::Fit;
 use super::judge::{Fold, Verdict, own_part, rest_of_motion, single_motion};
+use super::memory::{Memory, forgotten, places};
 use super::significance::{Block, Evidence, mean_gain, mean_root, slope};
+use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
 /// Shifts in time that a waveform is compared with.
@@ -24,14 +26,8 @@ pub(super) fn waveform_evidence(
     let Some(own) = own_part(design, whole, sigma, trial, &everything) else { return Evidence::NONE };
     let residual = whole.residual(design);
     let mut waveform = vec![0.0; design.rows.len()];
-    for (k, column) in trial.dense(design).iter().enumerate() {
-        waveform.iter_mut().zip(column).for_each(|(w, c)| *w += c);
-        for (i, made) in design.columns.iter().enumerate() {
-            let x = own.x[(i, k)];
-            if x != 0.0 {
-                waveform.iter_mut().zip(made).for_each(|(w, c)| *w -= x * c);
-            }
-        }
+    for column in own.columns(design, trial) {
+        waveform.iter_mut().zip(&column).for_each(|(w, c)| *w += c);
     }
     let correlation = |shift: usize| -> f64 {
         let of_joint = |j: usize| {
@@ -49,19 +45,69 @@ pub(super) fn waveform_evidence(
     let n = null.len() as f64;
     let mean = null.iter().sum::<f64>() / n;
     let variance = null.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
-    Evidence {
-        significance: (correlation(0) - mean) / variance.sqrt().max(1e-12),
-        freedom: n - 1.0,
-        looks: 1,
+    let evidence = Evidence::student((correlation(0) - mean) / variance.sqrt().max(1e-12), n - 1.0);
+    Evidence { looks: candidate.shapes, ..evidence }
+}
+
+/// Evidence that what a candidate changes is really there, in a recording with too few blocks of motion to compare:
+/// its amplitudes against their covariance in a residual that remembers (Wald's test with the residual's own
+/// autocorrelation, taken with the candidate fitted).
+///
+/// Only for laws of one joint: what residuals of different joints have in common is not counted.
+fn memory_evidence(
+    design: &Design,
+    whole: &Fit,
+    sigma: &[f64],
+    candidate: &Candidate,
+    trial: usize,
+) -> Option<Evidence> {
+    let trial = &candidate.trials[trial];
+    let everything = vec![true; design.segments.len()];
+    let own = own_part(design, whole, sigma, trial, &everything)?;
+    let (amplitude, _) = own.solve(candidate)?;
+    let all = own.columns(design, trial);
+    let residual = whole.residual(design);
+    let mut left = residual.clone();
+    for (column, a) in all.iter().zip(amplitude.iter()) {
+        left.iter_mut().zip(column).for_each(|(r, c)| *r -= a * c);
     }
+    let determined = own.determined();
+    let columns: Vec<Vec<f64>> = determined.iter().map(|&k| all[k].clone()).collect();
+    let k = columns.len();
+    // What the fit takes out of the residual makes the noise look smaller than it is.
+    let (rows, fitted) = (design.rows.len() as f64, (design.columns.len() + k) as f64);
+    let spared = 1.0 - fitted / rows;
+    if spared <= 0.0 {
+        return None;
+    }
+    let mut products = DVector::zeros(k);
+    let mut covariance = DMatrix::zeros(k, k);
+    let mut freedom = f64::INFINITY;
+    for (j, s) in sigma.iter().enumerate() {
+        let places = places(design, j);
+        let memory = Memory::of(&places, &left, design.rows_within(LONGEST_BLOCK));
+        let weight = 1.0 / (s * s);
+        covariance += memory.covariance(&places, &columns) * (weight * weight / spared);
+        for r in design.of_joint(j) {
+            for (product, column) in products.iter_mut().zip(&columns) {
+                *product += weight * column[r] * residual[r];
+            }
+        }
+        if candidate.own.contains(&j) {
+            freedom = freedom.min(memory.independent_rows() * spared);
+        }
+    }
+    let squares = products.dot(&covariance.cholesky()?.solve(&products));
+    let evidence = Evidence::fisher(squares, k, freedom);
+    Some(Evidence { looks: UNSEEN * candidate.shapes, ..evidence })
 }
 
 /// Evidence that what a candidate predicts for held-back motion is really there, whatever depends on what within a
 /// block of motion.
 ///
-/// With enough blocks it is their mean gain. A short recording has too few for any mean of gains to say much: there
-/// blocks are only as long as the residual remembers, and the slope of the residual on the predicted change of torque
-/// is looked at as well.
+/// With enough blocks it is their mean gain. A short recording has too few for any mean of gains to say much: there the
+/// residual's memory tells how much a law of one joint stands out, and for laws of several joints, blocks are only as
+/// long as the residual remembers, and the slope of the residual on the predicted change of torque is looked at as well.
 pub(super) fn block_evidence(
     design: &Design,
     whole: &Fit,
@@ -70,21 +116,25 @@ pub(super) fn block_evidence(
     candidate: &Candidate,
     verdict: &Verdict,
 ) -> Evidence {
+    // Shapes are chosen on other motion than they are judged on; on a single motion they are not.
+    let shapes = if single_motion(design) { candidate.shapes } else { 1 };
     let of = |per_block| {
         let blocks = blocks(design, whole, folds, sigma, (candidate, verdict.trial), per_block);
         blocks.map(|b| b.into_values().collect::<Vec<Block>>())
     };
-    let longest = (LONGEST_BLOCK / design.step).ceil() as usize;
-    let Some(long) = of(longest) else { return Evidence::NONE };
-    if long.len() >= ENOUGH_BLOCKS {
-        return mean_gain(&long);
+    if !design.short {
+        let long = of(design.rows_within(LONGEST_BLOCK));
+        return long.map_or(Evidence::NONE, |long| Evidence { looks: shapes, ..mean_gain(&long) });
+    }
+    if candidate.own.len() == 1 {
+        return memory_evidence(design, whole, sigma, candidate, verdict.trial).unwrap_or(Evidence::NONE);
     }
     let Some(short) = of(rows_per_block(design, &whole.residual(design), &candidate.own)) else {
         return Evidence::NONE;
     };
     let (slope, gain) = (slope(&short), mean_gain(&short));
-    let better = if slope.tail() < gain.tail() { slope } else { gain };
-    Evidence { looks: 2 * LEANING, ..better }
+    let better = if slope.tail < gain.tail { slope } else { gain };
+    Evidence { looks: 2 * LEANING * shapes, ..better }
 }
 
 /// Probability that a law which gains more than its rival on held-back motion does so by accident: their gains are
@@ -101,7 +151,7 @@ pub(super) fn doubt(
     let of = |which| blocks(design, whole, folds, sigma, which, per_block);
     let (Some(law), Some(rival)) = (of(law), of(rival)) else { return 0.0 };
     let ahead: Vec<f64> = law.iter().map(|(k, b)| b.gain() - rival.get(k).map_or(0.0, Block::gain)).collect();
-    mean_root(&ahead).tail()
+    mean_root(&ahead).tail
 }
 
 /// What a trial of a candidate, fitted to the other motion, changes on each block of held-back motion.
@@ -148,67 +198,20 @@ fn blocks(
     Some(blocks)
 }
 
-/// Longest block of motion, s.
-pub(super) const LONGEST_BLOCK: f64 = 0.5;
-/// From this many blocks of that length on, their mean gain decides alone.
-const ENOUGH_BLOCKS: usize = 24;
 /// Shortest block, s.
 const SHORTEST_BLOCK: f64 = 0.1;
-/// Autocorrelation below which a residual has forgotten.
-const FORGOTTEN: f64 = 0.2;
 /// Blocks are this many times as long as the residual remembers.
 const MEMORIES: usize = 2;
 
 /// Accidents come this many times as often as the tail says where neighbouring blocks still lean on each other.
 const LEANING: usize = 2;
+/// The same where a residual remembers for longer than it looks.
+const UNSEEN: usize = 4;
 
 /// Rows of a block: a few times the lag at which the residual of the slowest of these joints has forgotten itself.
 fn rows_per_block(design: &Design, residual: &[f64], joints: &[usize]) -> usize {
-    let longest = (LONGEST_BLOCK / design.step).ceil() as usize;
-    let shortest = (SHORTEST_BLOCK / design.step).ceil() as usize;
-    let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
-    let memory = |j: usize| {
-        let motion = |signal: usize| {
-            let rows = design.of_signal(j, signal).into_iter().flat_map(|(range, _)| range);
-            rows.map(|r| (design.rows[r].centre / design.spacing(signal), residual[r])).collect()
-        };
-        let series: Vec<Vec<(usize, f64)>> = (0..motions).map(motion).collect();
-        (1..longest).find(|&lag| autocorrelation(&series, lag) < FORGOTTEN).unwrap_or(longest)
-    };
-    let memory = joints.iter().map(|&j| memory(j)).max().unwrap_or(longest);
-    (MEMORIES * memory).clamp(shortest, longest.max(shortest))
-}
-
-/// Correlation of series with themselves `lag` places later, over pairs of places that are there.
-fn autocorrelation(series: &[Vec<(usize, f64)>], lag: usize) -> f64 {
-    let (mut products, mut pairs, mut squares, mut places) = (0.0, 0, 0.0, 0);
-    for series in series {
-        let mut later = series.iter().peekable();
-        for &(place, x) in series {
-            squares += x * x;
-            places += 1;
-            while later.next_if(|(l, _)| *l < place + lag).is_some() {}
-            if let Some((_, y)) = later.peek().filter(|(l, _)| *l == place + lag) {
-                products += x * y;
-                pairs += 1;
-            }
-        }
-    }
-    if pairs == 0 || squares == 0.0 { 0.0 } else { products / pairs as f64 / (squares / places as f64) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn correlation_looks_at_pairs_of_rows_that_are_there() {
-        // A square wave of period 4, with rows missing: 1 after four rows, -1 after two, nothing after one.
-        let wave = |k: usize| if k % 4 < 2 { 1.0 } else { -1.0 };
-        let rows = [(0..400).filter(|k| k % 37 != 0).map(|k| (k, wave(k))).collect()];
-        assert!((autocorrelation(&rows, 4) - 1.0).abs() < 1e-12);
-        assert!((autocorrelation(&rows, 2) + 1.0).abs() < 1e-12);
-        assert!(autocorrelation(&rows, 1).abs() < 0.02);
-        assert_eq!(autocorrelation(&[vec![(0, 1.0), (9, 1.0)]], 1), 0.0);
-    }
+    let longest = design.rows_within(LONGEST_BLOCK);
+    let shortest = design.rows_within(SHORTEST_BLOCK);
+    let memory = |&j: &usize| forgotten(&places(design, j), residual, longest);
+    (MEMORIES * joints.iter().map(memory).max().unwrap_or(longest)).clamp(shortest, longest.max(shortest))
 }

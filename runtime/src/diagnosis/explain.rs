@@ -4,8 +4,7 @@ use super::candidate::{delay_columns, pace};
 use super::contact_search::Contacts;
 use super::context::Context;
 use super::curves;
-use super::design::Design;
-use super::evidence::LONGEST_BLOCK;
+use super::design::{Design, LONGEST_BLOCK};
 use super::fit::fit_weighted;
 use super::held_back::{HeldBack, hold_back};
 use super::judge::single_motion;
@@ -358,13 +357,10 @@ fn delay_finding(search: &mut Search<'_, '_>, skew: f64, settings: &Settings) ->
         return None;
     }
     let variance = side.fit.variances()[p].max(0.0);
-    let per_block = (LONGEST_BLOCK / side.design.step).ceil() as usize;
+    let per_block = side.design.rows_within(LONGEST_BLOCK);
     let blocks: BTreeSet<_> = side.design.rows.iter().map(|&r| side.design.block(r, per_block)).collect();
-    let evidence = Evidence {
-        significance: skew.abs() / variance.sqrt().max(1e-300),
-        freedom: blocks.len().saturating_sub(1) as f64,
-        looks: 1,
-    };
+    let evidence =
+        Evidence::student(skew.abs() / variance.sqrt().max(1e-300), blocks.len().saturating_sub(1) as f64);
     let mut finding = Finding {
         effect: EffectKind::TimeDelay.id().into(),
         joints: Vec::new(),

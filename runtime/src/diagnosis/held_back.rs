@@ -24,11 +24,13 @@ impl HeldBack {
     }
 }
 
-/// Share of a single motion that is fitted; the rest comes later in time and is predicted.
-const FITTED_SHARE: f64 = 0.6;
+/// Where a single motion of so many segments is cut: what comes before is fitted, and predicts what comes after.
+pub(super) fn cuts(segments: usize) -> [usize; 2] {
+    [5, 6].map(|eighths| (segments * eighths / 8).max(1))
+}
 
 /// Predicts held-back motion with the columns of a design: every motion once from the others; a single motion
-/// forward in time; with a baseline, where `from_baseline` is set, from the baseline alone.
+/// forward in time, from two instants on; with a baseline, where `from_baseline` is set, from the baseline alone.
 pub(super) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> HeldBack {
     let n = design.joints;
     let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
@@ -41,8 +43,7 @@ pub(super) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> 
     let splits: Vec<(Vec<bool>, Vec<usize>)> = if from_baseline {
         vec![(design.segments.iter().map(|s| !s.fresh).collect(), fresh.clone())]
     } else if single_motion(design) && fresh.len() > 1 {
-        let cut = ((fresh.len() as f64 * FITTED_SHARE).round() as usize).clamp(1, fresh.len() - 1);
-        vec![without(&|g| fresh[cut..].contains(&g))]
+        cuts(fresh.len()).map(|cut| without(&|g| fresh[cut..].contains(&g))).to_vec()
     } else if moved.len() > 1 {
         moved.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
     } else {

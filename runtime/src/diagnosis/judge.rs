@@ -3,6 +3,7 @@
 use super::candidate::{Candidate, Trial};
 use super::design::Design;
 use super::fit::Fit;
+use super::held_back::cuts;
 use nalgebra::{DMatrix, DVector};
 
 /// Motion that is fitted and motion that is predicted.
@@ -55,6 +56,8 @@ pub(super) struct Own {
     b: DVector<f64>,
 }
 
+/// What one more number must gain to be worth it, in units of the noise variance (Akaike 1974).
+const NUMBER: f64 = 2.0;
 /// Least part of a column that is its own: below it, the design makes the column itself.
 const OWN_PART: f64 = 2e-4;
 
@@ -104,6 +107,22 @@ pub(super) fn own_part(
 }
 
 impl Own {
+    /// The columns without what the design's columns make of them, on all rows.
+    pub fn columns(&self, design: &Design, trial: &Trial) -> Vec<Vec<f64>> {
+        let mut columns = trial.dense(design);
+        for (k, column) in columns.iter_mut().enumerate() {
+            for (made, &x) in design.columns.iter().zip(self.x.column(k).iter()).filter(|(_, x)| **x != 0.0) {
+                column.iter_mut().zip(made).for_each(|(c, m)| *c -= x * m);
+            }
+        }
+        columns
+    }
+
+    /// Columns that have a part of their own.
+    pub fn determined(&self) -> Vec<usize> {
+        (0..self.b.len()).filter(|&k| self.s[(k, k)] > 0.0).collect()
+    }
+
     /// Amplitudes and in-sample gain.
     pub fn solve(&self, candidate: &Candidate) -> Option<(DVector<f64>, f64)> {
         if let Some(value) = candidate.fixed {
@@ -168,7 +187,8 @@ pub(super) fn judge(
         for (k, trial) in candidate.trials.iter().enumerate() {
             let Some(own) = own_part(design, fit, sigma, trial, train) else { continue };
             let Some((a, gain)) = own.solve(candidate) else { continue };
-            if best.as_ref().is_none_or(|b| gain > b.0) {
+            let worth = |gain: f64, numbers: usize| gain - NUMBER * numbers as f64;
+            if best.as_ref().is_none_or(|b| worth(gain, a.len()) > worth(b.0, b.2.len())) {
                 best = Some((gain, k, a, own));
             }
         }
@@ -304,33 +324,24 @@ fn change(
 }
 
 /// Whether a candidate improves later time of a single motion when everything, standard parameters included, is fitted
-/// to the time before: on its own joints by at least `least` of their squares, and not at the cost of the others.
-pub(super) fn holds_forward(
-    design: &Design,
-    sigma: &[f64],
-    candidate: &Candidate,
-    trial: usize,
-    least: f64,
-) -> bool {
+/// to the time before, on its own joints. (The others see it only through parameters
+/// that they share, whose extrapolation from a part of a motion is noise.)
+pub(super) fn holds_forward(design: &Design, sigma: &[f64], candidate: &Candidate, trial: usize) -> bool {
     let segments = design.segments.len();
-    let (mut own_gain, mut before, mut total) = (0.0, 0.0, 0.0);
-    for cut in [segments * 5 / 8, segments * 3 / 4] {
+    let mut gain = 0.0;
+    for cut in cuts(segments) {
         let train: Vec<bool> = (0..segments).map(|g| g < cut).collect();
         let fit = Fit::new(design, sigma, |g| train[g]);
         let trial = &candidate.trials[trial];
-        let Some(own) = own_part(design, &fit, sigma, trial, &train) else { return false };
-        let Some((a, _)) = own.solve(candidate) else { return false };
-        let d = -(&own.x * &a);
-        for (j, &s) in sigma.iter().enumerate() {
+        let Some(part) = own_part(design, &fit, sigma, trial, &train) else { return false };
+        let Some((a, _)) = part.solve(candidate) else { return false };
+        let d = -(&part.x * &a);
+        for &j in &candidate.own {
+            let weight = 1.0 / (sigma[j] * sigma[j]);
             for g in cut..segments {
-                let gain = change(design, &fit, trial, &a, &d, j, g) / (s * s);
-                total += gain;
-                if candidate.own.contains(&j) {
-                    own_gain += gain;
-                    before += fit.squares(design, j, g) / (s * s);
-                }
+                gain += weight * change(design, &fit, trial, &a, &d, j, g);
             }
         }
     }
-    total > 0.0 && own_gain > least * before
+    gain > 0.0
 }

@@ -6,6 +6,7 @@
 //!    elasticity, backlash).
 //! 3. Every effect of the catalogue, at every place and with a grid of shapes, is tried together with all standard
 //!    parameters, and judged on motion that was held back; the best that holds becomes part of the model; then again.
+//!    On a short recording, where one law hides another, two of a joint are tried together.
 //! 4. What was accepted is reconsidered, pruned and explained.
 
 #![allow(
@@ -23,7 +24,9 @@ mod explain;
 mod fit;
 mod held_back;
 mod judge;
+mod memory;
 mod outcome;
+mod pair;
 mod parallel;
 mod predict;
 mod quantities;

@@ -10,7 +10,7 @@ use super::context::Context;
 use super::design::Design;
 use super::fit::{Fit, fit_weighted};
 use super::held_back::hold_back;
-use super::judge::{Fold, folds, is_shown, judge};
+use super::judge::{Fold, folds, holds_forward, is_shown, judge, single_motion};
 use super::outcome::OrderSpectrum;
 use super::parallel;
 use super::select::Winner;
@@ -221,15 +221,20 @@ impl<'c, 'a> Search<'c, 'a> {
         while self.terms.len() < settings.most_effects {
             let done = self.terms.len() as f64 / settings.most_effects as f64;
             progress.at(0.6 + 0.25 * done, "held-out tests");
-            let mut winner = self.best(settings, None);
+            let mut winner = self.best(settings, None, 1);
             // Compliant transmissions of neighbours ring alike: which one it is shows when both are tuned.
             if winner.as_ref().is_none_or(|w| self.side(w.pace).candidates[w.index].fixed.is_some()) {
                 self.polish(settings.threads);
-                winner = self.best(settings, None);
+                winner = self.best(settings, None, 1);
             }
-            let Some(winner) = winner else { break };
-            let accepted = self.accept(&winner);
-            self.terms.push(accepted);
+            let found = match winner {
+                Some(winner) => vec![self.accept(&winner)],
+                None => self.pair(settings).map_or_else(Vec::new, Vec::from),
+            };
+            if found.is_empty() {
+                break;
+            }
+            self.terms.extend(found);
             self.settle();
             self.reconsider(settings);
         }
@@ -290,7 +295,7 @@ impl<'c, 'a> Search<'c, 'a> {
     }
 
     /// Refits, and prepares the candidates for what is left.
-    fn settle(&mut self) {
+    pub fn settle(&mut self) {
         self.refit();
         let (context, change) = (&*self.context, self.change);
         for side in [&mut self.slow, &mut self.fast] {
@@ -332,6 +337,11 @@ impl<'c, 'a> Search<'c, 'a> {
         residual
     }
 
+    /// Candidates that are tried, each with all of its shapes.
+    pub fn tries(&self) -> usize {
+        self.slow.candidates.len() + self.fast.candidates.len()
+    }
+
     /// Whether a candidate is in the model already, or has been taken out of it.
     pub fn settled(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
@@ -344,7 +354,7 @@ impl<'c, 'a> Search<'c, 'a> {
     }
 
     /// Refines the shape of the winner on all motion.
-    fn accept(&self, winner: &Winner) -> Accepted {
+    pub fn accept(&self, winner: &Winner) -> Accepted {
         let side = self.side(winner.pace);
         let candidate = &side.candidates[winner.index];
         let shape = self.refined(side, candidate, &candidate.trials[winner.verdict.trial].shape);
@@ -370,7 +380,7 @@ impl<'c, 'a> Search<'c, 'a> {
             let old = self.terms.remove(k);
             self.settle();
             let joint = (old.own.len() < self.slow.design.joints).then(|| old.own[0]);
-            let replacement = self.best(settings, joint).map(|w| self.accept(&w));
+            let replacement = self.best(settings, joint, 1).map(|w| self.accept(&w));
             let keep = match replacement {
                 Some(new) if new.effect == old.effect && new.place == old.place => {
                     Some(Accepted { shape: new.shape, rivals: new.rivals, ..old.clone() })
@@ -412,7 +422,12 @@ impl<'c, 'a> Search<'c, 'a> {
             );
             let worth = judge(&side.design, &side.fit, &side.folds, &side.sigma, &candidate)
                 .is_some_and(|v| v.share >= 0.6 * settings.least_share && v.total() > 0.0);
-            if worth && with < without {
+            let better = if single_motion(&side.design) {
+                holds_forward(&side.design, &side.sigma, &candidate, 0)
+            } else {
+                with < without
+            };
+            if worth && better {
                 self.terms.insert(k, term);
                 k += 1;
             } else {

@@ -24,12 +24,57 @@ pub(super) struct Winner {
     pub rivals: Vec<Rival>,
 }
 
+/// A candidate of a round: the side it is on, its index there, and its verdict.
+pub(super) struct Ranked {
+    pub pace: Pace,
+    pub index: usize,
+    pub verdict: Verdict,
+}
+
 impl Search<'_, '_> {
-    /// The best candidate that holds, among those on `joint` where one is given.
-    pub(super) fn best(&self, settings: &Settings, joint: Option<usize>) -> Option<Winner> {
-        let mut ranked: Vec<(Pace, usize, Verdict)> = Vec::new();
-        for which in [Pace::Slow, Pace::Fast] {
-            let side = self.side(which);
+    /// The best candidate that holds, among those on `joint` where one is given; the candidates have been looked
+    /// through `rounds` times.
+    pub(super) fn best(&self, settings: &Settings, joint: Option<usize>, rounds: usize) -> Option<Winner> {
+        let ranked = self.ranked(joint);
+        let holding = self.holding(&ranked, settings);
+        let tries = rounds * self.tries();
+        for (h, (k, evidence)) in holding.iter().enumerate() {
+            let (side, candidate) = self.of(&ranked[*k]);
+            let verdict = &ranked[*k].verdict;
+            // Whatever explains more of a joint than something that is no accident is no accident either.
+            let confidence = holding[h..]
+                .iter()
+                .filter(|(l, _)| self.of(&ranked[*l]).1.own == candidate.own)
+                .map(|(_, evidence)| evidence.confidence(tries))
+                .fold(0.0, f64::max);
+            if confidence < settings.least_confidence {
+                continue;
+            }
+            if single_motion(&side.design)
+                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial)
+            {
+                continue;
+            }
+            if self.simpler_does(&ranked, candidate, verdict) {
+                continue;
+            }
+            return Some(Winner {
+                pace: ranked[*k].pace,
+                index: ranked[*k].index,
+                verdict: verdict.clone(),
+                significance: evidence.significance,
+                confidence,
+                rivals: self.rivals(&ranked, *k, settings),
+            });
+        }
+        None
+    }
+
+    /// Candidates, on `joint` where one is given, that are not settled: those that gain most on held-back motion first.
+    pub(super) fn ranked(&self, joint: Option<usize>) -> Vec<Ranked> {
+        let mut ranked = Vec::new();
+        for pace in [Pace::Slow, Pace::Fast] {
+            let side = self.side(pace);
             let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
                 let candidate = &side.candidates[index];
                 if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.settled(candidate) {
@@ -37,98 +82,74 @@ impl Search<'_, '_> {
                 }
                 judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate)
             });
-            ranked.extend(verdicts.into_iter().enumerate().filter_map(|(k, v)| Some((which, k, v?))));
+            let judged = verdicts.into_iter().enumerate();
+            ranked.extend(judged.filter_map(|(index, v)| Some(Ranked { pace, index, verdict: v? })));
         }
-        ranked.sort_by(|a, b| b.2.total().total_cmp(&a.2.total()));
+        ranked.sort_by(|a, b| b.verdict.total().total_cmp(&a.verdict.total()));
+        ranked
+    }
+
+    /// The first of them that hold, by their place in the ranking, and the evidence for each.
+    pub(super) fn holding(&self, ranked: &[Ranked], settings: &Settings) -> Vec<(usize, Evidence)> {
         let holding: Vec<usize> = (0..ranked.len())
             .filter(|&k| {
-                let (which, index, verdict) = &ranked[k];
-                let side = self.side(*which);
-                holds(side, &side.candidates[*index], verdict, settings)
+                let (side, candidate) = self.of(&ranked[k]);
+                holds(side, candidate, &ranked[k].verdict, settings)
             })
             .take(MOST_CHECKED)
             .collect();
-        let evidence = parallel::map(self.threads, holding.len(), |h| {
-            let (which, index, verdict) = &ranked[holding[h]];
-            let side = self.side(*which);
-            self.evidence(side, &side.candidates[*index], verdict)
-        });
-        let own = |k: usize| &self.side(ranked[k].0).candidates[ranked[k].1].own;
-        for (h, &k) in holding.iter().enumerate() {
-            let (which, index, verdict) = &ranked[k];
-            let side = self.side(*which);
-            let candidate = &side.candidates[*index];
-            // Whatever explains more of a joint than something that is no accident is no accident either.
-            let confidence = (h..holding.len())
-                .filter(|&l| *own(holding[l]) == candidate.own)
-                .map(|l| evidence[l].1)
-                .fold(0.0, f64::max);
-            if confidence < settings.least_confidence {
-                continue;
-            }
-            if single_motion(&side.design)
-                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial, settings.least_share)
-            {
-                continue;
-            }
-            if self.simpler_does(&ranked, candidate, verdict) {
-                continue;
-            }
-            let rivals = ranked
-                .iter()
-                .enumerate()
-                .filter(|(i, (p, c, _))| {
-                    *i != k && self.side(*p).candidates[*c].own.iter().any(|j| candidate.own.contains(j))
-                })
-                .take(5)
-                .map(|(_, (p, c, v))| {
-                    let rival = &self.side(*p).candidates[*c];
-                    let comparable =
-                        p == which && rival.own == candidate.own && holds(side, rival, v, settings);
-                    let doubt = if comparable {
-                        let (law, rival) = ((candidate, verdict.trial), (rival, v.trial));
-                        doubt(&side.design, &side.fit, &side.folds, &side.sigma, law, rival)
-                    } else {
-                        0.0
-                    };
-                    Rival { effect: rival.effect, place: rival.place, share: v.share, doubt }
-                })
-                .collect();
-            return Some(Winner {
-                pace: *which,
-                index: *index,
-                verdict: verdict.clone(),
-                significance: evidence[h].0.significance,
-                confidence,
-                rivals,
-            });
+        let evidence = parallel::map(self.threads, holding.len(), |h| self.evidence(&ranked[holding[h]]));
+        holding.into_iter().zip(evidence).collect()
+    }
+
+    pub(super) fn of(&self, ranked: &Ranked) -> (&Side, &Candidate) {
+        let side = self.side(ranked.pace);
+        (side, &side.candidates[ranked.index])
+    }
+
+    pub(super) fn evidence(&self, ranked: &Ranked) -> Evidence {
+        let (side, candidate) = self.of(ranked);
+        if candidate.fixed.is_some() {
+            waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, ranked.verdict.trial)
+        } else {
+            block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, &ranked.verdict)
         }
-        None
+    }
+
+    /// Other explanations of the joints of a candidate.
+    fn rivals(&self, ranked: &[Ranked], winner: usize, settings: &Settings) -> Vec<Rival> {
+        let (side, candidate) = self.of(&ranked[winner]);
+        ranked
+            .iter()
+            .enumerate()
+            .filter(|(k, r)| *k != winner && self.of(r).1.own.iter().any(|j| candidate.own.contains(j)))
+            .take(5)
+            .map(|(_, other)| {
+                let rival = self.of(other).1;
+                let comparable = other.pace == ranked[winner].pace
+                    && rival.own == candidate.own
+                    && holds(side, rival, &other.verdict, settings);
+                let doubt = if comparable {
+                    let law = (candidate, ranked[winner].verdict.trial);
+                    let rival = (rival, other.verdict.trial);
+                    doubt(&side.design, &side.fit, &side.folds, &side.sigma, law, rival)
+                } else {
+                    0.0
+                };
+                Rival { effect: rival.effect, place: rival.place, share: other.verdict.share, doubt }
+            })
+            .collect()
     }
 
     /// Whether the simpler law of which this one is an extension explains nearly as much at the same place.
-    fn simpler_does(&self, ranked: &[(Pace, usize, Verdict)], more: &Candidate, verdict: &Verdict) -> bool {
+    fn simpler_does(&self, ranked: &[Ranked], more: &Candidate, verdict: &Verdict) -> bool {
         let Some(simpler) = simpler_than(more.effect) else { return false };
-        ranked.iter().any(|(which, index, found)| {
-            let candidate = &self.side(*which).candidates[*index];
+        ranked.iter().any(|other| {
+            let candidate = self.of(other).1;
             candidate.effect == simpler
                 && candidate.place == more.place
-                && found.total() > SIMPLER_DOES * verdict.total()
+                && other.verdict.total() > SIMPLER_DOES * verdict.total()
         })
-    }
-
-    /// Evidence for a candidate, and the confidence that it gives after all that was tried.
-    fn evidence(&self, side: &Side, candidate: &Candidate, verdict: &Verdict) -> (Evidence, f64) {
-        let tries = self.slow.candidates.len() + self.fast.candidates.len();
-        let found = if candidate.fixed.is_some() {
-            waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, verdict.trial)
-        } else {
-            block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, verdict)
-        };
-        // Free shapes are chosen on other motion than they are judged on; those of a waveform, and of a single
-        // motion's stretches, are not.
-        let chosen_here = candidate.fixed.is_some() || single_motion(&side.design);
-        (found, found.confidence(if chosen_here { tries * candidate.trials.len() } else { tries }))
     }
 }
 
@@ -143,11 +164,15 @@ fn simpler_than(effect: EffectKind) -> Option<EffectKind> {
     }
 }
 
+/// Whether a candidate explains enough, nearly everywhere, of what was fitted and of what was held back.
 fn holds(side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
     let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
     let folds = verdict.held_out.len();
     // Of many stretches of one motion a few may be untouched by an effect.
-    let needed = if candidate.fixed.is_some() {
+    let needed = if side.design.short {
+        // Its evidence is the residual's memory, not how many stretches agree.
+        0
+    } else if candidate.fixed.is_some() {
         folds / 2 + 1
     } else if side.design.in_stretches() {
         folds - folds / 4

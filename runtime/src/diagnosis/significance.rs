@@ -1,30 +1,38 @@
 //! Tests over blocks of motion: whatever depends on what within a block, and however many candidates were tried.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// How sure it is that a gain is no accident.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Evidence {
     /// In standard errors.
     pub significance: f64,
-    /// Degrees of freedom of the standard error.
-    pub freedom: f64,
+    /// Probability that an accident comes as far.
+    pub tail: f64,
     /// Chances that an accident has at the same rows: ways of looking at them, of which this is the best.
     pub looks: usize,
 }
 
 impl Evidence {
-    pub const NONE: Self = Self { significance: 0.0, freedom: 1.0, looks: 1 };
+    pub const NONE: Self = Self { significance: 0.0, tail: 0.5, looks: 1 };
 
-    /// One minus the probability that the best of `tries` candidates comes as far by accident (Bonferroni), by
-    /// Student's distribution.
-    pub fn confidence(&self, tries: usize) -> f64 {
-        (1.0 - self.tail() * (tries * self.looks) as f64).clamp(0.0, 0.9999)
+    /// Of a number that is this many standard errors above zero, these with so many degrees of freedom (Student).
+    pub fn student(significance: f64, freedom: f64) -> Self {
+        let tail = StudentsT::new(0.0, 1.0, freedom.max(1.0)).map_or(1.0, |t| t.sf(significance));
+        Self { significance, tail, looks: 1 }
     }
 
-    /// Probability that an accident comes as far.
-    pub fn tail(&self) -> f64 {
-        StudentsT::new(0.0, 1.0, self.freedom.max(1.0)).map_or(1.0, |t| t.sf(self.significance))
+    /// Of `numbers` numbers whose squares, in units of their covariance, add up to `squares`, the covariance with so
+    /// many degrees of freedom (Fisher).
+    pub fn fisher(squares: f64, numbers: usize, freedom: f64) -> Self {
+        let k = numbers as f64;
+        let tail = FisherSnedecor::new(k, freedom).map_or(1.0, |f| f.sf(squares.max(0.0) / k));
+        Self { significance: squares.max(0.0).sqrt(), tail, looks: 1 }
+    }
+
+    /// One minus the probability that the best of `tries` candidates comes as far by accident (Bonferroni).
+    pub fn confidence(&self, tries: usize) -> f64 {
+        (1.0 - self.tail * (tries * self.looks) as f64).clamp(0.0, 0.9999)
     }
 }
 
@@ -61,7 +69,7 @@ pub(super) fn slope(blocks: &[Block]) -> Evidence {
             without * without
         })
         .sum();
-    Evidence { significance: slope / variance.sqrt().max(1e-12), freedom: carrying - 1.0, looks: 1 }
+    Evidence::student(slope / variance.sqrt().max(1e-12), carrying - 1.0)
 }
 
 /// The mean gain of a block in standard errors: weaker than the slope where few blocks say little, stronger where few
@@ -79,7 +87,7 @@ pub(super) fn mean_root(gains: &[f64]) -> Evidence {
     }
     let mean = roots.iter().sum::<f64>() / n;
     let variance = roots.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
-    Evidence { significance: mean / (variance / n).sqrt().max(1e-12), freedom: n - 1.0, looks: 1 }
+    Evidence::student(mean / (variance / n).sqrt().max(1e-12), n - 1.0)
 }
 
 #[cfg(test)]
@@ -90,11 +98,14 @@ mod tests {
 
     #[test]
     fn confidence_counts_every_candidate_and_knows_that_few_blocks_say_little() {
-        let at = |significance, freedom| Evidence { significance, freedom, looks: 1 };
+        let at = Evidence::student;
         assert!(at(5.0, 100.0).confidence(100) > 0.999);
         assert!(at(5.0, 100.0).confidence(100_000) < at(5.0, 100.0).confidence(100));
         // Student's tail beyond 4 standard errors with 8 degrees of freedom is 0.0019749 (scipy.stats.t.sf).
         assert!((at(4.0, 8.0).confidence(100) - (1.0 - 100.0 * 0.001_974_886)).abs() < 1e-6);
+        // Fisher's tail beyond 6 with 2 and 20 degrees of freedom is 0.0091 (scipy.stats.f.sf); one number is Student's.
+        assert!((Evidence::fisher(12.0, 2, 20.0).tail - 0.009_094_947).abs() < 1e-8);
+        assert!((Evidence::fisher(9.0, 1, 20.0).tail - 2.0 * at(3.0, 20.0).tail).abs() < 1e-12);
         assert_eq!(at(0.0, 100.0).confidence(100), 0.0);
         assert_eq!(Evidence::NONE.confidence(1), 0.5);
     }
@@ -126,7 +137,7 @@ mod tests {
         for _ in 0..runs {
             let change = remembering(&mut rng, rows, 0.9);
             let residual = remembering(&mut rng, rows, 0.5);
-            let tail = slope(&blocks_of(&change, &residual, per_block)).tail();
+            let tail = slope(&blocks_of(&change, &residual, per_block)).tail;
             below.iter_mut().zip(levels).for_each(|(b, level)| *b += usize::from(tail < level));
         }
         below.map(|b| b as f64 / runs as f64)
@@ -149,8 +160,8 @@ mod tests {
         let noise = remembering(&mut rng, 108, 0.5);
         let residual: Vec<f64> = change.iter().zip(&noise).map(|(c, n)| c + 0.3 * n).collect();
         let blocks = blocks_of(&change, &residual, 6);
-        assert!(slope(&blocks).tail() < 1e-4, "{:?}", slope(&blocks));
-        assert!(slope(&blocks).tail() < mean_gain(&blocks).tail());
+        assert!(slope(&blocks).tail < 1e-4, "{:?}", slope(&blocks));
+        assert!(slope(&blocks).tail < mean_gain(&blocks).tail);
     }
 
     #[test]

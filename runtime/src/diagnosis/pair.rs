@@ -1,0 +1,72 @@
+//! Two laws of one joint that show only together.
+//!
+//! What one of them leaves makes the residual remember and hides the other: on a short recording neither is certain
+//! alone. With one of them in the model, the other can be, and then the first beside it.
+
+use super::parallel;
+use super::search::{Accepted, Search};
+use super::select::Winner;
+use super::settings::Settings;
+
+/// A law is tried as the first of a pair where an accident comes as far less often than this.
+const LIKELY: f64 = 0.01;
+
+impl Search<'_, '_> {
+    /// Two laws of a joint, each certain and holding beside the other, where none is certain alone.
+    pub(super) fn pair(&mut self, settings: &Settings) -> Option<[Accepted; 2]> {
+        if !self.slow.design.short {
+            return None;
+        }
+        let firsts = self.likely(settings);
+        for first in &firsts {
+            let joint = first.own[0];
+            let second = self.beside(first, settings, joint, firsts.len());
+            let again = second.as_ref().and_then(|second| self.beside(second, settings, joint, firsts.len()));
+            if let (Some(second), Some(again)) = (second, again)
+                && again.effect == first.effect
+                && again.place == first.place
+            {
+                return Some([again, second]);
+            }
+        }
+        None
+    }
+
+    /// Laws of one joint that are no likely accident, as first laws of a pair.
+    fn likely(&self, settings: &Settings) -> Vec<Accepted> {
+        let mut ranked = self.ranked(None);
+        ranked.retain(|r| self.of(r).1.own.len() == 1 && r.verdict.share >= settings.least_share);
+        let evidence = parallel::map(self.threads, ranked.len(), |k| self.evidence(&ranked[k]));
+        ranked
+            .iter()
+            .zip(evidence)
+            .filter(|(_, evidence)| evidence.tail < LIKELY)
+            .map(|(first, evidence)| {
+                self.accept(&Winner {
+                    pace: first.pace,
+                    index: first.index,
+                    verdict: first.verdict.clone(),
+                    significance: evidence.significance,
+                    confidence: 0.0,
+                    rivals: Vec::new(),
+                })
+            })
+            .collect()
+    }
+
+    /// The best law of a joint with `law` in the model, where the candidates are looked through `rounds` times.
+    fn beside(
+        &mut self,
+        law: &Accepted,
+        settings: &Settings,
+        joint: usize,
+        rounds: usize,
+    ) -> Option<Accepted> {
+        self.terms.push(law.clone());
+        self.settle();
+        let found = self.best(settings, Some(joint), rounds).map(|winner| self.accept(&winner));
+        self.terms.pop();
+        self.settle();
+        found
+    }
+}
