@@ -4,6 +4,7 @@ use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
+use serde::{Deserialize, Serialize};
 
 use crate::motions::{planned, recorded};
 use crate::random::Random;
@@ -14,7 +15,7 @@ use crate::world::{Number, World};
 use crate::{Case, Failure};
 
 /// An effect as it was hidden.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Hidden {
     /// Which, and 0-based joint.
     pub effect: EffectKind,
@@ -25,6 +26,7 @@ pub struct Hidden {
     /// Its torque relative to the noise, on the joint where it shows most.
     pub visible: f64,
     /// What a person would call it by.
+    #[serde(skip)]
     pub numbers: Vec<Number>,
 }
 

@@ -8,6 +8,7 @@
 
 mod dump;
 mod hide;
+mod journal;
 mod motions;
 mod page;
 mod random;
@@ -27,8 +28,10 @@ use clap::Parser;
 use dynid::models;
 use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
 use dynid_runtime::effects::EffectKind;
+use serde::{Deserialize, Serialize};
 
 use hide::{Hidden, draw, recordings};
+use journal::Journal;
 use random::Random;
 use size::SIZES;
 
@@ -65,6 +68,9 @@ pub struct Options {
     /// Markdown file for the tables [default: standard output]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Write down every finished run here, and take those that are there as done: a stopped test goes on
+    #[arg(long, conflicts_with_all = ["visible", "dump"])]
+    journal: Option<PathBuf>,
     /// Simulate only, and write what can be seen of every effect
     #[arg(long, conflicts_with = "dump")]
     visible: bool,
@@ -93,7 +99,8 @@ impl Case {
     pub fn name(&self) -> String {
         let hidden: Vec<&str> = self.effects.iter().map(|e| e.id()).collect();
         let hidden = if hidden.is_empty() { "none".to_owned() } else { hidden.join("+") };
-        format!("{}_{hidden}_{}_{}", self.robot, self.size_name(), self.seed)
+        let length = self.seconds.map_or_else(String::new, |s| format!("_{s}s"));
+        format!("{}_{hidden}_{}_{}{length}", self.robot, self.size_name(), self.seed)
     }
 
     fn size_name(&self) -> &'static str {
@@ -102,7 +109,7 @@ impl Case {
 }
 
 /// How a case ended.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Score {
     /// What was hidden, and whether it was found: something on its joint, itself on its joint, or among what cannot
     /// be told apart there.
@@ -115,6 +122,8 @@ pub struct Score {
     pub refused: Option<String>,
     /// Time of the diagnosis, s.
     pub seconds: f64,
+    /// Time of simulation and diagnosis, s.
+    pub whole: f64,
 }
 
 impl Score {
@@ -129,7 +138,7 @@ impl Score {
 }
 
 /// What became of a hidden effect.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Something was found on the joint.
     pub detected: bool,
@@ -164,20 +173,33 @@ fn main() -> Result<(), Failure> {
         let minutes = start.elapsed().as_secs_f64() / 60.0;
         return finish(&options, &page::what_can_be_seen(&cases, &seen, &options, minutes));
     }
+    let journal = options.journal.as_deref().map(Journal::open).transpose()?;
     let scores: Vec<Score> = in_parallel(&cases, options.threads, |case| {
+        if let Some(score) = journal.as_ref().and_then(|j| j.done(case)) {
+            return Ok((page::in_a_line(&score), score));
+        }
         let score = score(case)?;
+        if let Some(journal) = &journal {
+            journal.add(case, &score)?;
+        }
         Ok((page::in_a_line(&score), score))
     })
     .into_iter()
     .map(|score| score.unwrap_or_else(Score::not_simulated))
     .collect();
-    let minutes = start.elapsed().as_secs_f64() / 60.0;
-    finish(&options, &page::markdown(&cases, &scores, &options, minutes))
+    finish(&options, &page::markdown(&cases, &scores, &options))
 }
+
+/// What people wrote about the tables of a page starts here, and is kept when the page is made anew.
+const DISCUSSION: &str = "\n## Discussion\n";
 
 fn finish(options: &Options, text: &str) -> Result<(), Failure> {
     match &options.out {
-        Some(path) => std::fs::write(path, text)?,
+        Some(path) => {
+            let before = std::fs::read_to_string(path).unwrap_or_default();
+            let discussion = before.find(DISCUSSION).map_or("", |at| &before[at..]);
+            std::fs::write(path, format!("{text}{discussion}"))?;
+        }
         None => std::io::stdout().write_all(text.as_bytes())?,
     }
     Ok(())
@@ -273,6 +295,7 @@ fn in_parallel<T: Send>(
 /// Simulates, diagnoses, and only then compares.
 fn score(case: &Case) -> Result<Score, Failure> {
     let model = models::find(&case.robot).ok_or("no such robot")?;
+    let whole = Instant::now();
     let recordings = recordings(model, case, false)?;
     let settings = Settings { threads: 1, ..Settings::default() };
     let start = Instant::now();
@@ -285,6 +308,7 @@ fn score(case: &Case) -> Result<Score, Failure> {
             score.refused = Some(refusal.to_string());
         }
     }
+    score.whole = whole.elapsed().as_secs_f64();
     Ok(score)
 }
 

@@ -13,12 +13,12 @@ use crate::{Case, Options, Outcome, Score};
 type Pair<'a> = (&'a Case, &'a Score);
 
 /// The whole page.
-pub fn markdown(cases: &[Case], scores: &[Score], options: &Options, minutes: f64) -> String {
+pub fn markdown(cases: &[Case], scores: &[Score], options: &Options) -> String {
     let all: Vec<Pair<'_>> = cases.iter().zip(scores).collect();
     let effects: Vec<EffectKind> =
         EffectKind::ALL.into_iter().filter(|e| cases.iter().any(|c| c.effects.contains(e))).collect();
     let mut text = String::from("# Concealment test\n\n");
-    introduction(&mut text, &all, options, minutes);
+    introduction(&mut text, &all, options);
     rates(&mut text, &all, &effects);
     by_visibility(&mut text, &all);
     robots(&mut text, &all, options);
@@ -145,7 +145,7 @@ pub fn what_can_be_seen(
     text
 }
 
-fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes: f64) {
+fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let how = if options.pairs { "two at a time" } else { "one at a time" };
     let motions = options.seconds.map_or_else(
@@ -164,6 +164,7 @@ fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options, minutes:
         let _ = write!(command, " --out {}", path.display());
     }
     let _ = writeln!(text, "```\n{command}\n```\n");
+    let minutes = all.iter().map(|(_, s)| s.whole).sum::<f64>() / 60.0 / options.threads.max(1) as f64;
     let _ = writeln!(
         text,
         "{} runs took {minutes:.1} minutes on {} threads of a machine with {cores} cores; the median diagnosis took \

@@ -159,8 +159,8 @@ mod tests {
                 .collect();
             // A drift: there in the first strokes, gone in the last.
             let stroke = rng.random_range(10..30);
-            let drift =
-                |k: usize| if (k / stroke) % 2 == 0 { 1.0 } else { -1.0 } * (-(k as f64) / 60.0).exp();
+            let way = |k: usize| if (k / stroke).is_multiple_of(2) { 1.0 } else { -1.0 };
+            let drift = |k: usize| way(k) * (-(k as f64) / 60.0).exp();
             let wave: Vec<f64> = (0..rows).map(drift).collect();
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
             let product = dot(&wave, &residual);

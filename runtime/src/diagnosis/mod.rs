@@ -109,7 +109,8 @@ fn examine(
     let mut signals = prepare_all(baseline, trajectories, delay, cutoff)?;
     let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
     let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
-    let slow_window = if duration < SHORT { settings.fast_window } else { settings.slow_window };
+    let short = duration < SHORT;
+    let slow_window = if short { settings.fast_window } else { settings.slow_window };
     let motions = trajectories.len();
     let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
@@ -150,7 +151,11 @@ fn examine(
     let diagnosis = loop {
         let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
         let slow = Design::new(model, &signals, &Plan { excluded, ..plan(slow_window) });
-        let fast = Design::new(model, &signals, &Plan { excluded, ..plan(settings.fast_window) });
+        let fast = if short {
+            slow.clone()
+        } else {
+            Design::new(model, &signals, &Plan { excluded, ..plan(settings.fast_window) })
+        };
         if contacts.is_some() {
             let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);
             let chi: Vec<f64> = fit.chi.iter().take(slow.parameters).copied().collect();

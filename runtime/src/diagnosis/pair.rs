@@ -18,18 +18,14 @@ impl Search<'_, '_> {
             return None;
         }
         let firsts = self.likely(settings);
-        for first in &firsts {
-            let joint = first.own[0];
-            let second = self.beside(first, settings, joint, firsts.len());
-            let again = second.as_ref().and_then(|second| self.beside(second, settings, joint, firsts.len()));
-            if let (Some(second), Some(again)) = (second, again)
-                && again.effect == first.effect
-                && again.place == first.place
-            {
-                return Some([again, second]);
-            }
-        }
-        None
+        let found = firsts.iter().find_map(|first| {
+            let second = self.beside(first, settings, firsts.len())?;
+            let again = self.beside(&second, settings, firsts.len())?;
+            let same = again.effect == first.effect && again.place == first.place;
+            same.then_some([again, second])
+        });
+        self.settle();
+        found
     }
 
     /// Laws of one joint that are no likely accident, as first laws of a pair.
@@ -54,19 +50,15 @@ impl Search<'_, '_> {
             .collect()
     }
 
-    /// The best law of a joint with `law` in the model, where the candidates are looked through `rounds` times.
-    fn beside(
-        &mut self,
-        law: &Accepted,
-        settings: &Settings,
-        joint: usize,
-        rounds: usize,
-    ) -> Option<Accepted> {
+    /// The best law of the joint of `law` with it in the model, where the candidates are looked through `rounds` times.
+    /// Leaves the candidates prepared for that.
+    fn beside(&mut self, law: &Accepted, settings: &Settings, rounds: usize) -> Option<Accepted> {
+        let joint = Some(law.own[0]);
         self.terms.push(law.clone());
-        self.settle();
-        let found = self.best(settings, Some(joint), rounds).map(|winner| self.accept(&winner));
+        self.refit();
+        self.prepare(joint);
+        let found = self.best(settings, joint, rounds).map(|winner| self.accept(&winner));
         self.terms.pop();
-        self.settle();
         found
     }
 }

@@ -297,10 +297,18 @@ impl<'c, 'a> Search<'c, 'a> {
     /// Refits, and prepares the candidates for what is left.
     pub fn settle(&mut self) {
         self.refit();
+        self.prepare(None);
+    }
+
+    /// Prepares the candidates, those on `joint` where one is given, for what the model as it is leaves.
+    pub fn prepare(&mut self, joint: Option<usize>) {
         let (context, change) = (&*self.context, self.change);
         for side in [&mut self.slow, &mut self.fast] {
             let (design, first) = (&side.design, side.fixed_columns);
             parallel::for_each(self.threads, &mut side.candidates, |candidate| {
+                if joint.is_some_and(|j| !candidate.own.contains(&j)) {
+                    return;
+                }
                 for trial in &mut candidate.trials {
                     if follows_parameters(candidate.effect) {
                         trial.columns =
