@@ -24,10 +24,24 @@ fn variable<'a>(search: &'a Search<'_, '_>, joint: usize, term: &'a Accepted) ->
     let torques = &context.torques;
     match term.effect {
         EffectKind::LoadDependentFriction => (
-            if prismatic { "load, N" } else { "load torque, N.m" },
+            if prismatic {
+                "load, N (torques along the motion)"
+            } else {
+                "load torque, N.m (torques along the motion)"
+            },
             Box::new(move |r| torques[r.signal].rigid[joint][r.centre]),
         ),
-        EffectKind::FrictionDrift => ("time, s", Box::new(move |r| signals[r.signal].time(r.centre))),
+        EffectKind::FrictionDrift => {
+            ("time, s (torques along the motion)", Box::new(move |r| signals[r.signal].time(r.centre)))
+        }
+        EffectKind::PositionDependentFriction => (
+            if prismatic {
+                "joint position, m (torques along the motion)"
+            } else {
+                "joint position, rad (torques along the motion)"
+            },
+            Box::new(move |r| signals[r.signal].q[joint][r.centre]),
+        ),
         EffectKind::PreslidingHysteresis => (
             "distance since reversal",
             Box::new(move |r| since_reversal(&signals[r.signal], joint, r.centre)),
@@ -83,12 +97,21 @@ pub(super) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Opt
     };
     let residual = side.fit.residual(design);
     let (name, value) = variable(search, joint, term);
+    let signals = search.context.signals;
+    // Friction opposes the motion: over anything but the speed, both directions would hide each other.
+    let along = |r: &RowAt| match term.effect {
+        EffectKind::LoadDependentFriction
+        | EffectKind::FrictionDrift
+        | EffectKind::PositionDependentFriction => signals[r.signal].dq[joint][r.centre].signum(),
+        _ => 1.0,
+    };
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
-        .filter(|&r| search.context.signals[design.rows[r].signal].fresh)
+        .filter(|&r| signals[design.rows[r].signal].fresh)
         .map(|r| {
             let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
-            (value(&design.rows[r]), residual[r] + law, law)
+            let sign = along(&design.rows[r]);
+            (value(&design.rows[r]), sign * (residual[r] + law), sign * law)
         })
         .collect();
     let mut curve = binned(rows);

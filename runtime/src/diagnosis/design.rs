@@ -279,16 +279,17 @@ fn moving(s: &Signals, centre: usize, half: usize, directions: &[Vec<f64>], slow
     })
 }
 
-/// Inner product, in four partial sums.
-#[inline]
+/// Inner product, in as many partial sums as keep the machine's vector units busy.
+#[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (ca, cb) = (a.chunks_exact(4), b.chunks_exact(4));
+    const SUMS: usize = 16;
+    let mut sums = [0.0; SUMS];
+    let (ca, cb) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
     let tail: f64 = ca.remainder().iter().zip(cb.remainder()).map(|(x, y)| x * y).sum();
     for (x, y) in ca.zip(cb) {
-        for k in 0..4 {
+        for k in 0..SUMS {
             sums[k] += x[k] * y[k];
         }
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
+    sums.iter().sum::<f64>() + tail
 }

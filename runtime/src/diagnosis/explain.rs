@@ -269,7 +269,7 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
             why_not: format!(
                 "explains {:.0} % of what held-back motion leaves open, against {:.0} %",
                 100.0 * r.share.clamp(0.0, 1.0),
-                100.0 * share.clamp(0.0, 1.0)
+                100.0 * accepted.share.clamp(0.0, 1.0)
             ),
             share: r.share,
         })

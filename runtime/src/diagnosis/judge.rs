@@ -1,7 +1,7 @@
 //! How good a candidate is on motion that it was not fitted to.
 
 use super::candidate::{Candidate, Trial};
-use super::design::Design;
+use super::design::{Design, dot};
 use super::fit::Fit;
 use super::held_back::cuts;
 use nalgebra::{DMatrix, DVector};
@@ -267,12 +267,17 @@ pub(super) fn rest_of_motion(
         let w = 1.0 / (sd * sd);
         for g in (0..design.segments.len()).filter(|&g| train[g]) {
             let gram = &design.gram[j][g];
-            let m = DMatrix::from_fn(p, p, |i, l| gram[i * (p + 1) + l]);
-            let gy = DVector::from_fn(p, |i, _| gram[i * (p + 1) + p]);
-            let mx = &m * &own.x;
-            let residual = gy - &m * &whole.chi;
-            s += w * (own.x.transpose() * &mx);
-            b -= w * (own.x.transpose() * &residual);
+            for i in (0..p).filter(|i| gram[i * (p + 1) + i] > 0.0) {
+                let row = &gram[i * (p + 1)..i * (p + 1) + p];
+                let residual = gram[i * (p + 1) + p] - dot(row, whole.chi.as_slice());
+                for c in 0..k {
+                    let made = dot(row, &own.x.as_slice()[c * p..(c + 1) * p]);
+                    for a in 0..k {
+                        s[(a, c)] += w * own.x[(i, a)] * made;
+                    }
+                    b[c] -= w * own.x[(i, c)] * residual;
+                }
+            }
             if let Some(product) = trial.products.get(j).and_then(|g_| g_.get(g)) {
                 let cross = product.with.transpose() * &own.x;
                 s += w * (&product.own - &cross - cross.transpose());

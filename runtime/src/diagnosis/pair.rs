@@ -38,7 +38,7 @@ impl Search<'_, '_> {
             .zip(evidence)
             .filter(|(_, evidence)| evidence.tail < LIKELY)
             .map(|(first, evidence)| {
-                self.accept(&Winner {
+                self.as_term(&Winner {
                     pace: first.pace,
                     index: first.index,
                     verdict: first.verdict.clone(),

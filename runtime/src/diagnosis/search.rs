@@ -28,6 +28,8 @@ pub(super) struct Accepted {
     pub fixed: Option<f64>,
     pub significance: f64,
     pub confidence: f64,
+    /// Share of what held-back motion left open when it was accepted: what its rivals' shares compare with.
+    pub share: f64,
     pub rivals: Vec<Rival>,
 }
 
@@ -361,19 +363,26 @@ impl<'c, 'a> Search<'c, 'a> {
         if pace == Pace::Slow { &self.slow } else { &self.fast }
     }
 
-    /// Refines the shape of the winner on all motion.
+    /// The winner as a term, its shape refined on all motion.
     pub fn accept(&self, winner: &Winner) -> Accepted {
         let side = self.side(winner.pace);
-        let candidate = &side.candidates[winner.index];
-        let shape = self.refined(side, candidate, &candidate.trials[winner.verdict.trial].shape);
+        let mut term = self.as_term(winner);
+        term.shape = self.refined(side, &side.candidates[winner.index], &term.shape);
+        term
+    }
+
+    /// The winner as a term, with the shape of the grid.
+    pub fn as_term(&self, winner: &Winner) -> Accepted {
+        let candidate = &self.side(winner.pace).candidates[winner.index];
         Accepted {
             effect: candidate.effect,
             place: candidate.place,
             own: candidate.own.clone(),
-            shape,
+            shape: candidate.trials[winner.verdict.trial].shape.clone(),
             fixed: candidate.fixed,
             significance: winner.significance,
             confidence: winner.confidence,
+            share: winner.verdict.share,
             rivals: winner.rivals.clone(),
         }
     }
@@ -391,7 +400,7 @@ impl<'c, 'a> Search<'c, 'a> {
             let replacement = self.best(settings, joint, 1).map(|w| self.accept(&w));
             let keep = match replacement {
                 Some(new) if new.effect == old.effect && new.place == old.place => {
-                    Some(Accepted { shape: new.shape, rivals: new.rivals, ..old.clone() })
+                    Some(Accepted { shape: new.shape, share: new.share, rivals: new.rivals, ..old.clone() })
                 }
                 other => other,
             };

@@ -1,6 +1,6 @@
 //! Errors of the model's own numbers: columns that are exact derivatives of the model, by dual numbers.
 
-use crate::model::{Dual, Model, RecursiveModel, RecursiveModelError, Row};
+use crate::model::{Dual, LANES, Lanes, Link, Model, RecursiveModel, RecursiveModelError, Row};
 
 /// Which of an effect's numbers is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,10 +139,6 @@ pub fn derivative(
     let robot = model.robot();
     let n = robot.joints();
     let samples = states[0].first().map_or(0, Vec::len);
-    let mut entries = vec![Dual::default(); model.pattern().columns.len()];
-    let (mut q, mut dq, mut ddq) =
-        (vec![Dual::default(); n], vec![Dual::default(); n], vec![Dual::default(); n]);
-    let mut jerk = vec![0.0; n];
     for series in out.iter_mut() {
         series.clear();
         series.resize(samples, 0.0);
@@ -151,54 +147,97 @@ pub fn derivative(
     let variant = &direction.variants[direction.which];
     let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
     let mut pull = gravity.map(|g| Dual::new(g, 0.0));
+    let mut lanes: [Lane; LANES] = std::array::from_fn(|_| Lane::new(n));
     // The robot itself at every point, seeded: it is the same for all samples.
-    let robots: Vec<(Vec<crate::model::Link<Dual>>, [Dual; 3])> = (0..points)
+    let robots: Vec<(Vec<Link<Dual<Lanes>>>, [Dual<Lanes>; 3])> = (0..points)
         .map(|point| {
-            let mut seeds = Seeds {
-                q: &mut q,
-                dq: &mut dq,
-                ddq: &mut ddq,
-                jerk: &jerk,
-                rows: &mut rows,
-                gravity: &mut pull,
-            };
+            let mut seeds = lanes[0].seeds(&mut rows, &mut pull);
             direction.advance_robot(effect, point, &mut seeds);
             let (mut rows, mut pull) = (seeds.rows.to_vec(), *seeds.gravity);
             effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
-            let links = robot.frames.iter().zip(&rows).map(|(f, r)| crate::model::Link::new(f, r)).collect();
-            (links, pull)
+            let links = robot.frames.iter().zip(&rows).map(|(f, r)| Link::new(f, &wide_row(r))).collect();
+            (links, pull.map(wide))
         })
         .collect();
-    for t in 0..samples {
-        for j in 0..n {
-            q[j] = Dual::new(states[0][j][t], 0.0);
-            dq[j] = Dual::new(states[1][j][t], 0.0);
-            ddq[j] = Dual::new(states[2][j][t], 0.0);
-            jerk[j] = states[3][j][t];
+    let pattern = model.pattern();
+    let mut entries = vec![Dual::default(); pattern.columns.len()];
+    let mut packed = [0; 3].map(|_| vec![Dual::default(); n]);
+    for first in (0..samples).step_by(LANES) {
+        let used = LANES.min(samples - first);
+        for (k, lane) in lanes.iter_mut().enumerate() {
+            // Lanes beyond the end repeat the last sample.
+            lane.set(states, first + k.min(used - 1));
         }
         for (point, (links, gravity)) in robots.iter().enumerate() {
-            let mut seeds = Seeds {
-                q: &mut q,
-                dq: &mut dq,
-                ddq: &mut ddq,
-                jerk: &jerk,
-                rows: &mut rows,
-                gravity: &mut pull,
-            };
-            for x in seeds.q.iter_mut().chain(seeds.dq.iter_mut()).chain(seeds.ddq.iter_mut()) {
-                x.slope = 0.0;
+            for lane in &mut lanes {
+                lane.states.iter_mut().flatten().for_each(|x| x.slope = 0.0);
+                let mut seeds = lane.seeds(&mut rows, &mut pull);
+                direction.advance_states(effect, point, &mut seeds);
+                effect.seed(variant, &mut seeds);
             }
-            direction.advance_states(effect, point, &mut seeds);
-            effect.seed(variant, &mut seeds);
-            model.idm_with(links, *gravity, &q, &dq, &ddq, &mut entries);
-            let pattern = model.pattern();
+            for (group, packed) in packed.iter_mut().enumerate() {
+                for (j, x) in packed.iter_mut().enumerate() {
+                    let of = |part: fn(&Dual) -> f64| {
+                        Lanes::new(std::array::from_fn(|k| part(&lanes[k].states[group][j])))
+                    };
+                    *x = Dual::new(of(|x| x.value), of(|x| x.slope));
+                }
+            }
+            let [q, dq, ddq] = &packed;
+            model.idm_with(links, *gravity, q, dq, ddq, &mut entries);
             for (j, series) in out.iter_mut().enumerate() {
-                let slope: f64 = (pattern.rows[j]..pattern.rows[j + 1])
-                    .map(|e| entries[e].slope * chi[pattern.columns[e]])
-                    .sum();
-                series[t] += slope / points as f64;
+                let mut slope = Lanes::splat(0.0);
+                for e in pattern.rows[j]..pattern.rows[j + 1] {
+                    slope += entries[e].slope * Lanes::splat(chi[pattern.columns[e]]);
+                }
+                for (x, slope) in series[first..first + used].iter_mut().zip(slope.to_array()) {
+                    *x += slope / points as f64;
+                }
             }
         }
+    }
+}
+
+/// One sample of those that are evaluated side by side: q, dq and ddq, and the jerk.
+struct Lane {
+    states: [Vec<Dual>; 3],
+    jerk: Vec<f64>,
+}
+
+impl Lane {
+    fn new(joints: usize) -> Self {
+        Self { states: [0; 3].map(|_| vec![Dual::default(); joints]), jerk: vec![0.0; joints] }
+    }
+
+    fn set(&mut self, states: [&[Vec<f64>]; 4], t: usize) {
+        for (own, series) in self.states.iter_mut().zip(states) {
+            for (x, series) in own.iter_mut().zip(series) {
+                *x = Dual::new(series[t], 0.0);
+            }
+        }
+        for (x, series) in self.jerk.iter_mut().zip(states[3]) {
+            *x = series[t];
+        }
+    }
+
+    fn seeds<'a>(&'a mut self, rows: &'a mut [Row<Dual>], gravity: &'a mut [Dual; 3]) -> Seeds<'a> {
+        let [q, dq, ddq] = &mut self.states;
+        Seeds { q, dq, ddq, jerk: &self.jerk, rows, gravity }
+    }
+}
+
+fn wide(x: Dual) -> Dual<Lanes> {
+    Dual::new(Lanes::splat(x.value), Lanes::splat(x.slope))
+}
+
+fn wide_row(row: &Row<Dual>) -> Row<Dual<Lanes>> {
+    Row {
+        gamma: wide(row.gamma),
+        b: wide(row.b),
+        alpha: wide(row.alpha),
+        d: wide(row.d),
+        theta: wide(row.theta),
+        r: wide(row.r),
     }
 }
 

@@ -3,23 +3,24 @@
 use super::Number;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// v + d·ε with ε² = 0 (Clifford 1873): evaluating a model in it gives the model and one exact derivative.
+/// v + d·ε with ε² = 0 (Clifford 1873): evaluating a model in it gives the model and one exact derivative, of one
+/// sample, or of as many as there are lanes in `T`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Dual {
+pub struct Dual<T = f64> {
     /// The value.
-    pub value: f64,
+    pub value: T,
     /// The derivative.
-    pub slope: f64,
+    pub slope: T,
 }
 
-impl Dual {
+impl<T> Dual<T> {
     /// A value with a derivative.
-    pub fn new(value: f64, slope: f64) -> Self {
+    pub fn new(value: T, slope: T) -> Self {
         Self { value, slope }
     }
 }
 
-impl Add for Dual {
+impl<T: Number> Add for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
@@ -27,7 +28,7 @@ impl Add for Dual {
     }
 }
 
-impl Sub for Dual {
+impl<T: Number> Sub for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
@@ -35,7 +36,7 @@ impl Sub for Dual {
     }
 }
 
-impl Mul for Dual {
+impl<T: Number> Mul for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
@@ -43,7 +44,7 @@ impl Mul for Dual {
     }
 }
 
-impl Div for Dual {
+impl<T: Number> Div for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
@@ -52,7 +53,7 @@ impl Div for Dual {
     }
 }
 
-impl Neg for Dual {
+impl<T: Number> Neg for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -60,24 +61,24 @@ impl Neg for Dual {
     }
 }
 
-impl AddAssign for Dual {
+impl<T: Number> AddAssign for Dual<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
 }
 
-impl SubAssign for Dual {
+impl<T: Number> SubAssign for Dual<T> {
     #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
         *self = *self - o;
     }
 }
 
-impl Number for Dual {
+impl<T: Number> Number for Dual<T> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self::new(value, 0.0)
+        Self::new(T::constant(value), T::constant(0.0))
     }
 
     #[inline(always)]
@@ -88,7 +89,7 @@ impl Number for Dual {
 
     #[inline(always)]
     fn sign(self) -> Self {
-        Self::constant(Number::sign(self.value))
+        Self::new(self.value.sign(), T::constant(0.0))
     }
 }
 
