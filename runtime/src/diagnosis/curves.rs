@@ -24,24 +24,10 @@ fn variable<'a>(search: &'a Search<'_, '_>, joint: usize, term: &'a Accepted) ->
     let torques = &context.torques;
     match term.effect {
         EffectKind::LoadDependentFriction => (
-            if prismatic {
-                "load, N (torques along the motion)"
-            } else {
-                "load torque, N.m (torques along the motion)"
-            },
+            if prismatic { "load, N" } else { "load torque, N.m" },
             Box::new(move |r| torques[r.signal].rigid[joint][r.centre]),
         ),
-        EffectKind::FrictionDrift => {
-            ("time, s (torques along the motion)", Box::new(move |r| signals[r.signal].time(r.centre)))
-        }
-        EffectKind::PositionDependentFriction => (
-            if prismatic {
-                "joint position, m (torques along the motion)"
-            } else {
-                "joint position, rad (torques along the motion)"
-            },
-            Box::new(move |r| signals[r.signal].q[joint][r.centre]),
-        ),
+        EffectKind::FrictionDrift => ("time, s", Box::new(move |r| signals[r.signal].time(r.centre))),
         EffectKind::PreslidingHysteresis => (
             "distance since reversal",
             Box::new(move |r| since_reversal(&signals[r.signal], joint, r.centre)),
@@ -99,12 +85,11 @@ pub(super) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Opt
     let (name, value) = variable(search, joint, term);
     let signals = search.context.signals;
     // Friction opposes the motion: over anything but the speed, both directions would hide each other.
-    let along = |r: &RowAt| match term.effect {
-        EffectKind::LoadDependentFriction
-        | EffectKind::FrictionDrift
-        | EffectKind::PositionDependentFriction => signals[r.signal].dq[joint][r.centre].signum(),
-        _ => 1.0,
-    };
+    let opposes = matches!(
+        term.effect,
+        EffectKind::LoadDependentFriction | EffectKind::FrictionDrift | EffectKind::PositionDependentFriction
+    );
+    let along = |r: &RowAt| if opposes { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 };
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
         .filter(|&r| signals[design.rows[r].signal].fresh)
@@ -115,7 +100,7 @@ pub(super) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Opt
         })
         .collect();
     let mut curve = binned(rows);
-    curve.variable = name.into();
+    curve.variable = if opposes { format!("{name} (torques along the motion)") } else { name.into() };
     curve.unit = search.context.scales[joint].torque_unit().into();
     Some(curve)
 }

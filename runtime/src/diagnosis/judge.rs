@@ -329,8 +329,8 @@ fn change(
 }
 
 /// Whether a candidate improves later time of a single motion when everything, standard parameters included, is fitted
-/// to the time before, on its own joints. (The others see it only through parameters
-/// that they share, whose extrapolation from a part of a motion is noise.)
+/// to the time before, on its own joints. (The others see it only through parameters that they share, whose
+/// extrapolation from a part of a motion is noise.)
 pub(super) fn holds_forward(design: &Design, sigma: &[f64], candidate: &Candidate, trial: usize) -> bool {
     let segments = design.segments.len();
     let mut gain = 0.0;
