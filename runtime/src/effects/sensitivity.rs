@@ -149,7 +149,7 @@ pub fn derivative(
     let mut pull = gravity.map(|g| Dual::new(g, 0.0));
     let mut lanes: [Lane; LANES] = std::array::from_fn(|_| Lane::new(n));
     // The robot itself at every point, seeded: it is the same for all samples.
-    let robots: Vec<(Vec<Link<Dual<Lanes>>>, [Dual<Lanes>; 3])> = (0..points)
+    let robots: Vec<(Vec<Link<Wide>>, [Wide; 3])> = (0..points)
         .map(|point| {
             let mut seeds = lanes[0].seeds(&mut rows, &mut pull);
             direction.advance_robot(effect, point, &mut seeds);
@@ -198,6 +198,9 @@ pub fn derivative(
     }
 }
 
+/// Duals of several samples side by side.
+type Wide = Dual<Lanes>;
+
 /// One sample of those that are evaluated side by side: q, dq and ddq, and the jerk.
 struct Lane {
     states: [Vec<Dual>; 3],
@@ -226,11 +229,11 @@ impl Lane {
     }
 }
 
-fn wide(x: Dual) -> Dual<Lanes> {
+fn wide(x: Dual) -> Wide {
     Dual::new(Lanes::splat(x.value), Lanes::splat(x.slope))
 }
 
-fn wide_row(row: &Row<Dual>) -> Row<Dual<Lanes>> {
+fn wide_row(row: &Row<Dual>) -> Row<Wide> {
     Row {
         gamma: wide(row.gamma),
         b: wide(row.b),
