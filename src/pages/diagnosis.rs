@@ -3,7 +3,7 @@
 use crate::closed_loop::ClosedLoop;
 use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueSeries};
 use dynid_runtime::effects::EffectKind;
-use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, percent, significant};
+use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
 /// A recording that was kept apart from the diagnosis, and the errors on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -162,7 +162,8 @@ fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
         .collect();
     page.table(&["parameter", "value", "sigma", "unit"], &parameters);
     page.paragraph(&format!(
-        "On held-back motion its joints' error falls from {} to {}; {}.",
+        "On held-back motion its joints' error {} from {} to {}; {}.",
+        falls_or_rises(finding.held_out_before, finding.held_out_after),
         percent(finding.held_out_before),
         percent(finding.held_out_after),
         confidence_words(finding.confidence)
@@ -290,8 +291,9 @@ fn forward(page: &mut Page, diagnosis: &Diagnosis, run: &Result<ClosedLoop, Stri
     };
     page.paragraph(&format!(
         "The identified robot follows the recorded motion ({} s) in closed loop, once without and once with the \
-         findings. The error of its torques against the recorded ones falls from {} to {}.",
+         findings. The error of its torques against the recorded ones {} from {} to {}.",
         significant(run.duration, 3),
+        falls_or_rises(run.before, run.after),
         percent(run.before),
         percent(run.after)
     ));

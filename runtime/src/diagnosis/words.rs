@@ -3,6 +3,7 @@
 use super::outcome::{Diagnosis, Finding};
 use crate::effects::EffectKind;
 use crate::model::Robot;
+use crate::report::falls_or_rises;
 
 /// A number with three significant digits.
 fn short(x: f64) -> String {
@@ -88,10 +89,11 @@ pub(super) fn sentence(robot: &Robot, effect: EffectKind, f: &Finding) -> String
         EffectKind::Contact => String::new(),
     };
     format!(
-        "{place}: {}. {}: {detail}. Held-out error of {} falls from {:.2} % to {:.2} %.",
+        "{place}: {}. {}: {detail}. Held-out error of {} {} from {:.2} % to {:.2} %.",
         words.title.to_lowercase(),
         capital(words.what.trim_end_matches('.')),
         if f.joints.is_empty() { "all joints" } else { "its joints" },
+        falls_or_rises(f.held_out_before, f.held_out_after),
         100.0 * f.held_out_before,
         100.0 * f.held_out_after
     )
@@ -142,8 +144,9 @@ pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
             .collect();
         lines.push(format!("The standard model leaves out: {}.", names.join("; ")));
         lines.push(format!(
-            "With it, the error on motion that was held back ({}) falls from {:.2} % to {:.2} %.",
+            "With it, the error on motion that was held back ({}) {} from {:.2} % to {:.2} %.",
             d.held_out.how,
+            falls_or_rises(d.held_out.before, d.held_out.after),
             100.0 * d.held_out.before,
             100.0 * d.held_out.after
         ));

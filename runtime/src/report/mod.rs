@@ -7,6 +7,6 @@ mod plot;
 mod sheet;
 
 pub use html::{Page, escape};
-pub use numbers::{percent, significant};
+pub use numbers::{falls_or_rises, percent, significant};
 pub use plot::{Band, Plot, Role, Series, SeriesKind};
 pub use sheet::{Panel, Sheet};

@@ -32,6 +32,11 @@ pub fn percent(ratio: f64) -> String {
     format!("{} %", significant(100.0 * ratio, 3))
 }
 
+/// What an error does from `before` to `after`: a sentence must not say that it falls where it does not.
+pub fn falls_or_rises(before: f64, after: f64) -> &'static str {
+    if after > before { "rises" } else { "falls" }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -46,6 +51,12 @@ mod tests {
     fn says_what_is_not_a_number() {
         assert_eq!(significant(f64::NAN, 3), "NaN");
         assert_eq!(significant(f64::INFINITY, 3), "inf");
+    }
+
+    #[test]
+    fn an_error_that_grows_does_not_fall() {
+        assert_eq!(falls_or_rises(0.034, 0.038), "rises");
+        assert_eq!(falls_or_rises(0.06, 0.045), "falls");
     }
 
     #[test]
