@@ -14,30 +14,15 @@
     reason = "joints, segments and matrix entries are numbered as in the equations"
 )]
 
-mod candidate;
-mod contact_search;
-mod context;
-mod curves;
-mod design;
-mod evidence;
-mod explain;
-mod fit;
-mod held_back;
-mod judge;
-mod memory;
+mod candidates;
+mod contact;
+mod explanation;
+mod judging;
 mod outcome;
-mod pair;
-mod parallel;
 mod predict;
-mod quantities;
-mod refine;
+mod rows;
 mod search;
-mod select;
 mod settings;
-mod signals;
-mod significance;
-mod spectrum;
-mod words;
 
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
@@ -49,10 +34,13 @@ pub use settings::{DiagnosisError, Progress, Settings, Silent};
 use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
-use context::{Context, scales, top_speeds};
-use design::{Design, Plan};
-use search::Search;
-use signals::{Signals, directions};
+use contact::search as contact_search;
+use explanation::explain;
+use rows::context::{Context, scales, top_speeds};
+use rows::design::{Design, Plan};
+use rows::fit;
+use rows::signals::{Signals, directions};
+use search::state::Search;
 
 /// Stretches that few motions are split into, all together.
 const STRETCHES: usize = 8;

@@ -1,11 +1,11 @@
 //! Accepted effects as part of a model: their torques on any motion, and the errors of a model with them.
 
 use super::DiagnosisError;
-use super::context::{Context, scales};
-use super::design::{Design, Plan};
 use super::outcome::{Errors, Estimated};
+use super::rows::context::{Context, scales};
+use super::rows::design::{Design, Plan};
+use super::rows::signals::{ModelTorques, Signals, directions};
 use super::settings::Settings;
-use super::signals::{ModelTorques, Signals, directions};
 use crate::effects::{EffectTerm, Form, Place, Transmission};
 use crate::model::Model;
 use crate::recording::Trajectory;

@@ -1,6 +1,6 @@
 //! What a diagnosis can be told, and what it tells while it works.
 
-use super::signals::CUTOFF;
+use super::rows::signals::CUTOFF;
 use crate::estimation::choose_bandwidth;
 use crate::recording::Trajectory;
 

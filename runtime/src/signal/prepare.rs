@@ -1,7 +1,7 @@
 //! From a trajectory as measured to a motion that a model can be evaluated on.
 
 use super::{Butterworth, Motion, SignalError, Stencil, UniformGrid, central_difference};
-use crate::parallel::in_parallel;
+use crate::parallel;
 use crate::recording::Trajectory;
 
 /// How positions are filtered and differentiated.
@@ -114,7 +114,7 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
         let agrees = agree(&smooth[inside.clone()], &ours[inside.clone()], rate);
         Ok(if agrees && roughness(&recorded) < roughness(&raw) { smooth } else { ours })
     };
-    let joints = in_parallel(trajectory.position.len(), settings.threads, |j| {
+    let joints = parallel::map(settings.threads, trajectory.position.len(), |j| {
         let q = filtered(&grid.resample(&trajectory.position[j]))?;
         let dq = speed(j, &q)?;
         let ddq = derivative(&dq);

@@ -8,7 +8,7 @@ use super::rows::Rows;
 use super::stream::decimate;
 use super::{EquationFactor, ObserveSettings, Prepared, Progress, TimeBlock};
 use crate::estimation::{BLOCK_ROWS, Factor};
-use crate::parallel::in_parallel;
+use crate::parallel;
 
 /// Shortest block of time, s: longer than the residuals of a robot remember.
 const BLOCK_SECONDS: f64 = 0.5;
@@ -38,7 +38,7 @@ pub(super) fn run(
     let chunks: Vec<Chunk> = prepared.iter().enumerate().flat_map(|(k, p)| chunks_of(k, p, most)).collect();
     let total: usize = chunks.iter().map(|c| rows_of(c).len() * prepared[c.trajectory].grid.step).sum();
     let done = AtomicUsize::new(0);
-    let results = in_parallel(chunks.len(), settings.threads, |c| {
+    let results = parallel::map(settings.threads, chunks.len(), |c| {
         let p = &prepared[chunks[c].trajectory];
         let result = run_chunk(p, &chunks[c], settings.keep_rows);
         let samples = rows_of(&chunks[c]).len() * p.grid.step;
@@ -67,7 +67,7 @@ pub(super) fn merge(prepared: &[Prepared<'_>], blocks: &[TimeBlock], threads: us
         .enumerate()
         .flat_map(|(k, p)| (0..p.equations.len()).map(move |equation| (k, equation)))
         .collect();
-    in_parallel(groups.len(), threads, |g| {
+    parallel::map(threads, groups.len(), |g| {
         let (trajectory, equation) = groups[g];
         let mut merged = empty(trajectory, equation, &prepared[trajectory]);
         for block in blocks.iter().filter(|b| b.trajectory == trajectory) {

@@ -1,13 +1,14 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
-use super::candidate::{dense_columns, pace};
-use super::design::{Design, RowAt};
-use super::explain::Bare;
-use super::fit::Fit;
-use super::joint_number;
-use super::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
-use super::search::{Accepted, Search};
-use super::signals::Signals;
+use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::explanation::explain::Bare;
+use crate::diagnosis::joint_number;
+use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
+use crate::diagnosis::rows::design::{Design, RowAt};
+use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rows::signals::Signals;
+use crate::diagnosis::search::state::{Accepted, Search};
 use crate::effects::EffectKind;
 
 /// Bins of a curve.
@@ -72,7 +73,7 @@ fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
 }
 
 /// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
-pub(super) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Option<Curve> {
+pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Option<Curve> {
     let joint = *term.own.first()?;
     let side = search.side(pace(term.effect));
     let design = &side.design;
@@ -138,7 +139,7 @@ fn explained(values: Vec<f64>, residual: &[f64]) -> f64 {
 }
 
 /// Where the standard model fails, joint by joint.
-pub(super) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held: &[f64]) -> Vec<Mismatch> {
+pub(in crate::diagnosis) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held: &[f64]) -> Vec<Mismatch> {
     let design = &search.slow.design;
     let context = &*search.context;
     let robot = context.model.robot();
@@ -210,7 +211,7 @@ fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
 }
 
 /// What nothing explains.
-pub(super) fn unexplained(search: &Search<'_, '_>) -> Unexplained {
+pub(in crate::diagnosis) fn unexplained(search: &Search<'_, '_>) -> Unexplained {
     let design = &search.slow.design;
     let residual = search.slow.fit.residual(design);
     let mut out = Unexplained::default();
@@ -239,7 +240,11 @@ pub(super) fn unexplained(search: &Search<'_, '_>) -> Unexplained {
 }
 
 /// Torques of the joints that have findings, in the first new motion; the first joint where there are none.
-pub(super) fn series(search: &Search<'_, '_>, before: &[f64], terms: &[Accepted]) -> Vec<TorqueSeries> {
+pub(in crate::diagnosis) fn series(
+    search: &Search<'_, '_>,
+    before: &[f64],
+    terms: &[Accepted],
+) -> Vec<TorqueSeries> {
     let design = &search.fast.design;
     let context = &*search.context;
     let Some(signal) = context.signals.iter().position(|s| s.fresh) else { return Vec::new() };

@@ -1,13 +1,13 @@
 //! Errors on motion that was held back.
 
-use super::design::Design;
-use super::fit::Fit;
-use super::judge::single_motion;
-use super::outcome::Errors;
-use super::predict::errors;
+use crate::diagnosis::judging::folds::{cuts, single_motion};
+use crate::diagnosis::outcome::Errors;
+use crate::diagnosis::predict::errors;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::Fit;
 
 /// Squares of the held-out residual and of the torque, per joint, and per held-back stretch.
-pub(super) struct HeldBack {
+pub(in crate::diagnosis) struct HeldBack {
     pub left: Vec<f64>,
     pub whole: Vec<f64>,
     pub by_segment: Vec<(usize, f64, f64)>,
@@ -24,14 +24,9 @@ impl HeldBack {
     }
 }
 
-/// Where a single motion of so many segments is cut: what comes before is fitted, and predicts what comes after.
-pub(super) fn cuts(segments: usize) -> [usize; 2] {
-    [5, 6].map(|eighths| (segments * eighths / 8).max(1))
-}
-
 /// Predicts held-back motion with the columns of a design: every motion once from the others; a single motion
 /// forward in time, from two instants on; with a baseline, where `from_baseline` is set, from the baseline alone.
-pub(super) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> HeldBack {
+pub(in crate::diagnosis) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> HeldBack {
     let n = design.joints;
     let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
     let without = |held: &dyn Fn(usize) -> bool| {

@@ -1,14 +1,14 @@
 //! Contact: windows of time in which several joints are pushed together.
 
-use super::context::Context;
-use super::design::Design;
-use super::signals::Signals;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::signals::Signals;
 use crate::effects::{Wrench, unit_force_torques};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::collections::BTreeMap;
 
 /// Windows with an outside force.
-pub(super) struct Contacts {
+pub(in crate::diagnosis) struct Contacts {
     /// Times per signal that no other row may use.
     pub windows: Vec<Vec<[f64; 2]>>,
     pub wrenches: Vec<Wrench>,
@@ -66,10 +66,16 @@ fn robust(design: &Design) -> (Vec<f64>, Vec<f64>) {
             let live: Vec<usize> =
                 (0..p).filter(|&k| design.columns[k][range.clone()].iter().any(|&x| x != 0.0)).collect();
             for &i in &live {
-                b[i] += super::design::dot(&weighted[i][range.clone()], &design.y[range.clone()]);
+                b[i] += crate::diagnosis::rows::design::dot(
+                    &weighted[i][range.clone()],
+                    &design.y[range.clone()],
+                );
                 for &k in live.iter().take_while(|&&k| k <= i) {
                     let v = scales[k]
-                        * super::design::dot(&weighted[i][range.clone()], &design.columns[k][range.clone()]);
+                        * crate::diagnosis::rows::design::dot(
+                            &weighted[i][range.clone()],
+                            &design.columns[k][range.clone()],
+                        );
                     g[(i, k)] += v;
                     if i != k {
                         g[(k, i)] += v;
@@ -128,7 +134,11 @@ fn energies(
 }
 
 /// Looks for contacts on rows that leave nothing out.
-pub(super) fn find(context: &Context<'_>, design: &Design, signals: &[Signals]) -> Option<Contacts> {
+pub(in crate::diagnosis) fn find(
+    context: &Context<'_>,
+    design: &Design,
+    signals: &[Signals],
+) -> Option<Contacts> {
     let (residual, sigma) = robust(design);
     let energy = energies(design, &residual, &sigma);
     let mut windows: Vec<Vec<[f64; 2]>> = vec![Vec::new(); signals.len()];
@@ -193,7 +203,7 @@ pub(super) fn find(context: &Context<'_>, design: &Design, signals: &[Signals]) 
 }
 
 /// Whether the instants of the contacts still stand out of the noise (`sigma` per joint) in a residual.
-pub(super) fn remain(
+pub(in crate::diagnosis) fn remain(
     contacts: &Contacts,
     design: &Design,
     residual: &[f64],

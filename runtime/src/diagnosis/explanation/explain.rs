@@ -1,20 +1,22 @@
 //! From accepted terms to findings: numbers with their uncertainty, held-out errors, curves, sentences.
 
-use super::candidate::{delay_columns, pace};
-use super::contact_search::Contacts;
-use super::context::Context;
-use super::curves;
-use super::design::{Design, LONGEST_BLOCK};
-use super::fit::fit_weighted;
-use super::held_back::{HeldBack, hold_back};
-use super::judge::single_motion;
-use super::outcome::*;
-use super::predict::errors;
-use super::quantities::{parameters, uncertainty};
-use super::search::{Accepted, Search, Side};
-use super::settings::Settings;
-use super::significance::Evidence;
-use super::{DiagnosisError, NAMED_DELAY, joint_number, unit_term, words};
+use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::trial::delay_columns;
+use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::explanation::curves;
+use crate::diagnosis::explanation::quantities::{parameters, uncertainty};
+use crate::diagnosis::explanation::words;
+use crate::diagnosis::judging::folds::single_motion;
+use crate::diagnosis::judging::held_back::{HeldBack, hold_back};
+use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::outcome::*;
+use crate::diagnosis::predict::errors;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::{Design, LONGEST_BLOCK};
+use crate::diagnosis::rows::fit::fit_weighted;
+use crate::diagnosis::search::state::{Accepted, Search, Side};
+use crate::diagnosis::settings::Settings;
+use crate::diagnosis::{DiagnosisError, NAMED_DELAY, joint_number, unit_term};
 use crate::effects::{EffectKind, EffectTerm, Form, Place};
 use crate::model::Model;
 use std::collections::BTreeSet;
@@ -23,7 +25,7 @@ use std::collections::BTreeSet;
 const MOST_DOUBT: f64 = 0.05;
 
 /// Skew of the torques behind the positions in a design, s.
-pub(super) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
+pub(in crate::diagnosis) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
     for column in delay_columns(context, &design) {
         design.push(column);
     }
@@ -34,7 +36,7 @@ pub(super) fn delay_of(context: &Context<'_>, mut design: Design) -> f64 {
 }
 
 /// The standard model before anything was added.
-pub(super) struct Bare {
+pub(in crate::diagnosis) struct Bare {
     pub in_sample: Errors,
     pub held: HeldBack,
     pub estimated: Estimated,
@@ -87,7 +89,7 @@ fn estimated(side: &Side) -> Estimated {
 }
 
 /// Puts everything into words and numbers.
-pub(super) fn explain(
+pub(in crate::diagnosis) fn explain(
     model: &dyn Model,
     mut search: Search<'_, '_>,
     bare: &Bare,

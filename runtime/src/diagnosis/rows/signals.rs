@@ -1,12 +1,12 @@
 //! Motions at the full rate, ready for laws and models.
 
-use super::DiagnosisError;
+use crate::diagnosis::DiagnosisError;
 use crate::model::{JointKind, Model, ParameterKind, Robot, States};
 use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
 
 /// One motion: positions filtered and differentiated three times, torques through the same filter. `[j][t]`.
-pub(super) struct Signals {
+pub(in crate::diagnosis) struct Signals {
     pub name: String,
     /// Whether it belongs to the recording that is diagnosed; otherwise to the baseline.
     pub fresh: bool,
@@ -22,7 +22,7 @@ pub(super) struct Signals {
 }
 
 /// Highest cut-off of the position filter, Hz.
-pub(super) const CUTOFF: f64 = 60.0;
+pub(in crate::diagnosis) const CUTOFF: f64 = 60.0;
 /// Samples a second that a cut-off of [`CUTOFF`] needs.
 const ENOUGH: f64 = 500.0;
 
@@ -124,7 +124,7 @@ fn shifted(x: &[f64], samples: f64) -> Vec<f64> {
 }
 
 /// Torques of the standard model for given parameters, split by what makes them. `[j][t]`.
-pub(super) struct ModelTorques {
+pub(in crate::diagnosis) struct ModelTorques {
     /// Inertia, centrifugal, Coriolis, gravity, rotors.
     pub rigid: Vec<Vec<f64>>,
     /// Viscous and Coulomb friction.
@@ -140,7 +140,11 @@ fn part(x: &[Vec<f64>], first: usize, count: usize) -> Vec<&[f64]> {
 }
 
 /// Every row of IDM in blocks: `each(first sample, samples, entries with stride BLOCK)`.
-pub(super) fn each_block(model: &dyn Model, s: &Signals, mut each: impl FnMut(usize, usize, &[f64])) {
+pub(in crate::diagnosis) fn each_block(
+    model: &dyn Model,
+    s: &Signals,
+    mut each: impl FnMut(usize, usize, &[f64]),
+) {
     let mut out = vec![0.0; model.pattern().columns.len() * BLOCK];
     let mut first = 0;
     while first < s.len() {
@@ -188,7 +192,7 @@ impl ModelTorques {
 }
 
 /// The linear forms of dq whose sign enters the row of each joint: its own speed, and those of coupled motors.
-pub(super) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
+pub(in crate::diagnosis) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
     let n = robot.joints();
     let mut forms: Vec<Vec<Vec<f64>>> = (0..n)
         .map(|j| {
@@ -210,6 +214,6 @@ pub(super) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
 }
 
 /// Kind of each joint.
-pub(super) fn joint_kinds(robot: &Robot) -> Vec<JointKind> {
+pub(in crate::diagnosis) fn joint_kinds(robot: &Robot) -> Vec<JointKind> {
     robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect()
 }

@@ -2,25 +2,26 @@
 //!
 //! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held back.
 
-use super::DiagnosisError;
-use super::candidate::{
-    Candidate, Pace, build, columns, delay_columns, dense_columns, make, pace, proposals,
-};
-use super::context::Context;
-use super::design::Design;
-use super::fit::{Fit, fit_weighted};
-use super::held_back::hold_back;
-use super::judge::{Fold, folds, holds_forward, is_shown, judge, single_motion};
-use super::outcome::OrderSpectrum;
-use super::parallel;
-use super::select::Winner;
-use super::settings::{Progress, Settings};
-use super::spectrum::{order_spectrum, peaks};
+use crate::diagnosis::DiagnosisError;
+use crate::diagnosis::candidates::candidate::{Candidate, Pace, build, make, pace, proposals};
+use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
+use crate::diagnosis::candidates::trial::{columns, delay_columns, dense_columns};
+use crate::diagnosis::judging::folds::{Fold, folds, single_motion};
+use crate::diagnosis::judging::held_back::hold_back;
+use crate::diagnosis::judging::judge::{holds_forward, judge};
+use crate::diagnosis::judging::partial_regression::is_shown;
+use crate::diagnosis::outcome::OrderSpectrum;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::{Fit, fit_weighted};
+use crate::diagnosis::search::select::Winner;
+use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::{EffectKind, Form, Place};
+use crate::parallel;
 
 /// An accepted effect.
 #[derive(Debug, Clone)]
-pub(super) struct Accepted {
+pub(in crate::diagnosis) struct Accepted {
     pub effect: EffectKind,
     pub place: Place,
     pub own: Vec<usize>,
@@ -35,7 +36,7 @@ pub(super) struct Accepted {
 
 /// Another explanation of what an accepted effect explains.
 #[derive(Debug, Clone)]
-pub(super) struct Rival {
+pub(in crate::diagnosis) struct Rival {
     pub effect: EffectKind,
     pub place: Place,
     pub share: f64,
@@ -45,7 +46,7 @@ pub(super) struct Rival {
 }
 
 /// The rows at one pace with everything that is fitted on them.
-pub(super) struct Side {
+pub(in crate::diagnosis) struct Side {
     pub design: Design,
     pub sigma: Vec<f64>,
     pub fit: Fit,
@@ -86,7 +87,7 @@ impl Side {
 }
 
 /// The search's state and outcome.
-pub(super) struct Search<'c, 'a> {
+pub(in crate::diagnosis) struct Search<'c, 'a> {
     pub context: &'c mut Context<'a>,
     pub slow: Side,
     pub fast: Side,

@@ -1,6 +1,6 @@
 //! Sentences for a person.
 
-use super::outcome::{Diagnosis, Finding};
+use crate::diagnosis::outcome::{Diagnosis, Finding};
 use crate::effects::EffectKind;
 use crate::model::Robot;
 use crate::report::falls_or_rises;
@@ -26,7 +26,7 @@ fn quantity(finding: &Finding, name: &str) -> String {
 }
 
 /// What was found, where, how large, and what it gains.
-pub(super) fn sentence(robot: &Robot, effect: EffectKind, f: &Finding) -> String {
+pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Finding) -> String {
     let words = effect.words();
     let place = match f.joints.as_slice() {
         [] => format!("On the whole {}", robot.name),
@@ -105,7 +105,7 @@ fn capital(text: &str) -> String {
 }
 
 /// A contact.
-pub(super) fn contact(f: &Finding) -> String {
+pub(in crate::diagnosis) fn contact(f: &Finding) -> String {
     let windows: Vec<String> = f
         .contacts
         .iter()
@@ -119,7 +119,7 @@ pub(super) fn contact(f: &Finding) -> String {
 }
 
 /// The verdict first.
-pub(super) fn verdict(d: &Diagnosis) -> Vec<String> {
+pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
     let mut lines = Vec::new();
     if d.findings.is_empty() {
         lines.push(format!(

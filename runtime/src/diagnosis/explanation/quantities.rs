@@ -1,14 +1,15 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
-use super::candidate::{dense_columns, pace};
-use super::fit::Fit;
-use super::search::{Accepted, Search};
+use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::search::state::{Accepted, Search};
 use crate::effects::{EffectKind, Form, Lump, Parameter, Place};
 use crate::model::Model;
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
 /// derivative of the columns (variable projection, Golub and Pereyra 1973).
-pub(super) fn uncertainty(
+pub(in crate::diagnosis) fn uncertainty(
     search: &Search<'_, '_>,
     terms: &[Accepted],
     k: usize,
@@ -57,7 +58,7 @@ pub(super) fn uncertainty(
 }
 
 /// The quantities a person knows, with the uncertainty of shapes propagated to first order.
-pub(super) fn parameters(
+pub(in crate::diagnosis) fn parameters(
     search: &Search<'_, '_>,
     term: &Accepted,
     amplitude: &mut Vec<f64>,

@@ -3,17 +3,17 @@
 //! What one of them leaves makes the residual remember and hides the other: on a short recording neither is certain
 //! alone. With one of them in the model, the other can be, and then the first beside it.
 
-use super::parallel;
-use super::search::{Accepted, Search};
-use super::select::Winner;
-use super::settings::Settings;
+use crate::diagnosis::search::select::Winner;
+use crate::diagnosis::search::state::{Accepted, Search};
+use crate::diagnosis::settings::Settings;
+use crate::parallel;
 
 /// A law is tried as the first of a pair where an accident comes as far less often than this.
 const LIKELY: f64 = 0.01;
 
 impl Search<'_, '_> {
     /// Two laws of a joint, each certain and holding beside the other, where none is certain alone.
-    pub(super) fn pair(&mut self, settings: &Settings) -> Option<[Accepted; 2]> {
+    pub(in crate::diagnosis) fn pair(&mut self, settings: &Settings) -> Option<[Accepted; 2]> {
         if !self.slow.design.short {
             return None;
         }

@@ -1,10 +1,11 @@
 //! Shapes between the values of a grid.
 
-use super::candidate::{Candidate, Trial, columns, make};
-use super::judge::{best_trial, whole_gain};
-use super::parallel;
-use super::search::{Search, Side};
+use crate::diagnosis::candidates::candidate::{Candidate, make};
+use crate::diagnosis::candidates::trial::{Trial, columns};
+use crate::diagnosis::judging::partial_regression::{best_trial, whole_gain};
+use crate::diagnosis::search::state::{Search, Side};
 use crate::effects::{EffectKind, Form, Place};
+use crate::parallel;
 
 /// Shapes that a refinement tries at most.
 const MOST_EVALUATIONS: usize = 80;
@@ -19,7 +20,7 @@ enum Step {
 impl Search<'_, '_> {
     /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
     /// refined on what nothing else explains.
-    pub(super) fn polish(&mut self, threads: usize) {
+    pub(in crate::diagnosis) fn polish(&mut self, threads: usize) {
         let (this, fast) = (&*self, &self.fast);
         let polished = parallel::map(threads, fast.candidates.len(), |k| {
             let candidate = &fast.candidates[k];
@@ -35,7 +36,12 @@ impl Search<'_, '_> {
         }
     }
 
-    pub(super) fn refined(&self, side: &Side, candidate: &Candidate, start: &[f64]) -> Vec<f64> {
+    pub(in crate::diagnosis) fn refined(
+        &self,
+        side: &Side,
+        candidate: &Candidate,
+        start: &[f64],
+    ) -> Vec<f64> {
         let gain = |shape: &[f64]| -> f64 {
             let one = make(
                 self.context,

@@ -1,10 +1,10 @@
 //! How long a residual remembers, and what that makes of its inner products with other columns.
 
-use super::design::Design;
+use crate::diagnosis::rows::design::Design;
 use nalgebra::DMatrix;
 
 /// Rows of a joint, motion by motion: their place in the motion, counted in rows, and their index in the design.
-pub(super) type Places = Vec<Vec<(usize, usize)>>;
+pub(in crate::diagnosis) type Places = Vec<Vec<(usize, usize)>>;
 
 /// Autocorrelation below which a residual has forgotten.
 const FORGOTTEN: f64 = 0.2;
@@ -15,7 +15,7 @@ const LONGER: f64 = 2.0;
 const LONGEST: f64 = 0.97;
 
 /// Where the rows of a joint are.
-pub(super) fn places(design: &Design, joint: usize) -> Places {
+pub(in crate::diagnosis) fn places(design: &Design, joint: usize) -> Places {
     let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
     let motion = |signal: usize| {
         let rows = design.of_signal(joint, signal).into_iter().flat_map(|(range, _)| range);
@@ -25,7 +25,7 @@ pub(super) fn places(design: &Design, joint: usize) -> Places {
 }
 
 /// The lag, in rows, at which values have forgotten themselves; `longest` where they never do.
-pub(super) fn forgotten(places: &Places, values: &[f64], longest: usize) -> usize {
+pub(in crate::diagnosis) fn forgotten(places: &Places, values: &[f64], longest: usize) -> usize {
     (1..longest).find(|&lag| autocorrelation(places, values, lag) < FORGOTTEN).unwrap_or(longest)
 }
 
@@ -49,7 +49,7 @@ fn autocorrelation(places: &Places, values: &[f64], lag: usize) -> f64 {
 
 /// A memory that fades by the same factor from each place to the next, and is as long, all autocorrelations taken
 /// together, as that of the residual up to where it has forgotten.
-pub(super) struct Memory {
+pub(in crate::diagnosis) struct Memory {
     /// Correlation of neighbouring places.
     fading: f64,
     /// Mean square.
@@ -105,8 +105,8 @@ impl Memory {
 
 #[cfg(test)]
 mod tests {
-    use super::super::significance::Evidence;
     use super::*;
+    use crate::diagnosis::judging::significance::Evidence;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 

@@ -1,13 +1,14 @@
 //! Which candidate of a round holds.
 
-use super::candidate::{Candidate, Pace};
-use super::evidence::{block_evidence, doubt, waveform_evidence};
-use super::judge::{Verdict, holds_forward, judge, single_motion};
-use super::parallel;
-use super::search::{Rival, Search, Side};
-use super::settings::Settings;
-use super::significance::Evidence;
+use crate::diagnosis::candidates::candidate::{Candidate, Pace};
+use crate::diagnosis::judging::evidence::{block_evidence, doubt, waveform_evidence};
+use crate::diagnosis::judging::folds::single_motion;
+use crate::diagnosis::judging::judge::{Verdict, holds_forward, judge};
+use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::search::state::{Rival, Search, Side};
+use crate::diagnosis::settings::Settings;
 use crate::effects::EffectKind;
+use crate::parallel;
 
 /// A law gives way to the one that it extends where that one makes this share of its gain.
 const SIMPLER_DOES: f64 = 0.9;
@@ -15,7 +16,7 @@ const SIMPLER_DOES: f64 = 0.9;
 const MOST_CHECKED: usize = 30;
 
 /// What passed a round: the side it is on, the candidate's index, and its verdict.
-pub(super) struct Winner {
+pub(in crate::diagnosis) struct Winner {
     pub pace: Pace,
     pub index: usize,
     pub verdict: Verdict,
@@ -25,7 +26,7 @@ pub(super) struct Winner {
 }
 
 /// A candidate of a round: the side it is on, its index there, and its verdict.
-pub(super) struct Ranked {
+pub(in crate::diagnosis) struct Ranked {
     pub pace: Pace,
     pub index: usize,
     pub verdict: Verdict,
@@ -34,7 +35,12 @@ pub(super) struct Ranked {
 impl Search<'_, '_> {
     /// The best candidate that holds, among those on `joint` where one is given; the candidates have been looked
     /// through `rounds` times.
-    pub(super) fn best(&self, settings: &Settings, joint: Option<usize>, rounds: usize) -> Option<Winner> {
+    pub(in crate::diagnosis) fn best(
+        &self,
+        settings: &Settings,
+        joint: Option<usize>,
+        rounds: usize,
+    ) -> Option<Winner> {
         let ranked = self.ranked(joint);
         let holding = self.holding(&ranked, settings);
         let tries = rounds * self.tries();
@@ -71,7 +77,7 @@ impl Search<'_, '_> {
     }
 
     /// Candidates, on `joint` where one is given, that are not settled: those that gain most on held-back motion first.
-    pub(super) fn ranked(&self, joint: Option<usize>) -> Vec<Ranked> {
+    pub(in crate::diagnosis) fn ranked(&self, joint: Option<usize>) -> Vec<Ranked> {
         let mut ranked = Vec::new();
         for pace in [Pace::Slow, Pace::Fast] {
             let side = self.side(pace);
@@ -90,7 +96,11 @@ impl Search<'_, '_> {
     }
 
     /// The first of them that hold, by their place in the ranking, and the evidence for each.
-    pub(super) fn holding(&self, ranked: &[Ranked], settings: &Settings) -> Vec<(usize, Evidence)> {
+    pub(in crate::diagnosis) fn holding(
+        &self,
+        ranked: &[Ranked],
+        settings: &Settings,
+    ) -> Vec<(usize, Evidence)> {
         let holding: Vec<usize> = (0..ranked.len())
             .filter(|&k| {
                 let (side, candidate) = self.of(&ranked[k]);
@@ -102,12 +112,12 @@ impl Search<'_, '_> {
         holding.into_iter().zip(evidence).collect()
     }
 
-    pub(super) fn of(&self, ranked: &Ranked) -> (&Side, &Candidate) {
+    pub(in crate::diagnosis) fn of(&self, ranked: &Ranked) -> (&Side, &Candidate) {
         let side = self.side(ranked.pace);
         (side, &side.candidates[ranked.index])
     }
 
-    pub(super) fn evidence(&self, ranked: &Ranked) -> Evidence {
+    pub(in crate::diagnosis) fn evidence(&self, ranked: &Ranked) -> Evidence {
         let (side, candidate) = self.of(ranked);
         if candidate.fixed.is_some() {
             waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, ranked.verdict.trial)

@@ -1,7 +1,7 @@
 //! Order spectrum: amplitude of a joint's residual over waves per angle, at the full rate.
 
-use super::outcome::OrderSpectrum;
-use super::signals::Signals;
+use crate::diagnosis::outcome::OrderSpectrum;
+use crate::diagnosis::rows::signals::Signals;
 
 /// Highest order per motor turn that is looked at.
 const HIGHEST: f64 = 7.0;
@@ -10,7 +10,7 @@ const MOST: usize = 600;
 
 /// Amplitudes at orders up to [`HIGHEST`] per motor turn, on samples where the joint moves faster than `slowest`.
 /// `residual[signal][t]` is of this joint.
-pub(super) fn order_spectrum(
+pub(in crate::diagnosis) fn order_spectrum(
     joint: usize,
     number: usize,
     signals: &[Signals],
@@ -52,7 +52,7 @@ pub(super) fn order_spectrum(
 }
 
 /// The orders that stand out: local maxima above four times the median amplitude, highest first, at most `most`.
-pub(super) fn peaks(spectrum: &OrderSpectrum, most: usize) -> Vec<f64> {
+pub(in crate::diagnosis) fn peaks(spectrum: &OrderSpectrum, most: usize) -> Vec<f64> {
     let a = &spectrum.amplitude;
     let mut sorted = a.clone();
     sorted.sort_by(f64::total_cmp);

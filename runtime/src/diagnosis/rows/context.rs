@@ -1,7 +1,7 @@
 //! Everything that columns are made from: the model, the motions, and the current standard parameters.
 
-use super::DiagnosisError;
-use super::signals::{ModelTorques, Signals, joint_kinds};
+use crate::diagnosis::DiagnosisError;
+use crate::diagnosis::rows::signals::{ModelTorques, Signals, joint_kinds};
 use crate::effects::{
     At, CoupledTransmission, Direction, EffectKind, Form, Place, Scale, Transmission, body_columns,
     deflection, derivable, derivative,
@@ -11,7 +11,7 @@ use crate::signal::{Butterworth, Stencil, central_difference};
 use std::sync::OnceLock;
 
 /// One column in one motion at the full rate: the joints that it acts on, with their torques.
-pub(super) type Series = Vec<(usize, Vec<f64>)>;
+pub(in crate::diagnosis) type Series = Vec<(usize, Vec<f64>)>;
 
 /// What links ask for through compliant transmissions, from positions below the band of the ringing itself.
 struct Links {
@@ -25,7 +25,7 @@ struct Links {
 /// Cut-off of the motion that drives compliant links, Hz.
 const DRIVING_BAND: f64 = 15.0;
 
-pub(super) struct Context<'a> {
+pub(in crate::diagnosis) struct Context<'a> {
     pub model: &'a dyn Model,
     engine: RecursiveModel,
     tables: Vec<Link<f64>>,
@@ -272,7 +272,7 @@ impl<'a> Context<'a> {
 }
 
 /// Scales of every joint over motions, for given standard parameters.
-pub(super) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec<Scale> {
+pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec<Scale> {
     let robot = model.robot();
     let n = robot.joints();
     let kinds = joint_kinds(robot);
@@ -302,7 +302,7 @@ pub(super) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec
 }
 
 /// Speed that 98 % of the samples of a joint do not pass, in the fastest motion.
-pub(super) fn top_speeds(signals: &[Signals], joints: usize) -> Vec<f64> {
+pub(in crate::diagnosis) fn top_speeds(signals: &[Signals], joints: usize) -> Vec<f64> {
     (0..joints)
         .map(|j| {
             signals

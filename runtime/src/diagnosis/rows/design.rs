@@ -4,33 +4,33 @@
 //! outside of it: rows near a standstill, where sign(v) is noise, are left out without a trace. Torque and every
 //! column go through the same window, which is the parallel decimation of the paper's IV.A.
 
-use super::signals::{Signals, each_block};
+use crate::diagnosis::rows::signals::{Signals, each_block};
 use crate::model::Model;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Longest block of motion, s.
-pub(super) const LONGEST_BLOCK: f64 = 0.5;
+pub(in crate::diagnosis) const LONGEST_BLOCK: f64 = 0.5;
 /// From this many blocks of that length on, their gains are compared.
 const ENOUGH_BLOCKS: usize = 24;
 
 /// One row.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct RowAt {
+pub(in crate::diagnosis) struct RowAt {
     pub signal: usize,
     pub centre: usize,
 }
 
 /// A stretch of motion that is held back together.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Segment {
+pub(in crate::diagnosis) struct Segment {
     pub signal: usize,
     pub fresh: bool,
 }
 
 /// Rows of all joints and their columns. Rows are sorted by joint, then segment, then time.
 #[derive(Clone)]
-pub(super) struct Design {
+pub(in crate::diagnosis) struct Design {
     pub joints: usize,
     /// Base parameters; columns beyond them are accepted effects and nuisances.
     pub parameters: usize,
@@ -51,7 +51,7 @@ pub(super) struct Design {
 }
 
 /// What decides where rows are.
-pub(super) struct Plan<'a> {
+pub(in crate::diagnosis) struct Plan<'a> {
     /// Half-width of the window, s.
     pub half: f64,
     /// Least speed per joint.
@@ -281,7 +281,7 @@ fn moving(s: &Signals, centre: usize, half: usize, directions: &[Vec<f64>], slow
 
 /// Inner product, in as many partial sums as keep the machine's vector units busy.
 #[inline(always)]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(in crate::diagnosis) fn dot(a: &[f64], b: &[f64]) -> f64 {
     const SUMS: usize = 16;
     let mut sums = [0.0; SUMS];
     let (ca, cb) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));

@@ -4,7 +4,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// How sure it is that a gain is no accident.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Evidence {
+pub(in crate::diagnosis) struct Evidence {
     /// In standard errors.
     pub significance: f64,
     /// Probability that an accident comes as far.
@@ -38,7 +38,7 @@ impl Evidence {
 
 /// Inner products over a block of motion of the predicted change with the residual and with itself.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Block {
+pub(in crate::diagnosis) struct Block {
     pub with_residual: f64,
     pub squares: f64,
 }
@@ -54,7 +54,7 @@ impl Block {
 ///
 /// A change that is an accident of the other motion has a slope of zero; one that is real and known exactly has one.
 /// Its degrees of freedom count the blocks that the change is spread over.
-pub(super) fn slope(blocks: &[Block]) -> Evidence {
+pub(in crate::diagnosis) fn slope(blocks: &[Block]) -> Evidence {
     let squares: f64 = blocks.iter().map(|b| b.squares).sum();
     // Blocks that carry the change: their number if it is spread evenly, fewer if few of them hold most of it.
     let carrying = squares * squares / blocks.iter().map(|b| b.squares * b.squares).sum::<f64>().max(1e-300);
@@ -74,12 +74,12 @@ pub(super) fn slope(blocks: &[Block]) -> Evidence {
 
 /// The mean gain of a block in standard errors: weaker than the slope where few blocks say little, stronger where few
 /// blocks say nearly everything.
-pub(super) fn mean_gain(blocks: &[Block]) -> Evidence {
+pub(in crate::diagnosis) fn mean_gain(blocks: &[Block]) -> Evidence {
     mean_root(&blocks.iter().map(Block::gain).collect::<Vec<f64>>())
 }
 
 /// Gains are heavy-tailed, so their signed square roots are compared with zero.
-pub(super) fn mean_root(gains: &[f64]) -> Evidence {
+pub(in crate::diagnosis) fn mean_root(gains: &[f64]) -> Evidence {
     let roots: Vec<f64> = gains.iter().map(|g| g.signum() * g.abs().sqrt()).collect();
     let n = roots.len() as f64;
     if n < 4.0 {

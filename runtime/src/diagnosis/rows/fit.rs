@@ -1,10 +1,10 @@
 //! Weighted least squares from inner products: the whole, a fold, and a candidate added to either.
 
-use super::design::Design;
+use crate::diagnosis::rows::design::Design;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// A fit of the columns of a design on some of its segments.
-pub(super) struct Fit {
+pub(in crate::diagnosis) struct Fit {
     /// Parameters, in units of the design's columns.
     pub chi: DVector<f64>,
     /// Per column: 1 / norm, so that the factored matrix has a unit diagonal.
@@ -104,7 +104,11 @@ fn normal(design: &Design, sigma: &[f64], train: &dyn Fn(usize) -> bool) -> (DMa
 }
 
 /// Fits with weights that are iterated to the residuals' own standard deviations; returns them per joint.
-pub(super) fn fit_weighted(design: &Design, sigma: &mut [f64], train: impl Fn(usize) -> bool + Copy) -> Fit {
+pub(in crate::diagnosis) fn fit_weighted(
+    design: &Design,
+    sigma: &mut [f64],
+    train: impl Fn(usize) -> bool + Copy,
+) -> Fit {
     let mut fit = Fit::new(design, sigma, train);
     for _ in 0..6 {
         for (j, s) in sigma.iter_mut().enumerate() {

@@ -1,11 +1,13 @@
 //! How sure it is that a gain is no accident, where residuals are not white and many candidates were tried.
 
-use super::candidate::Candidate;
-use super::design::{Design, LONGEST_BLOCK};
-use super::fit::Fit;
-use super::judge::{Fold, Verdict, own_part, rest_of_motion, single_motion};
-use super::memory::{Memory, forgotten, places};
-use super::significance::{Block, Evidence, mean_gain, mean_root, slope};
+use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::judging::folds::{Fold, single_motion};
+use crate::diagnosis::judging::judge::Verdict;
+use crate::diagnosis::judging::memory::{Memory, forgotten, places};
+use crate::diagnosis::judging::partial_regression::{own_part, rest_of_motion};
+use crate::diagnosis::judging::significance::{Block, Evidence, mean_gain, mean_root, slope};
+use crate::diagnosis::rows::design::{Design, LONGEST_BLOCK};
+use crate::diagnosis::rows::fit::Fit;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
@@ -14,7 +16,7 @@ const SHIFTS: usize = 100;
 
 /// Evidence for a law that leaves no amplitude free: its own part is correlated with the residual as it is, and with
 /// the residual shifted in time, which has the same spectrum and nothing to do with the law.
-pub(super) fn waveform_evidence(
+pub(in crate::diagnosis) fn waveform_evidence(
     design: &Design,
     whole: &Fit,
     sigma: &[f64],
@@ -35,8 +37,8 @@ pub(super) fn waveform_evidence(
             let rows = range.len();
             let by = rows * shift / SHIFTS;
             let (r, w) = (&residual[range.clone()], &waveform[range]);
-            let wrapped =
-                super::design::dot(&r[by..], &w[..rows - by]) + super::design::dot(&r[..by], &w[rows - by..]);
+            let wrapped = crate::diagnosis::rows::design::dot(&r[by..], &w[..rows - by])
+                + crate::diagnosis::rows::design::dot(&r[..by], &w[rows - by..]);
             wrapped / (sigma[j] * sigma[j])
         };
         (0..design.joints).map(of_joint).sum()
@@ -108,7 +110,7 @@ fn memory_evidence(
 /// With enough blocks it is their mean gain. A short recording has too few for any mean of gains to say much: there the
 /// residual's memory tells how much a law of one joint stands out, and for laws of several joints, blocks are only as
 /// long as the residual remembers, and the slope of the residual on the predicted change of torque is looked at as well.
-pub(super) fn block_evidence(
+pub(in crate::diagnosis) fn block_evidence(
     design: &Design,
     whole: &Fit,
     folds: &[Fold],
@@ -139,7 +141,7 @@ pub(super) fn block_evidence(
 
 /// Probability that a law which gains more than its rival on held-back motion does so by accident: their gains are
 /// compared block by block.
-pub(super) fn doubt(
+pub(in crate::diagnosis) fn doubt(
     design: &Design,
     whole: &Fit,
     folds: &[Fold],

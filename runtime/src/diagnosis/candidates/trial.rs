@@ -1,0 +1,147 @@
+//! A shape of an effect at a place as columns on the rows, and their inner products with the design.
+
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::{Design, dot};
+use crate::effects::{EffectKind, Place};
+use nalgebra::DMatrix;
+
+/// A column on the rows: for each joint that it acts on, the values at all of the joint's rows.
+pub(in crate::diagnosis) type Sparse = Vec<(usize, Vec<f64>)>;
+
+/// One shape of a candidate.
+pub(in crate::diagnosis) struct Trial {
+    pub shape: Vec<f64>,
+    pub columns: Vec<Sparse>,
+    /// Inner products with the design's columns and y, and with each other: `[joint][segment]`; empty where the
+    /// trial does not act on the joint.
+    pub products: Vec<Vec<Products>>,
+}
+
+/// Inner products of a trial on one group of rows.
+#[derive(Clone)]
+pub(in crate::diagnosis) struct Products {
+    /// With every column of the design, p x k.
+    pub with: DMatrix<f64>,
+    /// With y, k.
+    pub y: Vec<f64>,
+    /// With each other, k x k.
+    pub own: DMatrix<f64>,
+}
+
+/// Columns of an effect on the rows of a design. Motions of a baseline are left at zero where `change` is set.
+pub(in crate::diagnosis) fn columns(
+    context: &Context<'_>,
+    design: &Design,
+    effect: EffectKind,
+    place: Place,
+    shape: &[f64],
+    change: bool,
+) -> Vec<Sparse> {
+    let mut out: Vec<Sparse> = Vec::new();
+    for k in 0..context.signals.len() {
+        let silent = change && !context.signals[k].fresh;
+        // A silent motion still needs to know which joints the columns act on.
+        let mut series = context.series(k, effect, place, shape);
+        if silent {
+            for (_, values) in series.iter_mut().flatten() {
+                values.fill(0.0);
+            }
+        }
+        for (a, column) in series.iter().enumerate() {
+            if out.len() <= a {
+                out.push(column.iter().map(|(j, _)| (*j, Vec::new())).collect());
+            }
+            for ((j, rows), (_, values)) in out[a].iter_mut().zip(column) {
+                design.sample(*j, k, values, rows);
+            }
+        }
+    }
+    out
+}
+
+/// The same on all rows of the design, zero where a column does not act.
+pub(in crate::diagnosis) fn dense_columns(
+    context: &Context<'_>,
+    design: &Design,
+    effect: EffectKind,
+    place: Place,
+    shape: &[f64],
+    change: bool,
+) -> Vec<Vec<f64>> {
+    columns(context, design, effect, place, shape, change).iter().map(|c| dense(design, c)).collect()
+}
+
+/// The skew of the torques behind the positions, which is always fitted along.
+pub(in crate::diagnosis) fn delay_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
+    dense_columns(context, design, EffectKind::TimeDelay, Place::Variant(0), &[], false)
+}
+
+fn dense(design: &Design, column: &Sparse) -> Vec<f64> {
+    let mut full = vec![0.0; design.rows.len()];
+    for (j, values) in column {
+        full[design.of_joint(*j)].copy_from_slice(values);
+    }
+    full
+}
+
+impl Trial {
+    pub fn new(design: &Design, shape: Vec<f64>, columns: Vec<Sparse>) -> Self {
+        let mut trial = Self { shape, columns, products: Vec::new() };
+        trial.refresh(design);
+        trial
+    }
+
+    /// Inner products with the design as it is now.
+    pub fn refresh(&mut self, design: &Design) {
+        self.refresh_from(design, 0);
+    }
+
+    /// The same where neither the trial's own columns nor the design's before `first` have changed.
+    pub fn refresh_from(&mut self, design: &Design, first: usize) {
+        let (p, k) = (design.columns.len(), self.columns.len());
+        let old = std::mem::take(&mut self.products);
+        self.products = (0..design.joints)
+            .map(|j| {
+                let mine: Vec<Option<&[f64]>> = self
+                    .columns
+                    .iter()
+                    .map(|c| c.iter().find(|(i, _)| *i == j).map(|(_, v)| v.as_slice()))
+                    .collect();
+                if mine.iter().all(Option::is_none) {
+                    return Vec::new();
+                }
+                let start = design.of_joint(j).start;
+                design.ranges[j]
+                    .iter()
+                    .enumerate()
+                    .map(|(g, range)| {
+                        let local = range.start - start..range.end - start;
+                        let slice = |a: usize| mine[a].map_or(&[][..], |v| &v[local.clone()]);
+                        let before = old.get(j).and_then(|segments| segments.get(g));
+                        let kept = before.map_or(0, |_| first);
+                        Products {
+                            with: DMatrix::from_fn(p, k, |i, a| match before {
+                                Some(before) if i < kept => before.with[(i, a)],
+                                _ => dot_or_zero(&design.columns[i][range.clone()], slice(a)),
+                            }),
+                            y: (0..k).map(|a| dot_or_zero(&design.y[range.clone()], slice(a))).collect(),
+                            own: match before {
+                                Some(before) if kept > 0 => before.own.clone(),
+                                _ => DMatrix::from_fn(k, k, |a, b| dot_or_zero(slice(a), slice(b))),
+                            },
+                        }
+                    })
+                    .collect()
+            })
+            .collect();
+    }
+
+    /// The trial's columns on all rows of the design.
+    pub fn dense(&self, design: &Design) -> Vec<Vec<f64>> {
+        self.columns.iter().map(|column| dense(design, column)).collect()
+    }
+}
+
+fn dot_or_zero(a: &[f64], b: &[f64]) -> f64 {
+    if a.len() == b.len() { dot(a, b) } else { 0.0 }
+}

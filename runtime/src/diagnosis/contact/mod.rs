@@ -1,0 +1,3 @@
+//! Contact: windows of time in which something outside pushed the robot.
+
+pub(in crate::diagnosis) mod search;
