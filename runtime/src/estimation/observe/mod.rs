@@ -1,6 +1,7 @@
 //! Observation: from motions to orthogonal factors of [W Y], one for each trajectory, block of time and equation.
 
 mod merge;
+mod row_plan;
 mod rows;
 mod select;
 mod source;
@@ -11,6 +12,7 @@ mod work;
 
 use std::ops::Range;
 
+pub(crate) use row_plan::{RowPlan, row_plans};
 pub use rows::Rows;
 pub use select::{LeftOut, Standstill};
 
@@ -278,7 +280,7 @@ pub fn observe(
     let mut prepared = Vec::with_capacity(motions.len());
     for (trajectory, motion) in motions.iter().enumerate() {
         let source = source::source(equations, model, trajectory, motion, extra)?;
-        let decimator = decimator(motion.rate, settings)?;
+        let decimator = row_plan::decimator(motion.rate, settings)?;
         let samples = motion.q.first().map_or(0, Vec::len);
         let valid = motion.spoiled..samples.saturating_sub(motion.spoiled).max(motion.spoiled);
         let grid = decimator.kept_rows(valid);
@@ -309,24 +311,11 @@ pub fn observe(
         unknowns,
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),
         rates: prepared.iter().map(|p| p.motion.rate / p.decimator.factor() as f64).collect(),
-        bands: prepared.iter().map(|p| band_of(&p.decimator, p.motion.rate)).collect(),
+        bands: prepared.iter().map(|p| row_plan::band_of(&p.decimator, p.motion.rate)).collect(),
         groups,
         blocks,
         left_out: prepared.iter().flat_map(|p| p.selection.iter().map(|s| s.left_out.clone())).collect(),
         samples: motions.iter().map(|m| m.q.first().map_or(0, Vec::len)).sum(),
         rows,
     })
-}
-
-/// The filter for a recording's rate.
-fn decimator(rate: f64, settings: &ObserveSettings) -> Result<Decimator, ObserveError> {
-    let factor = Decimator::factor_for(rate, settings.rate.unwrap_or(2.0 * settings.band));
-    let nyquist = 0.5 * rate / factor as f64;
-    Ok(Decimator::with_band(factor, (settings.band / nyquist).min(1.0))?)
-}
-
-fn band_of(decimator: &Decimator, rate: f64) -> f64 {
-    let taps = decimator.taps().len();
-    let half_rate = 0.5 * rate;
-    if taps == 1 { half_rate } else { half_rate * 20.0 / (taps - 1) as f64 }
 }

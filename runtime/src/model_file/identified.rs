@@ -2,14 +2,27 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::observe::{LeftOut, ObserveSettings};
-use super::{EquationError, Estimate, ParameterEstimate, Warning};
+use super::fingerprint::fingerprint;
 use crate::effects::EffectTerm;
+use crate::estimation::observe::{LeftOut, Observation};
+use crate::estimation::{EquationError, Estimate, ParameterEstimate, Warning};
 use crate::model::Robot;
+use crate::prediction::{Errors, Evaluation};
+
+/// Version of the fields of [`Identified`]: raised when a reader of the version before would misread a file.
+pub const SCHEMA: u32 = 1;
 
 /// An identified model: what `identify` writes as JSON and saves, and what `validate` reads back.
+///
+/// [`super::read`] reads it with every field checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Identified {
+    /// [`SCHEMA`]; 0 in files from before there was one.
+    #[serde(default)]
+    pub schema_version: u32,
+    /// The dynid that wrote it; empty in files from before schema 1.
+    #[serde(default)]
+    pub dynid_version: String,
     /// Name of the robot, or the path it was given by.
     pub robot: String,
     /// `idim-wls`, ...
@@ -28,10 +41,12 @@ pub struct Identified {
     /// The simplified model: parameters that are well determined, re-estimated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub essential_parameters: Option<EssentialParameters>,
-    /// Condition number of the weighted observation matrix with columns of unit length.
-    pub condition_number: f64,
-    /// Rows of the files that could not be right.
-    pub rows_left_out: u64,
+    /// Condition number of the weighted observation matrix with columns of unit length, where the method has one.
+    #[serde(default)]
+    pub condition_number: Option<f64>,
+    /// Rows of the files that could not be right, where the files were looked at.
+    #[serde(default)]
+    pub rows_left_out: Option<u64>,
     /// Equations used and left out, per trajectory and joint.
     #[serde(default)]
     pub equations: Vec<EquationRows>,
@@ -43,6 +58,18 @@ pub struct Identified {
     /// Effects that a diagnosis found and that belong to the model.
     #[serde(default)]
     pub effects: Vec<EffectTerm>,
+    /// By how much the torque channel was found to be later than the positions, s.
+    #[serde(default)]
+    pub delay: f64,
+    /// Relative error that the noise of the torques makes up, where it matters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<Errors>,
+    /// [`fingerprint`] of the table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fingerprint: Option<String>,
+    /// The robot as it was when the parameters were identified.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<Robot>,
 }
 
 /// A parameter with its uncertainty and unit.
@@ -98,16 +125,9 @@ pub struct EquationRows {
 }
 
 impl Identified {
-    /// Brings an estimate and what is known of its rows together. `torque_errors` are the relative error of the
-    /// joint torques, overall and per joint; they differ from the estimate's own for the power model.
-    pub fn new(
-        robot: &Robot,
-        robot_name: &str,
-        observed: &Observed<'_>,
-        estimate: &Estimate,
-        torque_errors: (f64, Vec<f64>),
-        rows_left_out: u64,
-    ) -> Self {
+    /// Brings an estimate and what is known of its rows together. `errors` are those of the joint torques; they
+    /// differ from the estimate's own for the power model.
+    pub fn new(robot: &Robot, robot_name: &str, rows: EvaluatedRows, estimate: &Estimate) -> Self {
         let named = |p: &ParameterEstimate| NamedParameter {
             name: p.name.clone(),
             value: p.value,
@@ -121,46 +141,69 @@ impl Identified {
                 .map_or_else(String::new, |b| b.unit.to_string()),
         };
         let power = estimate.method.is_power();
+        let essential = estimate.essential.as_ref().map(|e| EssentialParameters {
+            parameters: e.parameters.iter().map(named).collect(),
+            cancelled: e.cancelled.clone(),
+            relative_error: e.relative_error,
+        });
         Identified {
-            robot: robot_name.to_owned(),
-            method: estimate.method.name().to_owned(),
-            samples: observed.samples,
-            relative_error: torque_errors.0,
-            per_joint: torque_errors.1,
             power_relative_error: power.then_some(estimate.relative_error),
-            base_parameters: estimate.parameters.iter().map(named).collect(),
-            essential_parameters: estimate.essential.as_ref().map(|e| EssentialParameters {
-                parameters: e.parameters.iter().map(named).collect(),
-                cancelled: e.cancelled.clone(),
-                relative_error: e.relative_error,
-            }),
-            condition_number: estimate.condition,
-            rows_left_out,
-            equations: observed
-                .left_out
-                .iter()
-                .map(|l| equation_rows(l, observed.trajectories, &estimate.errors, power))
-                .collect(),
-            band: observed.settings.band,
+            essential_parameters: essential,
+            condition_number: Some(estimate.condition),
             warnings: estimate.warnings.iter().map(Warning::to_string).collect(),
+            ..Self::with_parameters(
+                robot,
+                robot_name,
+                estimate.method.name(),
+                rows,
+                estimate.parameters.iter().map(named).collect(),
+            )
+        }
+    }
+
+    /// A model of which nothing is known but its parameters and its rows.
+    pub fn with_parameters(
+        robot: &Robot,
+        robot_name: &str,
+        method: &str,
+        rows: EvaluatedRows,
+        base_parameters: Vec<NamedParameter>,
+    ) -> Self {
+        Identified {
+            schema_version: SCHEMA,
+            dynid_version: env!("CARGO_PKG_VERSION").to_owned(),
+            robot: robot_name.to_owned(),
+            method: method.to_owned(),
+            samples: rows.samples,
+            relative_error: rows.errors.relative_error,
+            per_joint: rows.errors.per_joint,
+            power_relative_error: None,
+            base_parameters,
+            essential_parameters: None,
+            condition_number: None,
+            rows_left_out: rows.rows_left_out,
+            equations: rows.equations,
+            band: rows.band,
+            warnings: Vec::new(),
             effects: Vec::new(),
+            delay: 0.0,
+            noise: rows.noise,
+            fingerprint: Some(fingerprint(robot)),
+            table: Some(robot.clone()),
         }
     }
 
     /// The same parameters with what another recording says about them.
-    pub fn validated(&self, observed: &Observed<'_>, errors: (f64, Vec<f64>), rows_left_out: u64) -> Self {
+    pub fn validated(&self, rows: EvaluatedRows) -> Self {
         Identified {
-            samples: observed.samples,
-            relative_error: errors.0,
-            per_joint: errors.1,
+            samples: rows.samples,
+            relative_error: rows.errors.relative_error,
+            per_joint: rows.errors.per_joint,
             power_relative_error: None,
-            rows_left_out,
-            equations: observed
-                .left_out
-                .iter()
-                .map(|l| equation_rows(l, observed.trajectories, &[], false))
-                .collect(),
-            band: observed.settings.band,
+            rows_left_out: rows.rows_left_out,
+            equations: rows.equations,
+            band: rows.band,
+            noise: rows.noise,
             ..self.clone()
         }
     }
@@ -184,17 +227,50 @@ impl Identified {
     }
 }
 
-/// What an observation says about its rows, without its factors.
-#[derive(Debug, Clone, Copy)]
-pub struct Observed<'a> {
+/// What the rows of a recording say about a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvaluatedRows {
     /// Samples read.
     pub samples: usize,
-    /// Names of the trajectories.
-    pub trajectories: &'a [String],
-    /// Rows per equation.
-    pub left_out: &'a [LeftOut],
-    /// How it was sampled.
-    pub settings: &'a ObserveSettings,
+    /// Rows of the files that could not be right, where they were looked at.
+    pub rows_left_out: Option<u64>,
+    /// Rows used and left out.
+    pub equations: Vec<EquationRows>,
+    /// Band of the rows, Hz.
+    pub band: f64,
+    /// Errors of the torques.
+    pub errors: Errors,
+    /// What noise makes of them, where it matters.
+    pub noise: Option<Errors>,
+}
+
+impl EvaluatedRows {
+    /// From the observation that an estimate was made from; `errors` are those of the torques.
+    pub fn observed(observation: &Observation, band: f64, estimate: &Estimate, errors: Errors) -> Self {
+        let power = estimate.method.is_power();
+        let rows = |l| equation_rows(l, &observation.trajectories, &estimate.errors, power);
+        Self {
+            samples: observation.samples,
+            rows_left_out: None,
+            equations: observation.left_out.iter().map(rows).collect(),
+            band,
+            errors,
+            noise: None,
+        }
+    }
+
+    /// From an evaluation, for the model at `place` in it.
+    pub fn evaluated(evaluation: &Evaluation, place: usize) -> Option<Self> {
+        let rows = |l| equation_rows(l, &evaluation.trajectories, &[], false);
+        Some(Self {
+            samples: evaluation.samples,
+            rows_left_out: None,
+            equations: evaluation.left_out.iter().map(rows).collect(),
+            band: evaluation.band,
+            errors: evaluation.predictions.get(place)?.errors.clone(),
+            noise: evaluation.noise_matters().cloned(),
+        })
+    }
 }
 
 fn equation_rows(
