@@ -4,8 +4,10 @@
 //! by name or by path; identification, simulation and diagnosis live in [`dynid_runtime`].
 #![deny(missing_docs)]
 
+pub mod arguments;
 pub mod closed_loop;
 pub mod commands;
+pub mod errors;
 pub mod failure;
 pub mod models;
 pub mod motions;
@@ -15,4 +17,6 @@ pub mod paper_tables;
 pub mod plausibility;
 pub mod recorded;
 pub mod robots;
+pub mod saved;
 pub mod scoring;
+pub mod words;

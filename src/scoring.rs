@@ -4,7 +4,7 @@ use std::path::Path;
 
 use dynid_runtime::diagnosis::Finding;
 use dynid_runtime::effects::EffectKind;
-use dynid_runtime::model::Robot;
+use dynid_runtime::model::{JointNumber, Robot};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, file_failure};
@@ -49,17 +49,12 @@ pub fn read_truth(path: &Path, robot: &Robot) -> Result<Vec<Hidden>, Failure> {
                 wrong(format!("effect {}: the catalogue has no such effect", hidden.effect))
             })?;
             let joints: Vec<usize> = hidden.joint.into_iter().chain(hidden.joints).collect();
-            match joints.iter().find(|&&j| joint_index(robot, j).is_none()) {
+            match joints.iter().find(|&&j| robot.joint_index(JointNumber(j)).is_none()) {
                 Some(none) => Err(wrong(format!("{}: {} has no joint {none}", hidden.effect, robot.name))),
                 None => Ok(Hidden { effect, joints }),
             }
         })
         .collect()
-}
-
-/// 0-based joint of the frame with number j.
-pub fn joint_index(robot: &Robot, j: usize) -> Option<usize> {
-    robot.joint_of_frame().get(j.checked_sub(1)?).copied().flatten()
 }
 
 /// What was found, sorted by whether it was there.

@@ -15,7 +15,8 @@ use crate::failure::Failure;
 use crate::motions::check_size;
 use crate::output::{Bar, make_folder, print, table, write, write_page};
 use crate::paper_tables::{Results, Rows};
-use crate::recorded::{RecordingOptions, Sampling, read};
+use crate::arguments::{Sampling, Source};
+use crate::recorded::read;
 use crate::robots::resolve;
 
 /// Simulated or recorded, and where to write.
@@ -144,16 +145,9 @@ fn run_seeds(
 }
 
 fn recorded(path: PathBuf, settings: &PaperSettings, arguments: &Arguments) -> Result<(), Failure> {
-    let sampling = Sampling {
-        band: Some(settings.observe.band),
-        rate: None,
-        cutoff: None,
-        standstill: Vec::new(),
-        all_rows: false,
-        threads: 0,
-    };
-    let options = RecordingOptions { recording: path, robot: None, from: None, to: None, sampling };
-    let recorded = read(&options)?;
+    let sampling = Sampling { band: Some(settings.observe.band), ..Sampling::default() };
+    let options = Source::whole(path);
+    let recorded = read(&options, &sampling)?;
     let model = recorded.dynamics.model();
     let failed = |error| crate::recorded::observe_failure(&options.recording, &error);
     let settings = PaperSettings { observe: recorded.settings.clone(), ..settings.clone() };

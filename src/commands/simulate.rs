@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::effects::EffectTerm;
-use dynid_runtime::estimation::Identified;
+use dynid_runtime::model_file::{Identified, to_yaml};
 use dynid_runtime::model::{Model, Robot};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
@@ -14,11 +14,11 @@ use dynid_runtime::simulation::{
     check_standard, simulate,
 };
 
-use super::validate::read_model;
-use crate::failure::Failure;
+use crate::failure::{Failure, file_failure};
 use crate::motions::{MotionOptions, check_size, read as read_motions};
-use crate::output::{Bar, make_folder, print, table};
-use crate::robots::resolve;
+use crate::output::{Bar, make_folder, print, table, write};
+use crate::robots::{Dynamics, resolve};
+use crate::saved::{known_parameters, own_dynamics, read_model};
 
 /// What to simulate, and where to put it.
 #[derive(Debug, Args)]
@@ -84,8 +84,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         check_size(option, size)?;
     }
     let saved = saved_model(&arguments.robot)?;
-    let name = saved.as_ref().map_or(arguments.robot.as_str(), |identified| identified.robot.as_str());
-    let dynamics = resolve(name, Path::new(&arguments.robot).parent())?;
+    let dynamics = match &saved {
+        Some(identified) => own_dynamics(identified, Path::new(&arguments.robot))?,
+        None => resolve(&arguments.robot, None)?,
+    };
     let model = dynamics.model();
     let robot = model.robot();
     let parameters = parameters(robot, saved.as_ref(), &arguments.robot)?;
@@ -112,10 +114,29 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(bar);
     let trajectories: Vec<_> = runs.iter().map(|run| run.recorded.clone()).collect();
     let title = format!("closed-loop simulation of {}, seed {}", robot.name, arguments.seed);
-    let path = recording::write(&arguments.out, robot, name, &title, &trajectories)
+    let name = named_in_recording(&dynamics, arguments, saved.is_some())?;
+    let path = recording::write(&arguments.out, robot, &name, &title, &trajectories)
         .map_err(|error| Failure::Input(error.to_string()))?;
     print(&summary(&path, &runs));
     Ok(())
+}
+
+/// How the recording names its robot: by name where it is generated, else by the path of a YAML beside the recording: a
+/// copy of the one that was given, or the model's own table.
+fn named_in_recording(dynamics: &Dynamics, arguments: &Arguments, saved: bool) -> Result<String, Failure> {
+    let given = Path::new(&arguments.robot);
+    let (name, text) = match dynamics {
+        Dynamics::Generated(model) => return Ok(model.robot().name.to_string()),
+        Dynamics::Recursive(model) if saved => ("robot.yaml".to_owned(), to_yaml(model.robot())),
+        Dynamics::Recursive(_) => {
+            let text =
+                std::fs::read_to_string(given).map_err(|error| file_failure("read the robot", given, &error))?;
+            let name = given.file_name().map(|name| name.to_string_lossy().into_owned());
+            (name.unwrap_or_else(|| "robot.yaml".to_owned()), text)
+        }
+    };
+    write(&arguments.out.join(&name), text.trim_end())?;
+    Ok(format!("./{name}"))
 }
 
 fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
@@ -128,9 +149,7 @@ fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
 
 fn parameters(robot: &Robot, saved: Option<&Identified>, name: &str) -> Result<Parameters, Failure> {
     if let Some(identified) = saved {
-        let chi = identified.chi(robot).map_err(|missing| {
-            Failure::Input(format!("{name}: it has no {missing}: it was identified for another robot"))
-        })?;
+        let chi = known_parameters(identified, robot, Path::new(name))?;
         return Ok(Parameters::Base(chi, identified.effects.clone()));
     }
     let Some(nominal) = &robot.nominal else {

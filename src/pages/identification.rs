@@ -1,8 +1,8 @@
 //! The report of `identify`: the parameters, and the torques measured and predicted.
 
-use dynid_runtime::estimation::Identified;
 use dynid_runtime::estimation::observe::{Equations, ObserveError, ObserveSettings, Rows, observe};
 use dynid_runtime::model::Robot;
+use dynid_runtime::model_file::Identified;
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use crate::recorded::{Recorded, left_out_words};

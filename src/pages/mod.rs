@@ -1,4 +1,0 @@
-//! The HTML reports.
-
-pub mod diagnosis;
-pub mod identification;

@@ -23,12 +23,14 @@ mod check;
 mod error;
 mod fingerprint;
 mod identified;
+mod robot_yaml;
 mod table;
 
 pub use check::{check, read};
 pub use error::FileError;
 pub use fingerprint::{difference, fingerprint};
 pub use identified::{EquationRows, EssentialParameters, EvaluatedRows, Identified, NamedParameter, SCHEMA};
+pub use robot_yaml::to_yaml;
 
 #[cfg(test)]
 mod tests;

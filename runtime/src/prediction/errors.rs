@@ -1,6 +1,8 @@
 //! Relative errors of torques from sums of squares.
 
 use crate::diagnosis::Errors;
+use crate::estimation::observe::Observation;
+use crate::estimation::{per_equation, relative_error};
 
 /// From the sums of squares that are left and that there were, per joint.
 pub(super) fn of_squares(left: &[f64], whole: &[f64]) -> Errors {
@@ -17,5 +19,14 @@ pub fn above_noise(errors: &Errors, noise: &Errors) -> Errors {
     Errors {
         relative_error: above(errors.relative_error, noise.relative_error),
         per_joint: errors.per_joint.iter().zip(&noise.per_joint).map(|(e, n)| above(*e, *n)).collect(),
+    }
+}
+
+/// The errors of base parameters on the observation that they were identified from, without its rows: of a recording
+/// that is too long to be held. The same figures as [`super::evaluate`]'s on the same rows.
+pub fn observed_errors(observation: &Observation, chi: &[f64]) -> Errors {
+    Errors {
+        relative_error: relative_error(observation, chi),
+        per_joint: per_equation(observation, chi),
     }
 }

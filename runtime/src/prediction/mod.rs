@@ -16,7 +16,7 @@ mod predictor;
 
 pub use comparison::{Comparison, Prepared};
 pub use crate::diagnosis::Errors;
-pub use errors::above_noise;
+pub use errors::{above_noise, observed_errors};
 pub use evaluate::{Evaluation, JointRows, Prediction, evaluate};
 pub use predictor::{PredictionError, Predictor};
 
