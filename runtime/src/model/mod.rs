@@ -7,6 +7,7 @@ mod number;
 mod recursive;
 mod robot;
 mod standard;
+mod torques;
 
 pub use block::{
     InLines, LINE, Line, LineStates, array, array_mut, evaluate_block, evaluate_line, evaluate_lines,
@@ -21,6 +22,7 @@ pub use robot::{
     BaseParameter, Drive, Frame, JointKind, Limits, Nominal, ParameterKind, Robot, StandardParameter,
 };
 pub use standard::{standard_parameters, unit};
+pub use torques::{StateSlices, torques, torques_at};
 
 /// Where the inverse dynamic regressor can be non-zero: the block-triangular form (5), entry by entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
