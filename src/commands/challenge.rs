@@ -11,7 +11,6 @@ use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
 use dynid_runtime::recording::{Manifest, Trajectory, load};
 use dynid_runtime::report::{percent, significant};
 
-use super::diagnose::diagnosis_failure;
 use crate::failure::{Failure, file_failure};
 use crate::output::{Bar, print, table, write_json};
 use crate::errors::prediction_failure;

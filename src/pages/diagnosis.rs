@@ -120,7 +120,7 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
     }
     let at = |errors: &[f64], j: usize| errors.get(j).map_or_else(|| "-".to_owned(), |e| percent(*e));
     let per_joint = |columns: &[&[f64]]| -> Vec<Vec<String>> {
-        let row = |j: usize| std::iter::once(extras.joint(j)).chain(columns.iter().map(|c| at(c, j)));
+        let row = |j: usize| std::iter::once(extras.joint(j)).chain(columns.iter().map(move |c| at(c, j)));
         (0..held.per_joint_before.len()).map(|j| row(j).collect()).collect()
     };
     let own: [&[f64]; 2] = [&held.per_joint_before, &held.per_joint_after];

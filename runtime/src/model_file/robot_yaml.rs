@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::model::{Frame, JointKind, Robot};
+use crate::model::{Frame, JointIndex, JointKind, Robot};
 
 /// A robot as the YAML that it could have been read from: numbers in the place of expressions and constants. Limits and
 /// nominal values are not written.
@@ -29,7 +29,7 @@ pub fn to_yaml(robot: &Robot) -> String {
     let _ = writeln!(text, "drive:\n  gear: [{}]", gear.join(", "));
     if !robot.drive.coupled_friction.is_empty() {
         let motors: Vec<String> =
-            robot.drive.coupled_friction.iter().map(|motor| (motor + 1).to_string()).collect();
+            robot.drive.coupled_friction.iter().map(|motor| robot.joint_number(JointIndex(*motor)).to_string()).collect();
         let _ = writeln!(text, "  coupled_friction: [{}]", motors.join(", "));
     }
     text
