@@ -7,6 +7,7 @@ pub mod estimation;
 pub mod model;
 pub mod model_file;
 pub mod paper;
+pub mod plausibility;
 pub mod prediction;
 pub mod recording;
 pub mod report;

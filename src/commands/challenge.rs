@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use dynid_runtime::diagnosis::{Diagnosis, Progress, Settings, diagnose, fit_known};
+use dynid_runtime::diagnosis::scoring::{Hidden, LEAST_GAP, Naming, Scored, TestErrors, label};
 use dynid_runtime::effects::{EffectKind, EffectTerm};
 use dynid_runtime::model::{JointNumber, Model};
 use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
@@ -16,7 +17,7 @@ use crate::output::{Bar, print, table, write_json};
 use crate::errors::prediction_failure;
 use crate::recorded::{in_recording, recording_failure};
 use crate::robots::{Dynamics, resolve};
-use crate::scoring::{Hidden, LEAST_GAP, Naming, Scored, TestErrors, label, read_truth};
+use crate::truth::read_truth;
 
 /// Which cases, and where the score goes.
 #[derive(Debug, Args)]

@@ -12,8 +12,8 @@ use dynid_runtime::report::{percent, significant};
 use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
 use crate::output::{print, table, write, write_json};
-use crate::plausibility;
 use crate::recorded::{self, Recorded, left_out_words, observe_failure};
+use crate::verdict;
 use crate::words::joint_number;
 
 /// What to identify and where to put it.
@@ -119,7 +119,7 @@ fn identify(
                 &weighted
             }
         };
-        warnings.extend(plausibility::check(path, recorded, torques, of_torques)?);
+        warnings.extend(verdict::check(path, recorded, torques, of_torques)?);
     }
     let chi = estimate.chi();
     let errors = observed_errors(torques, &chi);

@@ -17,6 +17,7 @@ use crate::output::{Bar, make_folder, print, table, write, write_page};
 use crate::paper_tables::{Results, Rows};
 use crate::arguments::{Sampling, Source};
 use crate::recorded::read;
+use crate::words::joint_number;
 use crate::robots::resolve;
 
 /// Simulated or recorded, and where to write.
@@ -251,7 +252,7 @@ fn figure(
             for result in &shown {
                 lines.push((format!("case {}", result.case.number()), curve(&rows.predict(&result.chi))));
             }
-            Panel { title: format!("torque of joint {}, N.m", rows.equation + 1), lines }
+            Panel { title: format!("torque of joint {}, N.m", joint_number(model.robot(), rows.equation)), lines }
         })
         .collect();
     let sheet = Sheet {

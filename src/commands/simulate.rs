@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model_file::{Identified, to_yaml};
-use dynid_runtime::model::{Model, Robot};
+use dynid_runtime::model::{JointIndex, JointNumber, Model, Robot};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
@@ -19,6 +19,7 @@ use crate::motions::{MotionOptions, check_size, read as read_motions};
 use crate::output::{Bar, make_folder, print, table, write};
 use crate::robots::{Dynamics, resolve};
 use crate::saved::{known_parameters, own_dynamics, read_model};
+use crate::words::joint_number;
 
 /// What to simulate, and where to put it.
 #[derive(Debug, Args)]
@@ -90,6 +91,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let model = dynamics.model();
     let robot = model.robot();
+    if let Some(words) = missing(robot, saved.is_some(), arguments.follow.is_some()) {
+        return Err(Failure::Input(words));
+    }
     let parameters = parameters(robot, saved.as_ref(), &arguments.robot)?;
     let chi = match &parameters {
         Parameters::Standard(standard) => robot.base_from_standard(standard),
@@ -119,6 +123,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Input(error.to_string()))?;
     print(&summary(&path, &runs));
     Ok(())
+}
+
+/// Everything that a robot's YAML lacks for a simulation, at once.
+fn missing(robot: &Robot, saved: bool, followed: bool) -> Option<String> {
+    let mut needed = Vec::new();
+    if robot.nominal.is_none() && !saved {
+        needed.push("`nominal:` with the standard parameters (a model saved by `identify` needs none)".to_owned());
+    }
+    if !followed {
+        let limits = &robot.limits;
+        let empty = [
+            ("position", limits.position.is_empty()),
+            ("velocity", limits.velocity.is_empty()),
+            ("acceleration", limits.acceleration.is_empty()),
+        ];
+        let names: Vec<&str> = empty.iter().filter(|(_, empty)| *empty).map(|(name, _)| *name).collect();
+        if !names.is_empty() {
+            needed.push(format!("`limits:` with {} (--follow needs none)", names.join(", ")));
+        }
+    }
+    (!needed.is_empty()).then(|| format!("{} cannot be simulated: its YAML lacks {}", robot.name, needed.join(" and ")))
 }
 
 /// How the recording names its robot: by name where it is generated, else by the path of a YAML beside the recording: a
@@ -194,7 +219,7 @@ fn plant<'m>(
 ) -> Result<Plant<'m>, Failure> {
     let robot = model.robot();
     let failed = |error: SimulationError| Failure::Input(error.to_string());
-    let elastic = arguments.elastic.iter().map(|text| elastic_joint(text)).collect::<Result<Vec<_>, _>>()?;
+    let elastic = arguments.elastic.iter().map(|text| elastic_joint(robot, text)).collect::<Result<Vec<_>, _>>()?;
     let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
     match parameters {
         Parameters::Base(chi, terms) if !more => {
@@ -217,15 +242,19 @@ fn plant<'m>(
     }
 }
 
-fn elastic_joint(text: &str) -> Result<ElasticJoint, Failure> {
+fn elastic_joint(robot: &Robot, text: &str) -> Result<ElasticJoint, Failure> {
     let wrong = || Failure::Input(format!("--elastic {text}: expected JOINT:STIFFNESS[:DAMPING[:PLAY]]"));
     let mut fields = text.split(':');
-    let joint: usize = fields.next().and_then(|x| x.parse().ok()).filter(|&j| j > 0).ok_or_else(wrong)?;
+    let number: usize = fields.next().and_then(|x| x.parse().ok()).ok_or_else(wrong)?;
+    let JointIndex(joint) = robot.joint_index(JointNumber(number)).ok_or_else(|| {
+        let known: Vec<String> = (0..robot.joints()).map(|j| joint_number(robot, j)).collect();
+        Failure::Input(format!("--elastic {text}: the joints of {} are {}, not {number}", robot.name, known.join(", ")))
+    })?;
     let numbers: Vec<f64> = fields.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
     match numbers[..] {
-        [stiffness] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping: 0.0, play: 0.0 }),
-        [stiffness, damping] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play: 0.0 }),
-        [stiffness, damping, play] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play }),
+        [stiffness] => Ok(ElasticJoint { joint, stiffness, damping: 0.0, play: 0.0 }),
+        [stiffness, damping] => Ok(ElasticJoint { joint, stiffness, damping, play: 0.0 }),
+        [stiffness, damping, play] => Ok(ElasticJoint { joint, stiffness, damping, play }),
         _ => Err(wrong()),
     }
 }

@@ -21,6 +21,7 @@ mod judging;
 mod outcome;
 mod predict;
 mod rows;
+pub mod scoring;
 mod search;
 mod settings;
 
@@ -28,7 +29,7 @@ pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
     ParameterShift, ParameterValue, TorqueSeries, Unexplained,
 };
-pub use predict::{predict_errors, term_torques};
+pub use predict::term_torques;
 pub use settings::{DiagnosisError, Progress, Settings, Silent};
 
 use crate::effects::{EffectKind, EffectTerm, Place};

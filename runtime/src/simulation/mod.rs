@@ -16,6 +16,7 @@ pub mod excitation;
 mod extra;
 mod forward;
 mod integrator;
+mod motion_file;
 mod plant;
 mod reference;
 mod residue;
@@ -30,6 +31,7 @@ pub use didim::{DidimError, DidimEstimate, DidimSettings, Experiment, didim, sim
 pub use effect::SimulatedEffects;
 pub use error::SimulationError;
 pub use extra::{ExtraTorque, Instant};
+pub use motion_file::{MotionFileError, from_csv, sampled, to_csv};
 pub use plant::{ElasticJoint, Hold, Plant, State};
 pub use reference::{Reference, SampledReference};
 pub use residue::Residue;
