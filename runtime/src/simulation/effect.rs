@@ -1,7 +1,7 @@
 //! Effects that a diagnosis accepted, in a simulated robot.
 
 use super::extra::{ExtraTorque, Instant};
-use crate::effects::{At, EffectKind, EffectTerm, Form, JointLaw, Place, Scale};
+use crate::effects::{At, AtRest, EffectKind, EffectTerm, Form, JointLaw, Place, Scale};
 use crate::model::{Model, ParameterKind, Robot};
 
 /// What accepted effects are to a simulation.
@@ -92,12 +92,12 @@ impl EffectTorque {
         }
     }
 
-    fn is_dry(&self) -> bool {
-        self.law.is_dry(&self.shape, &self.amplitude)
+    fn at_rest(&self) -> AtRest {
+        self.law.at_rest(&self.shape, &self.amplitude)
     }
 
     /// The torque if the joint moves in the direction `sign`.
-    fn toward(&self, at: &Instant<'_>, sign: f64) -> f64 {
+    fn toward(&self, at: &Instant<'_>, sign: f64, memory: f64) -> f64 {
         let dq = at.dq[self.joint];
         let load = at.load[self.joint];
         let [fv, fc, off] = self.friction;
@@ -113,27 +113,32 @@ impl EffectTorque {
         };
         let mut columns = [0.0; MOST_COLUMNS];
         let count = self.law.amplitudes(&self.shape).min(MOST_COLUMNS);
-        self.law.law(&self.scale, &self.shape, &here, self.memory, &mut columns[..count]);
+        self.law.law(&self.scale, &self.shape, &here, memory, &mut columns[..count]);
         columns[..count].iter().zip(&self.amplitude).map(|(c, a)| c * a).sum()
     }
 }
 
 impl ExtraTorque for EffectTorque {
     fn torque(&self, at: &Instant<'_>, out: &mut [f64]) {
-        if !self.is_dry() {
-            out[self.joint] += self.toward(at, if at.dq[self.joint] < 0.0 { -1.0 } else { 1.0 });
-        }
+        out[self.joint] += match self.at_rest() {
+            AtRest::Smooth => self.toward(at, if at.dq[self.joint] < 0.0 { -1.0 } else { 1.0 }, self.memory),
+            AtRest::Dry => 0.0,
+            AtRest::BuildsUp => self.toward(at, 0.0, self.memory),
+        };
     }
 
     fn dry_friction(&self, at: &Instant<'_>, levels: &mut [[f64; 2]]) {
-        if self.is_dry() {
-            levels[self.joint][0] -= self.toward(at, -1.0);
-            levels[self.joint][1] += self.toward(at, 1.0);
-        }
+        let memory = match self.at_rest() {
+            AtRest::Smooth => return,
+            AtRest::Dry => self.memory,
+            AtRest::BuildsUp => 0.0,
+        };
+        levels[self.joint][0] -= self.toward(at, -1.0, memory);
+        levels[self.joint][1] += self.toward(at, 1.0, memory);
     }
 
     fn has_dry_friction(&self) -> bool {
-        self.is_dry()
+        self.at_rest() != AtRest::Smooth
     }
 
     fn advance(&mut self, at: &Instant<'_>, _: f64) {

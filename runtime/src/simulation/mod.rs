@@ -19,9 +19,9 @@ mod integrator;
 mod plant;
 mod reference;
 mod residue;
-mod rest;
 mod scheme;
 mod sensors;
+mod stiction;
 
 pub use closed_loop::{LoopSettings, Simulation, simulate};
 pub use consistency::check_standard;

@@ -1,9 +1,12 @@
 //! Friction that changes with time as the joint warms up: (viscous, Coulomb)·exp(-t/tau).
 
-use super::{At, JointLaw, Parameter, Scale, Words};
+use crate::effects::{
+    Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
+    Sought, Step, Words,
+};
 
 /// What a person is told.
-pub(super) const WORDS: Words = Words {
+const WORDS: Words = Words {
     id: "friction_drift",
     title: "Friction drift",
     what: "Friction changes in the course of the motion: the joint warms up and its lubricant thins.",
@@ -13,8 +16,44 @@ pub(super) const WORDS: Words = Words {
     source: "Bittencourt et al. 2010; Simoni et al. 2015",
 };
 
-/// The law.
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: Some(&super::friction_level_change::FrictionLevelChange),
+    abscissa: Abscissa::Time,
+    along_motion: true,
+};
+
+/// The effect.
 pub(super) struct FrictionDrift;
+
+impl Effect for FrictionDrift {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Joint(&FrictionDrift)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("friction fades with a time constant of {}", q.text("tau"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        let viscous = q.has("viscous").then(|| format!("{}·dq", q.value("viscous")));
+        let coulomb = q.has("coulomb").then(|| format!("{}·sign(dq)", q.value("coulomb")));
+        let parts: Vec<String> = viscous.into_iter().chain(coulomb).collect();
+        format!("({})·exp(-t / {})", parts.join(" + "), q.value("tau"))
+    }
+}
 
 impl JointLaw for FrictionDrift {
     /// The first shape parameter says what drifts: 0 viscous, 1 Coulomb, 2 both.
@@ -30,8 +69,13 @@ impl JointLaw for FrictionDrift {
             .collect()
     }
 
-    fn refinement(&self) -> &'static [f64] {
-        &[1.0, 1.6]
+    /// What drifts is one of three forms.
+    fn steps(&self, _: &Scale) -> Vec<Step> {
+        vec![Step::Keep, Step::Times(1.6)]
+    }
+
+    fn only_positive(&self) -> bool {
+        false
     }
 
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
@@ -48,8 +92,8 @@ impl JointLaw for FrictionDrift {
         }
     }
 
-    fn is_dry(&self, _: &[f64], _: &[f64]) -> bool {
-        true
+    fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
+        AtRest::Dry
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {

@@ -1,9 +1,12 @@
 //! Friction level that varies with the joint angle: (c·cos kq + s·sin kq)·sign v.
 
-use super::{At, JointLaw, Parameter, Scale, Words};
+use crate::effects::{
+    Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
+    Sought, Step, Words,
+};
 
 /// What a person is told.
-pub(super) const WORDS: Words = Words {
+const WORDS: Words = Words {
     id: "position_dependent_friction",
     title: "Position-dependent friction",
     what: "The friction level is not the same all along the travel: a worn section, a misaligned gear, an uneven preload.",
@@ -13,8 +16,41 @@ pub(super) const WORDS: Words = Words {
     source: "Armstrong-Helouvry 1991; Bittencourt and Gunnarsson 2012",
 };
 
-/// The law.
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Position,
+    along_motion: true,
+};
+
+/// The effect.
 pub(super) struct PositionDependentFriction;
+
+impl Effect for PositionDependentFriction {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Joint(&PositionDependentFriction)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("the friction level swings by {} along the travel", q.text("amplitude"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!("{}·cos({}·q - {})·sign(dq)", q.value("amplitude"), q.value("wave_number"), q.value("phase"))
+    }
+}
 
 impl JointLaw for PositionDependentFriction {
     fn amplitudes(&self, _: &[f64]) -> usize {
@@ -32,8 +68,12 @@ impl JointLaw for PositionDependentFriction {
         orders.into_iter().map(|k| vec![k]).collect()
     }
 
-    fn refinement(&self) -> &'static [f64] {
-        &[1.2]
+    fn steps(&self, _: &Scale) -> Vec<Step> {
+        vec![Step::Times(1.2)]
+    }
+
+    fn only_positive(&self) -> bool {
+        false
     }
 
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
@@ -42,8 +82,8 @@ impl JointLaw for PositionDependentFriction {
         out[1] = s * at.sign;
     }
 
-    fn is_dry(&self, _: &[f64], _: &[f64]) -> bool {
-        true
+    fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
+        AtRest::Dry
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {

@@ -21,14 +21,14 @@ pub(crate) enum Decision {
 
 /// Caller-owned memory of [`decide`] for up to `capacity` elements.
 #[derive(Debug, Clone)]
-pub(crate) struct RestScratch {
+pub(crate) struct StictionScratch {
     block: Vec<f64>,
     right: Vec<f64>,
     free: Vec<usize>,
     force: Vec<f64>,
 }
 
-impl RestScratch {
+impl StictionScratch {
     pub(crate) fn new(capacity: usize) -> Self {
         Self {
             block: vec![0.0; capacity * capacity],
@@ -53,7 +53,7 @@ pub(crate) fn decide(
     a: &mut [f64],
     b: &[f64],
     limits: &[[f64; 2]],
-    scratch: &mut RestScratch,
+    scratch: &mut StictionScratch,
     decisions: &mut [Decision],
 ) {
     for k in 0..count {
@@ -92,10 +92,10 @@ fn solve_free(
     a: &[f64],
     b: &[f64],
     limits: &[[f64; 2]],
-    scratch: &mut RestScratch,
+    scratch: &mut StictionScratch,
     decisions: &[Decision],
 ) {
-    let RestScratch { block, right, free, force } = scratch;
+    let StictionScratch { block, right, free, force } = scratch;
     free.clear();
     for k in 0..count {
         match decisions[k] {
@@ -129,7 +129,7 @@ fn first_violation(
     a: &[f64],
     b: &[f64],
     limits: &[[f64; 2]],
-    scratch: &RestScratch,
+    scratch: &StictionScratch,
     decisions: &[Decision],
 ) -> Option<usize> {
     (0..count).find(|&k| match decisions[k] {
@@ -145,7 +145,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
 
     fn run(count: usize, a: &[f64], b: &[f64], limits: &[[f64; 2]]) -> (Vec<Decision>, Vec<f64>) {
-        let mut scratch = RestScratch::new(count);
+        let mut scratch = StictionScratch::new(count);
         let mut decisions = vec![Decision::Stick; count];
         decide(count, &mut a.to_vec(), b, limits, &mut scratch, &mut decisions);
         (decisions, scratch.force)

@@ -1,10 +1,13 @@
 //! Torque and position channels that are not simultaneous: the derivative of the model with respect to time.
 
-use super::{Seeds, Sensitivity, Variant, Words};
+use crate::effects::{
+    Abscissa, Effect, Form, Properties, Quantities, Seeds, Sensitivity, SmoothingWindow, Sought, Variant,
+    Words,
+};
 use crate::model::Robot;
 
 /// What a person is told.
-pub(super) const WORDS: Words = Words {
+const WORDS: Words = Words {
     id: "time_delay",
     title: "Time delay",
     what: "Torque and position were not recorded at the same instant.",
@@ -14,12 +17,49 @@ pub(super) const WORDS: Words = Words {
     source: "Janot, Vandanjon and Gautier 2014",
 };
 
-/// The law.
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Separately,
+    follows_parameters: false,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Position,
+    along_motion: false,
+};
+
+/// The effect.
 pub(super) struct TimeDelay;
+
+impl Effect for TimeDelay {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Sensitivity(&TimeDelay)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("torques were recorded {} after the positions", q.text("delay"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!("torque(t) was recorded at t + {}", q.value("delay"))
+    }
+}
 
 impl Sensitivity for TimeDelay {
     fn variants(&self, _: &Robot) -> Vec<Variant> {
         vec![Variant { joint: None, index: 0, name: "delay", unit: "s" }]
+    }
+
+    fn together(&self) -> bool {
+        false
     }
 
     /// torque(t - delay) = torque(t) - delay · d torque / dt.

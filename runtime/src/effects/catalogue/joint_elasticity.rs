@@ -1,9 +1,11 @@
 //! Compliance between motor and link (Spong 1987).
 
-use super::{Compliance, Transmission, Words};
+use crate::effects::{
+    Abscissa, Compliance, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Transmission, Words,
+};
 
 /// What a person is told.
-pub(super) const WORDS: Words = Words {
+const WORDS: Words = Words {
     id: "joint_elasticity",
     title: "Joint elasticity",
     what: "Motor and link are joined by a spring: the link swings while the encoder on the motor hardly sees it.",
@@ -13,8 +15,41 @@ pub(super) const WORDS: Words = Words {
     source: "Spong 1987; Albu-Schaeffer and Hirzinger 2001",
 };
 
-/// The law.
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Fast,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Acceleration,
+    along_motion: false,
+};
+
+/// The effect.
 pub(super) struct JointElasticity;
+
+impl Effect for JointElasticity {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Compliance(&JointElasticity)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("the transmission is a spring of {}, ringing at about {}", q.text("k"), q.text("frequency"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!("{}·x + {}·dx, x = motor - link", q.value("k"), q.value("d"))
+    }
+}
 
 impl Compliance for JointElasticity {
     fn shapes(&self) -> Vec<[f64; 4]> {

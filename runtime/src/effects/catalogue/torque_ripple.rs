@@ -1,9 +1,12 @@
 //! Torque that is periodic in the motor or joint angle: c·cos kq + s·sin kq.
 
-use super::{At, JointLaw, Parameter, Scale, Words};
+use crate::effects::{
+    Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
+    Sought, Step, Words,
+};
 
 /// What a person is told.
-pub(super) const WORDS: Words = Words {
+const WORDS: Words = Words {
     id: "torque_ripple",
     title: "Torque ripple",
     what: "The torque pulsates with the angle: cogging, current offsets, gear teeth, a wave generator.",
@@ -13,8 +16,46 @@ pub(super) const WORDS: Words = Words {
     source: "Gan and Qiu 2004; Holtz and Springob 1996",
 };
 
-/// The law.
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Fast,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: true,
+    special_case: None,
+    abscissa: Abscissa::WaveAngle,
+    along_motion: false,
+};
+
+/// The effect.
 pub(super) struct TorqueRipple;
+
+impl Effect for TorqueRipple {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Joint(&TorqueRipple)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!(
+            "a torque ripple of {} at {} waves per joint turn, that is {} per motor turn",
+            q.text("amplitude"),
+            q.text("order"),
+            q.text("order_per_motor_turn")
+        )
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!("{}·sin({}·q + {})", q.value("amplitude"), q.value("order"), q.value("phase"))
+    }
+}
 
 impl JointLaw for TorqueRipple {
     fn amplitudes(&self, _: &[f64]) -> usize {
@@ -33,10 +74,27 @@ impl JointLaw for TorqueRipple {
             .collect()
     }
 
+    fn shapes_of_orders(&self, orders: &[f64]) -> Vec<Vec<f64>> {
+        orders.iter().map(|&order| vec![order]).collect()
+    }
+
+    /// Neighbouring waves are told apart by half a wave over the travel.
+    fn steps(&self, scale: &Scale) -> Vec<Step> {
+        vec![Step::Add(std::f64::consts::PI / scale.range)]
+    }
+
+    fn only_positive(&self) -> bool {
+        false
+    }
+
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         let (s, c) = (shape[0] * at.q).sin_cos();
         out[0] = c;
         out[1] = s;
+    }
+
+    fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
+        AtRest::Smooth
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {

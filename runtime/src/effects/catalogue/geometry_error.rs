@@ -1,10 +1,13 @@
 //! A length of the table that is wrong: the derivative of the model with respect to d or r of a frame.
 
-use super::{Seeds, Sensitivity, Variant, Words};
+use crate::effects::{
+    Abscissa, Effect, Form, Properties, Quantities, Seeds, Sensitivity, SmoothingWindow, Sought, Variant,
+    Words,
+};
 use crate::model::Robot;
 
 /// What a person is told.
-pub(super) const WORDS: Words = Words {
+const WORDS: Words = Words {
     id: "geometry_error",
     title: "Geometry error",
     what: "A length in the table of the robot is not the real one.",
@@ -14,8 +17,45 @@ pub(super) const WORDS: Words = Words {
     source: "Hollerbach, Khalil and Gautier 2016",
 };
 
-/// The law.
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::NeverAgainstBaseline,
+    follows_parameters: false,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Position,
+    along_motion: false,
+};
+
+/// The effect.
 pub(super) struct GeometryError;
+
+impl Effect for GeometryError {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Sensitivity(&GeometryError)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("a length of the table is off by {}{}", q.text("error_d"), q.text("error_r"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        if q.has("error_d") {
+            format!("d + {}", q.value("error_d"))
+        } else {
+            format!("r + {}", q.value("error_r"))
+        }
+    }
+}
 
 impl Sensitivity for GeometryError {
     /// The lengths that the table has: a row that says 0 is taken to be 0.
@@ -31,6 +71,10 @@ impl Sensitivity for GeometryError {
             }
         }
         variants
+    }
+
+    fn together(&self) -> bool {
+        false
     }
 
     fn seed(&self, variant: &Variant, seeds: &mut Seeds<'_>) {

@@ -1,9 +1,11 @@
 //! Play between motor and link (Nordin and Gutman 2002).
 
-use super::{Compliance, Transmission, Words};
+use crate::effects::{
+    Abscissa, Compliance, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Transmission, Words,
+};
 
 /// What a person is told.
-pub(super) const WORDS: Words = Words {
+const WORDS: Words = Words {
     id: "backlash",
     title: "Backlash",
     what: "There is play between motor and link: when the load changes its direction the link is free for a moment and then hits the other flank.",
@@ -13,8 +15,46 @@ pub(super) const WORDS: Words = Words {
     source: "Nordin and Gutman 2002",
 };
 
-/// The law.
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Fast,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: Some(&super::joint_elasticity::JointElasticity),
+    abscissa: Abscissa::Load,
+    along_motion: false,
+};
+
+/// The effect.
 pub(super) struct Backlash;
+
+impl Effect for Backlash {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Compliance(&Backlash)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("there is a play of {}", q.text("gap"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!(
+            "{}·x + {}·dx beyond a play of {}, x = motor - link",
+            q.value("k"),
+            q.value("d"),
+            q.value("gap")
+        )
+    }
+}
 
 impl Compliance for Backlash {
     fn shapes(&self) -> Vec<[f64; 4]> {
