@@ -8,6 +8,7 @@ mod cholesky;
 mod closed_loop;
 mod consistency;
 mod controller;
+mod coupled_friction;
 mod didim;
 mod drive;
 mod effect;
@@ -16,18 +17,21 @@ pub mod excitation;
 mod extra;
 mod forward;
 mod integrator;
+mod less_friction;
 mod plant;
+mod push;
 mod reference;
+pub mod replay;
 mod residue;
 mod scheme;
 mod sensors;
 mod stiction;
+mod world;
 
 pub use closed_loop::{LoopSettings, Simulation, simulate};
 pub use consistency::check_standard;
 pub use controller::ControllerSettings;
 pub use didim::{DidimError, DidimEstimate, DidimSettings, Experiment, didim, simulated_motions};
-pub use effect::SimulatedEffects;
 pub use error::SimulationError;
 pub use extra::{ExtraTorque, Instant};
 pub use plant::{ElasticJoint, Hold, Plant, State};
@@ -35,6 +39,7 @@ pub use reference::{Reference, SampledReference};
 pub use residue::Residue;
 pub use scheme::Scheme;
 pub use sensors::SensorSettings;
+pub use world::World;
 
 #[cfg(test)]
 mod recovery_tests;
@@ -42,3 +47,5 @@ mod recovery_tests;
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod world_tests;
