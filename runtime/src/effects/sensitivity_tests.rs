@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::model::{
-    BaseParameter, Drive, Frame, JointKind, Limits, Model, RecursiveModel, Robot, standard_parameters,
+    BaseParameter, Drive, Frame, JointKind, Limits, RecursiveModel, Robot, standard_parameters, torques_at,
 };
 use std::borrow::Cow;
 
@@ -52,13 +52,7 @@ fn arm() -> Robot {
 }
 
 fn torque(robot: &Robot, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<f64> {
-    let model = RecursiveModel::new(robot.clone()).unwrap();
-    let pattern = model.pattern().clone();
-    let mut entries = vec![0.0; pattern.columns.len()];
-    model.idm(q, dq, ddq, &mut entries);
-    (0..3)
-        .map(|j| (pattern.rows[j]..pattern.rows[j + 1]).map(|e| entries[e] * chi[pattern.columns[e]]).sum())
-        .collect()
+    torques_at(&RecursiveModel::new(robot.clone()).unwrap(), chi, q, dq, ddq)
 }
 
 #[test]

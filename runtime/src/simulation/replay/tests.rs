@@ -2,7 +2,7 @@
 
 use super::follow::{follow, left_out};
 use crate::effects::{EffectKind, EffectTerm, Place, TermScale};
-use crate::model::Model;
+use crate::model::{Model, torques_at};
 use crate::signal::Motion;
 use crate::simulation::testing::tx40;
 
@@ -33,15 +33,7 @@ fn motion(joints: usize) -> Motion {
 
 fn inverse(model: &dyn Model, chi: &[f64], motion: &Motion, t: usize) -> Vec<f64> {
     let at = |signal: &[Vec<f64>]| signal.iter().map(|x| x[t]).collect::<Vec<f64>>();
-    let pattern = model.pattern();
-    let mut entries = vec![0.0; pattern.columns.len()];
-    model.idm(&at(&motion.q), &at(&motion.dq), &at(&motion.ddq), &mut entries);
-    (0..motion.q.len())
-        .map(|j| {
-            let row = pattern.rows[j]..pattern.rows[j + 1];
-            row.map(|e| entries[e] * chi[pattern.columns[e]]).sum()
-        })
-        .collect()
+    torques_at(model, chi, &at(&motion.q), &at(&motion.dq), &at(&motion.ddq))
 }
 
 fn place(model: &dyn Model, name: &str) -> usize {
