@@ -5,6 +5,7 @@ mod dual;
 mod lanes;
 mod number;
 mod recursive;
+mod torques;
 
 pub use block::{
     InLines, LINE, Line, LineStates, array, array_mut, evaluate_block, evaluate_line, evaluate_lines,
@@ -19,6 +20,7 @@ pub use number::Number;
 pub use recursive::{
     Link, MAX_FRAMES, RecursiveModel, RecursiveModelError, Row, standard_energy, standard_idm, standard_power,
 };
+pub use torques::{StateSlices, torques, torques_at};
 
 /// Where the inverse dynamic regressor can be non-zero: the block-triangular form (5), entry by entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
