@@ -6,7 +6,7 @@ use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use super::diagnosis_finding::found;
 use super::diagnosis_forward::forward;
-use crate::closed_loop::ClosedLoop;
+use dynid_runtime::simulation::replay::ClosedLoop;
 use crate::errors::noise_words;
 use crate::words::joint_words;
 

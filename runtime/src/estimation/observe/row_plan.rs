@@ -1,8 +1,9 @@
 //! Which rows a motion has, without the columns: for what is compared on the rows of an observation.
 
-use super::select::{LeftOut, Selection, select};
-use super::{Equations, ObserveError, ObserveSettings};
-use crate::signal::{Decimator, KeptRows, Motion, Standstill};
+use super::error::ObserveError;
+use super::select::{self, LeftOut, Selection, select};
+use super::settings::{Equations, ObserveSettings};
+use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// The rows of the torque equations of one motion.
 pub(crate) struct RowPlan {
@@ -28,7 +29,7 @@ pub(crate) fn row_plans(
     settings: &ObserveSettings,
 ) -> Result<Vec<RowPlan>, ObserveError> {
     check_frequencies(settings)?;
-    let detected = Standstill::of(motions);
+    let detected = StandstillSpeeds::of(motions);
     motions
         .iter()
         .enumerate()
@@ -44,6 +45,14 @@ pub(crate) fn row_plans(
             Ok(RowPlan { decimator, grid, used, left_out, band })
         })
         .collect()
+}
+
+/// What is to blame when no row of the plans is used.
+pub(crate) fn why_nothing(plans: &[RowPlan], motions: &[Motion], settings: &ObserveSettings) -> String {
+    let left_out = plans.iter().flat_map(|p| &p.left_out);
+    let duration = |m: &Motion| m.q.first().map_or(0, Vec::len) as f64 / m.rate;
+    let longest = motions.iter().map(duration).fold(0.0, f64::max);
+    select::why_nothing(left_out, motions.is_empty(), longest, settings.band)
 }
 
 /// The samples that no filter has spoiled.
