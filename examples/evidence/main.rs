@@ -11,7 +11,6 @@ mod story;
 mod tested;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Parser;
 use dynid::robots::resolve;
@@ -91,9 +90,7 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
             (vec![within(motion, [from, cut])?], vec![within(motion, [cut, to])?])
         }
     };
-    let start = Instant::now();
     let found = diagnose(model, &fitted, &[], &Settings::default(), &Silent)?;
-    let seconds = start.elapsed().as_secs_f64();
     let standard = identified(model, &fitted)?;
     let compared = tested::compared(model, &standard, &found, &test)?;
     let mut pictures = Vec::new();
@@ -117,7 +114,6 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
         compared: &compared,
         pictures: &pictures,
         parts: &parts,
-        seconds,
     }))
 }
 

@@ -123,7 +123,11 @@ fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<
 
 /// What a diagnosis refuses, as the end of a command.
 pub(crate) fn diagnosis_failure(recording: &Path, error: &DiagnosisError) -> Failure {
-    Failure::Data(format!("{}: {error}", recording.display()))
+    let words = format!("{}: {error}", recording.display());
+    match error {
+        DiagnosisError::Setting { .. } | DiagnosisError::StandstillSpeeds { .. } => Failure::Input(words),
+        _ => Failure::Data(words),
+    }
 }
 
 impl Progress for Bar {

@@ -40,7 +40,7 @@ pub struct Evaluation {
     /// Relative error that noise alone makes, a lower bound ([`Evaluation::noise_matters`]); `None` where it cannot be
     /// estimated.
     pub noise: Option<Errors>,
-    /// Band of the rows, Hz: the least of the motions'.
+    /// Band of the rows, Hz.
     pub band: f64,
     /// Names of the motions.
     pub trajectories: Vec<String>,
@@ -119,7 +119,7 @@ pub fn evaluate(
             .map(|left| Prediction { errors: of_squares(left, &sums.whole) })
             .collect(),
         noise: sums.noise(),
-        band: plans.iter().map(|p| p.band).fold(f64::INFINITY, f64::min),
+        band: settings.band,
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),
         left_out,
         excluded: left_out_by_window,
