@@ -156,7 +156,7 @@ fn examine(
         }
         progress.at(0.1, "candidates");
         let mut search = Search::new(&mut context, slow, fast, slowest.clone(), change, settings, progress)?;
-        let bare = explain::Bare::new(&search, &aligned);
+        let bare = explain::StandardModelFit::new(&search, &aligned);
         match known {
             Some(known) => search.force(known),
             None => search.run(settings, progress),
@@ -211,7 +211,7 @@ fn prepare_all(
 fn check(model: &dyn Model, design: &Design) -> Result<(), DiagnosisError> {
     let robot = model.robot();
     for j in 0..design.joints {
-        let rows = design.count(j, |g| design.segments[g].fresh);
+        let rows = design.count(j, |g| design.segments[g].is_target);
         let needed = 40;
         if rows < needed {
             return Err(DiagnosisError::TooLittleMotion { joint: joint_number(robot, j), rows, needed });

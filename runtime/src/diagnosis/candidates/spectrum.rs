@@ -34,8 +34,8 @@ pub(in crate::diagnosis) fn order_spectrum(
         for (signal, r) in signals.iter().zip(residual) {
             let highest = signal.rate * std::f64::consts::PI * 0.6;
             let stride = (signal.rate / 1000.0).max(1.0) as usize;
-            let end = signal.len().saturating_sub(signal.spoiled);
-            for t in (signal.spoiled..end).step_by(stride) {
+            let end = signal.len().saturating_sub(signal.edge_samples);
+            for t in (signal.edge_samples..end).step_by(stride) {
                 let v = signal.dq[joint][t].abs();
                 if v > slowest && v * order < highest {
                     let (sine, cosine) = (order * signal.q[joint][t]).sin_cos();

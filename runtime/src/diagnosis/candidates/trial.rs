@@ -39,7 +39,7 @@ pub(in crate::diagnosis) fn columns(
 ) -> Vec<Sparse> {
     let mut out: Vec<Sparse> = Vec::new();
     for k in 0..context.signals.len() {
-        let silent = change && !context.signals[k].fresh;
+        let silent = change && !context.signals[k].is_target;
         // A silent motion still needs to know which joints the columns act on.
         let mut series = context.series(k, effect, place, shape);
         if silent {

@@ -1,8 +1,8 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
-use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::candidates::trial::dense_columns;
-use crate::diagnosis::explanation::explain::Bare;
+use crate::diagnosis::explanation::explain::StandardModelFit;
 use crate::diagnosis::joint_number;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
 use crate::diagnosis::rows::design::{Design, RowAt};
@@ -75,7 +75,7 @@ fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
 /// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
 pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Option<Curve> {
     let joint = *term.own.first()?;
-    let side = search.side(pace(term.effect));
+    let side = search.side(smoothing_window(term.effect));
     let design = &side.design;
     let dense = dense_columns(search.context, design, term.effect, term.place, &term.shape, search.change);
     let amplitude: Vec<f64> = match term.fixed {
@@ -93,7 +93,7 @@ pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k:
     let along = |r: &RowAt| if opposes { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 };
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
-        .filter(|&r| signals[design.rows[r].signal].fresh)
+        .filter(|&r| signals[design.rows[r].signal].is_target)
         .map(|r| {
             let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
             let sign = along(&design.rows[r]);
@@ -139,7 +139,7 @@ fn explained(values: Vec<f64>, residual: &[f64]) -> f64 {
 }
 
 /// Where the standard model fails, joint by joint.
-pub(in crate::diagnosis) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held: &[f64]) -> Vec<Mismatch> {
+pub(in crate::diagnosis) fn mismatch(search: &Search<'_, '_>, bare: &StandardModelFit, held: &[f64]) -> Vec<Mismatch> {
     let design = &search.slow.design;
     let context = &*search.context;
     let robot = context.model.robot();
@@ -147,7 +147,7 @@ pub(in crate::diagnosis) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held:
     let mut shares = Vec::new();
     for j in 0..design.joints {
         let floor = noise_floor(design, &search.slow.fit, j);
-        let rows = design.count(j, |g| design.segments[g].fresh);
+        let rows = design.count(j, |g| design.segments[g].is_target);
         shares.push((held[j] / (floor * floor).max(1e-300) - rows as f64).max(0.0));
     }
     let all: f64 = shares.iter().sum::<f64>().max(1e-300);
@@ -247,7 +247,7 @@ pub(in crate::diagnosis) fn series(
 ) -> Vec<TorqueSeries> {
     let design = &search.fast.design;
     let context = &*search.context;
-    let Some(signal) = context.signals.iter().position(|s| s.fresh) else { return Vec::new() };
+    let Some(signal) = context.signals.iter().position(|s| s.is_target) else { return Vec::new() };
     let mut joints: Vec<usize> = terms.iter().flat_map(|t| t.own.iter().copied()).collect();
     joints.sort_unstable();
     joints.dedup();

@@ -1,6 +1,6 @@
 //! From accepted terms to findings: numbers with their uncertainty, held-out errors, curves, sentences.
 
-use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::candidates::trial::delay_columns;
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::explanation::curves;
@@ -14,7 +14,7 @@ use crate::diagnosis::predict::errors;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::{Design, LONGEST_BLOCK};
 use crate::diagnosis::rows::fit::fit_weighted;
-use crate::diagnosis::search::state::{Accepted, Search, Side};
+use crate::diagnosis::search::state::{Accepted, Search, Regression};
 use crate::diagnosis::settings::Settings;
 use crate::diagnosis::{DiagnosisError, NAMED_DELAY, joint_number, unit_term};
 use crate::effects::{EffectKind, EffectTerm, Form, Place};
@@ -36,7 +36,7 @@ pub(in crate::diagnosis) fn delay_of(context: &Context<'_>, mut design: Design) 
 }
 
 /// The standard model before anything was added.
-pub(in crate::diagnosis) struct Bare {
+pub(in crate::diagnosis) struct StandardModelFit {
     pub in_sample: Errors,
     pub held: HeldBack,
     pub estimated: Estimated,
@@ -48,7 +48,7 @@ pub(in crate::diagnosis) struct Bare {
     held_with_windows: Errors,
 }
 
-impl Bare {
+impl StandardModelFit {
     pub fn new(search: &Search<'_, '_>, aligned: &Design) -> Self {
         let (slow, fast) = (&search.slow, &search.fast);
         let mut sigma = slow.sigma.clone();
@@ -66,12 +66,12 @@ impl Bare {
     }
 }
 
-fn in_sample(side: &Side) -> Errors {
+fn in_sample(side: &Regression) -> Errors {
     let d = &side.design;
     let p = d.columns.len();
     let (mut left, mut whole) = (vec![0.0; d.joints], vec![0.0; d.joints]);
     for j in 0..d.joints {
-        for g in (0..d.segments.len()).filter(|&g| d.segments[g].fresh) {
+        for g in (0..d.segments.len()).filter(|&g| d.segments[g].is_target) {
             left[j] += side.fit.squares(d, j, g);
             whole[j] += d.gram[j][g][p * (p + 1) + p];
         }
@@ -79,7 +79,7 @@ fn in_sample(side: &Side) -> Errors {
     errors(&left, &whole)
 }
 
-fn estimated(side: &Side) -> Estimated {
+fn estimated(side: &Regression) -> Estimated {
     let p = side.design.parameters;
     let variances = side.fit.variances();
     Estimated {
@@ -92,7 +92,7 @@ fn estimated(side: &Side) -> Estimated {
 pub(in crate::diagnosis) fn explain(
     model: &dyn Model,
     mut search: Search<'_, '_>,
-    bare: &Bare,
+    bare: &StandardModelFit,
     contacts: Option<&Contacts>,
     delay: f64,
     settings: &Settings,
@@ -168,9 +168,9 @@ pub(in crate::diagnosis) fn explain(
 
 fn how(search: &Search<'_, '_>) -> String {
     let design = &search.slow.design;
-    let mut fresh = design.segments.iter().filter(|s| s.fresh).map(|s| s.signal);
-    let first = fresh.next();
-    if search.change && fresh.all(|s| Some(s) == first) {
+    let mut targets = design.segments.iter().filter(|s| s.is_target).map(|s| s.signal);
+    let first = targets.next();
+    if search.change && targets.all(|s| Some(s) == first) {
         "every stretch of the new motion predicted from the baseline and its other stretches".into()
     } else if search.change {
         "every new motion predicted from the baseline and the other new motions".into()
@@ -240,7 +240,7 @@ fn named_on(model: &dyn Model, effect: EffectKind, place: Place) -> Vec<usize> {
 fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k: usize) -> Finding {
     let robot = model.robot();
     let accepted = &terms[k];
-    let which = pace(accepted.effect);
+    let which = smoothing_window(accepted.effect);
     let joints = named_on(model, accepted.effect, accepted.place);
     let side = search.side(which);
     let range = side.term_columns[k].clone();

@@ -1,6 +1,6 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
-use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::search::state::{Accepted, Search};
@@ -16,7 +16,7 @@ pub(in crate::diagnosis) fn uncertainty(
     amplitude: &[f64],
 ) -> (Vec<f64>, Vec<f64>) {
     let term = &terms[k];
-    let side = search.side(pace(term.effect));
+    let side = search.side(smoothing_window(term.effect));
     let mut design = side.design.clone();
     let dense = |shape: &[f64]| {
         dense_columns(search.context, &side.design, term.effect, term.place, shape, search.change)

@@ -12,8 +12,8 @@ pub(in crate::diagnosis) struct Fold {
 
 /// How the recording is split: every motion once held back, or, for a single motion, every stretch of it.
 pub(in crate::diagnosis) fn folds(design: &Design, sigma: &[f64]) -> Vec<Fold> {
-    let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
-    fresh
+    let targets: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].is_target).collect();
+    targets
         .iter()
         .map(|&held| {
             let test: Vec<bool> = (0..design.segments.len()).map(|g| g == held).collect();

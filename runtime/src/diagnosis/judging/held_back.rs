@@ -28,21 +28,21 @@ impl HeldBack {
 /// forward in time, from two instants on; with a baseline, where `from_baseline` is set, from the baseline alone.
 pub(in crate::diagnosis) fn hold_back(design: &Design, sigma: &[f64], from_baseline: bool) -> HeldBack {
     let n = design.joints;
-    let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
+    let targets: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].is_target).collect();
     let without = |held: &dyn Fn(usize) -> bool| {
         let train: Vec<bool> = (0..design.segments.len()).map(|g| !held(g)).collect();
-        (train, fresh.iter().copied().filter(|&g| held(g)).collect::<Vec<usize>>())
+        (train, targets.iter().copied().filter(|&g| held(g)).collect::<Vec<usize>>())
     };
-    let mut moved: Vec<usize> = fresh.iter().map(|&g| design.segments[g].signal).collect();
+    let mut moved: Vec<usize> = targets.iter().map(|&g| design.segments[g].signal).collect();
     moved.dedup();
     let splits: Vec<(Vec<bool>, Vec<usize>)> = if from_baseline {
-        vec![(design.segments.iter().map(|s| !s.fresh).collect(), fresh.clone())]
-    } else if single_motion(design) && fresh.len() > 1 {
-        cuts(fresh.len()).map(|cut| without(&|g| fresh[cut..].contains(&g))).to_vec()
+        vec![(design.segments.iter().map(|s| !s.is_target).collect(), targets.clone())]
+    } else if single_motion(design) && targets.len() > 1 {
+        cuts(targets.len()).map(|cut| without(&|g| targets[cut..].contains(&g))).to_vec()
     } else if moved.len() > 1 {
         moved.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
     } else {
-        fresh.iter().map(|&held| without(&|g| g == held)).collect()
+        targets.iter().map(|&held| without(&|g| g == held)).collect()
     };
     let mut out = HeldBack { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
     let p = design.columns.len();

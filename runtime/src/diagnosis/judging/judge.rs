@@ -99,8 +99,8 @@ pub(in crate::diagnosis) fn judge(
         return None;
     }
     let squares = |j: usize| {
-        let fresh = (0..design.segments.len()).filter(|&g| design.segments[g].fresh);
-        fresh.map(|g| whole.squares(design, j, g)).sum::<f64>() / (sigma[j] * sigma[j])
+        let targets = (0..design.segments.len()).filter(|&g| design.segments[g].is_target);
+        targets.map(|g| whole.squares(design, j, g)).sum::<f64>() / (sigma[j] * sigma[j])
     };
     let fitted_share = gain / candidate.own.iter().map(|&j| squares(j)).sum::<f64>().max(1e-300);
     Some(Verdict { trial, gain, held_out, share, fitted_share })

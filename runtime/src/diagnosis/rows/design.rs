@@ -25,7 +25,7 @@ pub(in crate::diagnosis) struct RowAt {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::diagnosis) struct Segment {
     pub signal: usize,
-    pub fresh: bool,
+    pub is_target: bool,
 }
 
 /// Rows of all joints and their columns. Rows are sorted by joint, then segment, then time.
@@ -84,12 +84,12 @@ impl Design {
         let mut kept: Vec<Vec<Vec<RowAt>>> = vec![Vec::new(); n];
         for (k, s) in signals.iter().enumerate() {
             let half = design.kernels[k].len() / 2;
-            let first = s.spoiled.max(half);
+            let first = s.edge_samples.max(half);
             let last = s.len().saturating_sub(first).max(first);
-            let chunks = if s.fresh { plan.chunks.max(1) } else { 1 };
+            let chunks = if s.is_target { plan.chunks.max(1) } else { 1 };
             let bounds: Vec<usize> = (0..=chunks).map(|c| first + (last - first) * c / chunks).collect();
             for c in 0..chunks {
-                design.segments.push(Segment { signal: k, fresh: s.fresh });
+                design.segments.push(Segment { signal: k, is_target: s.is_target });
                 for (j, kept) in kept.iter_mut().enumerate() {
                     let centres =
                         (bounds[c]..bounds[c + 1]).filter(|t| (t - first).is_multiple_of(half.max(1)));
@@ -113,9 +113,9 @@ impl Design {
                 design.ranges[j].push(start..design.rows.len());
             }
         }
-        let fresh = design.rows.iter().filter(|r| signals[r.signal].fresh);
+        let targets = design.rows.iter().filter(|r| signals[r.signal].is_target);
         let per_block = design.rows_within(LONGEST_BLOCK);
-        let blocks: BTreeSet<(usize, usize)> = fresh.map(|&r| design.block(r, per_block)).collect();
+        let blocks: BTreeSet<(usize, usize)> = targets.map(|&r| design.block(r, per_block)).collect();
         design.short = blocks.len() < ENOUGH_BLOCKS;
         design.fill(model, signals);
         design

@@ -9,7 +9,7 @@ use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_differenc
 pub(in crate::diagnosis) struct Signals {
     pub name: String,
     /// Whether it belongs to the recording that is diagnosed; otherwise to the baseline.
-    pub fresh: bool,
+    pub is_target: bool,
     pub rate: f64,
     pub start: f64,
     pub q: Vec<Vec<f64>>,
@@ -17,8 +17,8 @@ pub(in crate::diagnosis) struct Signals {
     pub ddq: Vec<Vec<f64>>,
     pub jerk: Vec<Vec<f64>>,
     pub torque: Vec<Vec<f64>>,
-    /// Samples at each end that filters have spoiled.
-    pub spoiled: usize,
+    /// Samples at each end that the filters have spoiled.
+    pub edge_samples: usize,
 }
 
 /// Highest cut-off of the position filter, Hz.
@@ -29,7 +29,7 @@ const ENOUGH: f64 = 500.0;
 impl Signals {
     pub fn new(
         trajectory: &Trajectory,
-        fresh: bool,
+        is_target: bool,
         delay: f64,
         cutoff: f64,
     ) -> Result<Self, DiagnosisError> {
@@ -61,7 +61,7 @@ impl Signals {
         };
         Ok(Self {
             name: motion.name,
-            fresh,
+            is_target,
             rate: rate / stride as f64,
             start: motion.start,
             q: thin(motion.q),
@@ -69,7 +69,7 @@ impl Signals {
             ddq: thin(motion.ddq),
             jerk: thin(jerk),
             torque: thin(torque),
-            spoiled: motion.spoiled.div_ceil(stride),
+            edge_samples: motion.spoiled.div_ceil(stride),
         })
     }
 
@@ -86,7 +86,7 @@ impl Signals {
             .collect();
         Self {
             name: motion.name.clone(),
-            fresh: true,
+            is_target: true,
             rate: motion.rate,
             start: motion.start,
             q: motion.q.clone(),
@@ -94,7 +94,7 @@ impl Signals {
             ddq: motion.ddq.clone(),
             jerk,
             torque: motion.torque.clone(),
-            spoiled: motion.spoiled,
+            edge_samples: motion.spoiled,
         }
     }
 

@@ -24,7 +24,7 @@ impl Search<'_, '_> {
             let same = again.effect == first.effect && again.place == first.place;
             same.then_some([again, second])
         });
-        self.settle();
+        self.refit_and_update();
         found
     }
 
@@ -39,7 +39,7 @@ impl Search<'_, '_> {
             .filter(|(_, evidence)| evidence.tail < LIKELY)
             .map(|(first, evidence)| {
                 self.as_term(&Winner {
-                    pace: first.pace,
+                    window: first.window,
                     index: first.index,
                     verdict: first.verdict.clone(),
                     significance: evidence.significance,

@@ -3,7 +3,7 @@
 use crate::diagnosis::candidates::candidate::{Candidate, make};
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::judging::partial_regression::{best_trial, whole_gain};
-use crate::diagnosis::search::state::{Search, Side};
+use crate::diagnosis::search::state::{Search, Regression};
 use crate::effects::{EffectKind, Form, Place};
 use crate::parallel;
 
@@ -38,7 +38,7 @@ impl Search<'_, '_> {
 
     pub(in crate::diagnosis) fn refined(
         &self,
-        side: &Side,
+        side: &Regression,
         candidate: &Candidate,
         start: &[f64],
     ) -> Vec<f64> {

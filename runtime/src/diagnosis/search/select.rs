@@ -1,11 +1,11 @@
 //! Which candidate of a round holds.
 
-use crate::diagnosis::candidates::candidate::{Candidate, Pace};
+use crate::diagnosis::candidates::candidate::{Candidate, SmoothingWindow};
 use crate::diagnosis::judging::evidence::{block_evidence, doubt, waveform_evidence};
 use crate::diagnosis::judging::folds::single_motion;
 use crate::diagnosis::judging::judge::{Verdict, holds_forward, judge};
 use crate::diagnosis::judging::significance::Evidence;
-use crate::diagnosis::search::state::{Rival, Search, Side};
+use crate::diagnosis::search::state::{Rival, Search, Regression};
 use crate::diagnosis::settings::Settings;
 use crate::effects::EffectKind;
 use crate::parallel;
@@ -17,7 +17,7 @@ const MOST_CHECKED: usize = 30;
 
 /// What passed a round: the side it is on, the candidate's index, and its verdict.
 pub(in crate::diagnosis) struct Winner {
-    pub pace: Pace,
+    pub window: SmoothingWindow,
     pub index: usize,
     pub verdict: Verdict,
     pub significance: f64,
@@ -27,7 +27,7 @@ pub(in crate::diagnosis) struct Winner {
 
 /// A candidate of a round: the side it is on, its index there, and its verdict.
 pub(in crate::diagnosis) struct Ranked {
-    pub pace: Pace,
+    pub window: SmoothingWindow,
     pub index: usize,
     pub verdict: Verdict,
 }
@@ -65,7 +65,7 @@ impl Search<'_, '_> {
                 continue;
             }
             return Some(Winner {
-                pace: ranked[*k].pace,
+                window: ranked[*k].window,
                 index: ranked[*k].index,
                 verdict: verdict.clone(),
                 significance: evidence.significance,
@@ -76,20 +76,20 @@ impl Search<'_, '_> {
         None
     }
 
-    /// Candidates, on `joint` where one is given, that are not settled: those that gain most on held-back motion first.
+    /// Candidates, on `joint` where one is given, that are not excluded: those that gain most on held-back motion first.
     pub(in crate::diagnosis) fn ranked(&self, joint: Option<usize>) -> Vec<Ranked> {
         let mut ranked = Vec::new();
-        for pace in [Pace::Slow, Pace::Fast] {
-            let side = self.side(pace);
+        for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
+            let side = self.side(window);
             let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
                 let candidate = &side.candidates[index];
-                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.settled(candidate) {
+                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.is_excluded(candidate) {
                     return None;
                 }
                 judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate)
             });
             let judged = verdicts.into_iter().enumerate();
-            ranked.extend(judged.filter_map(|(index, v)| Some(Ranked { pace, index, verdict: v? })));
+            ranked.extend(judged.filter_map(|(index, v)| Some(Ranked { window, index, verdict: v? })));
         }
         ranked.sort_by(|a, b| b.verdict.total().total_cmp(&a.verdict.total()));
         ranked
@@ -112,8 +112,8 @@ impl Search<'_, '_> {
         holding.into_iter().zip(evidence).collect()
     }
 
-    pub(in crate::diagnosis) fn of(&self, ranked: &Ranked) -> (&Side, &Candidate) {
-        let side = self.side(ranked.pace);
+    pub(in crate::diagnosis) fn of(&self, ranked: &Ranked) -> (&Regression, &Candidate) {
+        let side = self.side(ranked.window);
         (side, &side.candidates[ranked.index])
     }
 
@@ -136,7 +136,7 @@ impl Search<'_, '_> {
             .take(5)
             .map(|(_, other)| {
                 let rival = self.of(other).1;
-                let comparable = other.pace == ranked[winner].pace
+                let comparable = other.window == ranked[winner].window
                     && rival.own == candidate.own
                     && holds(side, rival, &other.verdict, settings);
                 let doubt = if comparable {
@@ -175,7 +175,7 @@ fn simpler_than(effect: EffectKind) -> Option<EffectKind> {
 }
 
 /// Whether a candidate explains enough, nearly everywhere, of what was fitted and of what was held back.
-fn holds(side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
+fn holds(side: &Regression, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
     let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
     let folds = verdict.held_out.len();
     // Of many stretches of one motion a few may be untouched by an effect.

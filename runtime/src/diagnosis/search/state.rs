@@ -3,7 +3,7 @@
 //! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held back.
 
 use crate::diagnosis::DiagnosisError;
-use crate::diagnosis::candidates::candidate::{Candidate, Pace, build, make, pace, proposals};
+use crate::diagnosis::candidates::candidate::{Candidate, SmoothingWindow, build, make, proposals, smoothing_window};
 use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
 use crate::diagnosis::candidates::trial::{columns, delay_columns, dense_columns};
 use crate::diagnosis::judging::folds::{Fold, folds, single_motion};
@@ -45,8 +45,8 @@ pub(in crate::diagnosis) struct Rival {
     pub doubt: f64,
 }
 
-/// The rows at one pace with everything that is fitted on them.
-pub(in crate::diagnosis) struct Side {
+/// The rows at one window with everything that is fitted on them.
+pub(in crate::diagnosis) struct Regression {
     pub design: Design,
     pub sigma: Vec<f64>,
     pub fit: Fit,
@@ -60,7 +60,7 @@ pub(in crate::diagnosis) struct Side {
     pub term_columns: Vec<std::ops::Range<usize>>,
 }
 
-impl Side {
+impl Regression {
     fn refit(&mut self) {
         self.design.refresh_from(self.fixed_columns);
         self.fit = fit_weighted(&self.design, &mut self.sigma, |_| true);
@@ -89,8 +89,8 @@ impl Side {
 /// The search's state and outcome.
 pub(in crate::diagnosis) struct Search<'c, 'a> {
     pub context: &'c mut Context<'a>,
-    pub slow: Side,
-    pub fast: Side,
+    pub slow: Regression,
+    pub fast: Regression,
     pub terms: Vec<Accepted>,
     /// What was taken out again.
     rejected: Vec<Accepted>,
@@ -134,7 +134,7 @@ impl<'c, 'a> Search<'c, 'a> {
             let fit = fit_weighted(&design, &mut sigma, |_| true);
             let folds = folds(&design, &sigma);
             let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
-            Side {
+            Regression {
                 design,
                 sigma,
                 fit,
@@ -168,8 +168,8 @@ impl<'c, 'a> Search<'c, 'a> {
         progress.at(0.15, "order spectra");
         self.spectra = self.order_spectra();
         let orders: Vec<Vec<f64>> = self.spectra.iter().map(|s| peaks(s, 2)).collect();
-        let slow = proposals(self.context, Pace::Slow, self.change, &orders);
-        let mut fast = proposals(self.context, Pace::Fast, self.change, &orders);
+        let slow = proposals(self.context, SmoothingWindow::Slow, self.change, &orders);
+        let mut fast = proposals(self.context, SmoothingWindow::Fast, self.change, &orders);
         if settings.fast_window >= settings.slow_window {
             // The recording is too slow to hold the ringing and the bursts of compliant transmissions.
             fast.retain(|(effect, ..)| !matches!(effect.form(), Form::Compliance(_)));
@@ -216,7 +216,7 @@ impl<'c, 'a> Search<'c, 'a> {
                 break;
             }
             self.rejected.extend(rejected);
-            self.settle();
+            self.refit_and_update();
         }
     }
 
@@ -226,7 +226,7 @@ impl<'c, 'a> Search<'c, 'a> {
             progress.at(0.6 + 0.25 * done, "held-out tests");
             let mut winner = self.best(settings, None, 1);
             // Compliant transmissions of neighbours ring alike: which one it is shows when both are tuned.
-            if winner.as_ref().is_none_or(|w| self.side(w.pace).candidates[w.index].fixed.is_some()) {
+            if winner.as_ref().is_none_or(|w| self.side(w.window).candidates[w.index].fixed.is_some()) {
                 self.polish(settings.threads);
                 winner = self.best(settings, None, 1);
             }
@@ -238,7 +238,7 @@ impl<'c, 'a> Search<'c, 'a> {
                 break;
             }
             self.terms.extend(found);
-            self.settle();
+            self.refit_and_update();
             self.reconsider(settings);
         }
     }
@@ -249,7 +249,7 @@ impl<'c, 'a> Search<'c, 'a> {
             if matches!(effect.form(), Form::Compliance(_)) {
                 self.polish(self.threads);
             }
-            let which = pace(effect);
+            let which = smoothing_window(effect);
             let side = self.side(which);
             let best = side
                 .candidates
@@ -262,7 +262,7 @@ impl<'c, 'a> Search<'c, 'a> {
                 .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
             if let Some((index, verdict)) = best {
                 let winner = Winner {
-                    pace: which,
+                    window: which,
                     index,
                     verdict,
                     significance: 0.0,
@@ -271,7 +271,7 @@ impl<'c, 'a> Search<'c, 'a> {
                 };
                 let term = self.accept(&winner);
                 self.terms.push(term);
-                self.settle();
+                self.refit_and_update();
             }
         }
     }
@@ -298,7 +298,7 @@ impl<'c, 'a> Search<'c, 'a> {
     }
 
     /// Refits, and prepares the candidates for what is left.
-    pub fn settle(&mut self) {
+    pub fn refit_and_update(&mut self) {
         self.refit();
         self.prepare(None);
     }
@@ -354,19 +354,19 @@ impl<'c, 'a> Search<'c, 'a> {
     }
 
     /// Whether a candidate is in the model already, or has been taken out of it.
-    pub fn settled(&self, candidate: &Candidate) -> bool {
+    pub fn is_excluded(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
         candidate.effect != EffectKind::TorqueRipple && self.terms.iter().any(same)
             || self.rejected.iter().any(same)
     }
 
-    pub fn side(&self, pace: Pace) -> &Side {
-        if pace == Pace::Slow { &self.slow } else { &self.fast }
+    pub fn side(&self, window: SmoothingWindow) -> &Regression {
+        if window == SmoothingWindow::Slow { &self.slow } else { &self.fast }
     }
 
     /// The winner as a term, its shape refined on all motion.
     pub fn accept(&self, winner: &Winner) -> Accepted {
-        let side = self.side(winner.pace);
+        let side = self.side(winner.window);
         let mut term = self.as_term(winner);
         term.shape = self.refined(side, &side.candidates[winner.index], &term.shape);
         term
@@ -374,7 +374,7 @@ impl<'c, 'a> Search<'c, 'a> {
 
     /// The winner as a term, with the shape of the grid.
     pub fn as_term(&self, winner: &Winner) -> Accepted {
-        let candidate = &self.side(winner.pace).candidates[winner.index];
+        let candidate = &self.side(winner.window).candidates[winner.index];
         Accepted {
             effect: candidate.effect,
             place: candidate.place,
@@ -396,7 +396,7 @@ impl<'c, 'a> Search<'c, 'a> {
         }
         for k in 0..self.terms.len() - 1 {
             let old = self.terms.remove(k);
-            self.settle();
+            self.refit_and_update();
             let joint = (old.own.len() < self.slow.design.joints).then(|| old.own[0]);
             let replacement = self.best(settings, joint, 1).map(|w| self.accept(&w));
             let keep = match replacement {
@@ -407,7 +407,7 @@ impl<'c, 'a> Search<'c, 'a> {
             };
             if let Some(term) = keep {
                 self.terms.insert(k, term);
-                self.settle();
+                self.refit_and_update();
             } else {
                 // What no longer holds is left out for good, or it might come and go for ever; those after it move up.
                 self.rejected.push(old);
@@ -422,14 +422,14 @@ impl<'c, 'a> Search<'c, 'a> {
         let mut k = 0;
         while k < self.terms.len() {
             let error = |search: &Self, term: &Accepted| {
-                let side = search.side(pace(term.effect));
+                let side = search.side(smoothing_window(term.effect));
                 hold_back(&side.design, &side.sigma, false).error_on(&term.own)
             };
             let with = error(self, &self.terms[k]);
             let term = self.terms.remove(k);
             self.refit();
             let without = error(self, &term);
-            let side = self.side(pace(term.effect));
+            let side = self.side(smoothing_window(term.effect));
             let candidate = make(
                 self.context,
                 &side.design,
