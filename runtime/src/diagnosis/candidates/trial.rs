@@ -1,7 +1,8 @@
 //! A shape of an effect at a place as columns on the rows, and their inner products with the design.
 
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rows::design::{Design, dot};
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::gram::dot;
 use crate::effects::{EffectKind, Place};
 use nalgebra::DMatrix;
 
