@@ -97,7 +97,7 @@ fn run(
 ) -> Result<Diagnosis, DiagnosisError> {
     // 1. Band, motions, checks, skew.
     progress.at(0.0, "signals");
-    let mut prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
+    let prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
     let change = !recordings.baseline.is_empty();
 
     // 2. Windows in which something outside pushed the robot.
