@@ -76,9 +76,11 @@ pub(in crate::diagnosis) fn find(
 fn pushed_windows(energies: &Energies, signals: &[Signals], joints: usize) -> Option<Vec<Vec<[f64; 2]>>> {
     let together = PUSHED_TOGETHER.min(joints);
     let of_signal = |(k, s): (usize, &Signals)| {
-        windows(energies.range((k, 0)..(k + 1, 0)).map(|(&(_, t), energy)| {
-            (s.time(t), energy.mean() > PUSHED && energy.pushed >= together)
-        }))
+        windows(
+            energies
+                .range((k, 0)..(k + 1, 0))
+                .map(|(&(_, t), energy)| (s.time(t), energy.mean() > PUSHED && energy.pushed >= together)),
+        )
     };
     let found: Vec<Vec<[f64; 2]>> = signals.iter().enumerate().map(of_signal).collect();
     let pushed: f64 = found.iter().map(|w| duration(w)).sum();

@@ -52,9 +52,8 @@ pub(in crate::diagnosis) fn explain(
 
     // 3. What it changes, and what it leaves.
     let after = estimated(&model.slow);
-    let waves = |joint: usize| {
-        findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&joint))
-    };
+    let waves =
+        |joint: usize| findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&joint));
     let spectra = search.spectra.iter().filter(|s| waves(s.joint)).cloned().collect();
     let removed = |t: &crate::diagnosis::search::term::Accepted| Removed {
         effect: t.effect.id().into(),

@@ -74,8 +74,7 @@ impl Signals {
         let rate = motion.rate;
         // All signals are limited to the cut-off: more samples a second say nothing more.
         let stride = (rate / SAMPLES_PER_SECOND).floor().max(1.0) as usize;
-        let filter =
-            Butterworth::low_pass(settings.order, (rate / RATE_PER_CUTOFF).min(cutoff), rate)?;
+        let filter = Butterworth::low_pass(settings.order, (rate / RATE_PER_CUTOFF).min(cutoff), rate)?;
         let jerk = motion.ddq.iter().map(|x| differentiated(x, rate)).collect();
         let recorded = Recorded { torque: motion.torque, rate, stride, filter };
         Ok(Self {

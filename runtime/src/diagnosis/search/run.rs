@@ -39,11 +39,7 @@ impl Search<'_> {
         }
     }
 
-    fn extend(
-        &mut self,
-        settings: &Settings,
-        progress: &dyn Progress,
-    ) -> Result<StopReason, SingularDesign> {
+    fn extend(&mut self, settings: &Settings, progress: &dyn Progress) -> Result<StopReason, SingularDesign> {
         while self.model.terms.len() < settings.most_effects {
             let done = self.model.terms.len() as f64 / settings.most_effects as f64;
             progress.at(0.6 + 0.25 * done, "held-out tests");
@@ -71,10 +67,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn force(
-        &mut self,
-        known: &[(EffectKind, Option<usize>)],
-    ) -> Result<SearchReport, SingularDesign> {
+    pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) -> Result<SearchReport, SingularDesign> {
         for &(effect, joint) in known {
             if matches!(effect.form(), Form::Compliance(_)) {
                 self.polish(self.threads);
@@ -163,9 +156,9 @@ impl Search<'_> {
         let shape = std::slice::from_ref(&term.shape);
         let candidate =
             make(&model.context, &regression.design, term.effect, term.place, shape, model.change);
-        let worth = regression.judge(&candidate).is_some_and(|v| {
-            v.explained_fraction >= KEPT_FRACTION * settings.least_share && v.total() > 0.0
-        });
+        let worth = regression
+            .judge(&candidate)
+            .is_some_and(|v| v.explained_fraction >= KEPT_FRACTION * settings.least_share && v.total() > 0.0);
         let better = if regression.design.is_single_motion() {
             regression.holds_forward(&candidate, 0)?
         } else {
