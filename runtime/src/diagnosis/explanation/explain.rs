@@ -14,6 +14,7 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
+use crate::effects::Abscissa;
 use crate::model::Robot;
 
 /// What is known when a search has ended, besides the search.
@@ -52,8 +53,8 @@ pub(in crate::diagnosis) fn explain(
 
     // 3. What it changes, and what it leaves.
     let after = estimated(&model.slow);
-    let waves =
-        |joint: usize| findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&joint));
+    let is_wave = |f: &Finding| f.term.effect.properties().abscissa == Abscissa::WaveAngle;
+    let waves = |joint: usize| findings.iter().any(|f| is_wave(f) && f.joints.contains(&joint));
     let spectra = search.spectra.iter().filter(|s| waves(s.joint)).cloned().collect();
     let removed = |t: &crate::diagnosis::search::term::Accepted| Removed {
         effect: t.effect.id().into(),

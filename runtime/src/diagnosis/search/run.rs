@@ -2,7 +2,7 @@
 //!
 //! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held out.
 
-use crate::diagnosis::candidates::candidate::{make, smoothing_window};
+use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::outcome::StopReason;
 use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::KEPT_FRACTION;
@@ -12,7 +12,7 @@ use crate::diagnosis::search::select::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::{EffectKind, Form};
+use crate::effects::EffectKind;
 
 impl Search<'_> {
     /// Adds effects as long as one improves held-out motion; takes out what does not hold beside the others.
@@ -69,10 +69,10 @@ impl Search<'_> {
     /// As [`Self::run`].
     pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) -> Result<SearchReport, SingularDesign> {
         for &(effect, joint) in known {
-            if matches!(effect.form(), Form::Compliance(_)) {
+            if effect.form().fixed_amplitude().is_some() {
                 self.polish(self.threads);
             }
-            let window = smoothing_window(effect);
+            let window = effect.properties().window;
             let regression = self.model.regression(window);
             let best = self
                 .candidates(window)
@@ -152,7 +152,7 @@ impl Search<'_> {
     ) -> Result<bool, SingularDesign> {
         let model = &self.model;
         let without = held_out_error(model, term)?;
-        let regression = model.regression(smoothing_window(term.effect));
+        let regression = model.regression(term.effect.properties().window);
         let shape = std::slice::from_ref(&term.shape);
         let candidate =
             make(&model.context, &regression.design, term.effect, term.place, shape, model.change);
@@ -170,5 +170,5 @@ impl Search<'_> {
 
 /// Held-out error of the joints of a term.
 fn held_out_error(model: &ExtendedModel<'_>, term: &Accepted) -> Result<f64, SingularDesign> {
-    Ok(model.regression(smoothing_window(term.effect)).held_out(false)?.error_on(&term.own))
+    Ok(model.regression(term.effect.properties().window).held_out(false)?.error_on(&term.own))
 }

@@ -1,6 +1,6 @@
 //! What a search works on: the model as it is, the candidates on the rows of both windows, and what was taken out.
 
-use crate::diagnosis::candidates::candidate::{Candidate, SmoothingWindow, build, proposals};
+use crate::diagnosis::candidates::candidate::{Candidate, build, proposals};
 use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
 use crate::diagnosis::candidates::trial::columns;
 use crate::diagnosis::outcome::OrderSpectrum;
@@ -9,7 +9,7 @@ use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::{EffectKind, Form};
+use crate::effects::SmoothingWindow;
 use crate::model::JointIndex;
 use crate::parallel;
 
@@ -26,17 +26,6 @@ pub(in crate::diagnosis) struct Search<'a> {
     /// Effects at places, with all of their shapes.
     pub tried: usize,
     pub threads: usize,
-}
-
-/// Effects whose columns follow the standard parameters.
-fn follows_parameters(effect: EffectKind) -> bool {
-    matches!(
-        effect,
-        EffectKind::LoadDependentFriction
-            | EffectKind::TorqueConstantError
-            | EffectKind::TorqueSaturation
-            | EffectKind::FrictionLevelChange
-    )
 }
 
 impl<'a> Search<'a> {
@@ -56,7 +45,7 @@ impl<'a> Search<'a> {
         let mut fast = proposals(context, SmoothingWindow::Fast, change, &orders);
         if settings.fast_window >= settings.slow_window {
             // The recording is too slow to hold the ringing and the bursts of compliant transmissions.
-            fast.retain(|(effect, ..)| !matches!(effect.form(), Form::Compliance(_)));
+            fast.retain(|(effect, ..)| !effect.form().is_fast_only());
         }
         let tried = slow.iter().chain(&fast).map(|p| p.2.len()).sum();
         let mut slow = build(context, &model.slow.design, &slow, change, threads, &|done| {
@@ -100,7 +89,7 @@ impl<'a> Search<'a> {
                 }
                 let (effect, place) = (candidate.effect, candidate.place);
                 for trial in &mut candidate.trials {
-                    if follows_parameters(effect) {
+                    if effect.properties().follows_parameters {
                         trial.columns =
                             columns(&model.context, design, effect, place, &trial.shape, model.change);
                         trial.refresh(design);
@@ -120,7 +109,7 @@ impl<'a> Search<'a> {
     /// Whether a candidate is in the model already, or has been taken out of it.
     pub fn is_excluded(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
-        candidate.effect != EffectKind::TorqueRipple && self.model.terms.iter().any(same)
+        !candidate.effect.properties().repeats && self.model.terms.iter().any(same)
             || self.rejected.iter().any(same)
     }
 }
