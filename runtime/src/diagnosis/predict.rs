@@ -1,6 +1,6 @@
 //! Accepted effects as part of a model: their torques on any motion, and the errors of a model with them.
 
-use super::DiagnosisError;
+use super::error::DiagnosisError;
 use super::outcome::{Errors, Estimated};
 use super::rows::context::{Context, scales};
 use super::rows::design::Design;
@@ -103,14 +103,5 @@ pub fn predict_errors(
             }
         }
     }
-    Ok(errors(&left, &whole))
-}
-
-/// Relative errors from squares per joint.
-pub(super) fn errors(left: &[f64], whole: &[f64]) -> Errors {
-    let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
-    Errors {
-        relative_error: ratio(left.iter().sum(), whole.iter().sum()),
-        per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
-    }
+    Ok(Errors::of_squares(&left, &whole))
 }

@@ -58,6 +58,13 @@ pub(super) const PARAMETERS_PER_UNDETERMINED: usize = 4;
 /// The recording is refused where the standard model explains less of the torque's squares, per cent. Judgement: far
 /// below any right model, above what wrong units or a wrong joint order leave; not measured.
 pub(super) const LEAST_EXPLAINED_BY_MODEL: f64 = 40.0;
+/// Part of the samples of a joint that its top speed is not below: single spikes do not set it. Statistics.
+pub(super) const TOP_SPEED_PERCENT: usize = 98;
+/// Cut-off of the motion that drives compliant links, Hz: below the ringing itself. Mechanics; joint_elasticity and
+/// backlash in `docs/concealment.md`.
+pub(super) const DRIVING_BAND: f64 = 15.0;
+/// Least inertia behind a transmission, as a part of that with the rotor. Mechanics: no division by zero.
+pub(super) const LEAST_LINK_INERTIA: f64 = 1e-3;
 /// Rounds in which a skew is taken out: the second takes what linearisation left of the first. Mechanics.
 pub(super) const DELAY_ROUNDS: usize = 2;
 /// A skew of fewer samples is left to its column. Mechanics: within one sample, linear interpolation is exact enough.
@@ -164,6 +171,12 @@ pub(super) const REFITS: usize = 2;
 /// The same where a term changes the number that its own column is the derivative by. Judgement; not measured.
 pub(super) const REFITS_OF_BENT_COLUMNS: usize = 4;
 
+/// Shapes that a refinement tries at most. Times, and how sharp a resonance is; joint_elasticity in
+/// `docs/concealment.md`.
+pub(super) const MOST_EVALUATIONS: usize = 80;
+/// A refinement ends when its steps are this part of the first ones. Judgement: finer than shapes are known.
+pub(super) const SMALLEST_STEP: f64 = 0.02;
+
 // ---- Order spectra ------------------------------------------------------------------------------------------------
 
 /// Highest order per motor turn: beyond the sixth harmonic of a motor's torque. Mechanics; torque_ripple.
@@ -235,3 +248,20 @@ pub(super) const FORCE_RIDGE_ABSOLUTE: f64 = 1e-12;
 
 /// A parameter is told to have shifted beyond this many standard deviations of the difference. Statistics.
 pub(super) const SHIFTED: f64 = 3.0;
+/// Step of a shape, relative to it, over which the derivative of its columns is taken. Mechanics: small against its
+/// standard deviation, large against rounding.
+pub(super) const SHAPE_STEP: f64 = 0.02;
+/// The same for the derivative of a quantity.
+pub(super) const QUANTITY_STEP: f64 = 1e-4;
+/// Largest standard deviation of a shape that is told, relative to the shape. Judgement: beyond it nothing is known.
+pub(super) const LARGEST_SHAPE_SIGMA: f64 = 10.0;
+/// Bins of a curve. Words and plots only.
+pub(super) const BINS: usize = 40;
+/// Part of a residual that a variable must order to be named. Words only.
+pub(super) const ORDERED_BY_VARIABLE: f64 = 0.1;
+/// Part of the mismatch of all joints below which a joint has none. Words only.
+pub(super) const LEAST_MISMATCH: f64 = 0.02;
+/// Fewest second differences that a noise floor is estimated from. Statistics: known to a quarter.
+pub(super) const LEAST_DIFFERENCES: f64 = 10.0;
+/// Part of what remains that must be more than noise to be told. Words only.
+pub(super) const UNEXPLAINED: f64 = 0.3;

@@ -6,13 +6,11 @@ use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
 use crate::diagnosis::rows::design::{Design, RowAt};
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::signals::Signals;
+use crate::diagnosis::rules::{BINS, LEAST_DIFFERENCES, LEAST_MISMATCH, ORDERED_BY_VARIABLE};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::Abscissa;
 use crate::model::JointIndex;
-
-/// Bins of a curve.
-const BINS: usize = 40;
 
 /// The variable that reveals a term, at a row of its first joint.
 fn abscissa(model: &ExtendedModel<'_>, joint: usize, term: &Accepted, r: &RowAt) -> f64 {
@@ -108,7 +106,10 @@ fn explained(values: Vec<f64>, residual: &[f64]) -> f64 {
 }
 
 /// Where the standard model fails, joint by joint.
-pub(in crate::diagnosis) fn mismatch(model: &ExtendedModel<'_>, standard: &StandardModelFit) -> Vec<Mismatch> {
+pub(in crate::diagnosis) fn mismatch(
+    model: &ExtendedModel<'_>,
+    standard: &StandardModelFit,
+) -> Vec<Mismatch> {
     let design = &model.slow.design;
     let context = &model.context;
     let robot = context.model.robot();
@@ -141,10 +142,10 @@ pub(in crate::diagnosis) fn mismatch(model: &ExtendedModel<'_>, standard: &Stand
         let best = candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let share = shares[j] / all;
         let where_ = match best {
-            Some((words, e)) if *e > 0.1 && share > 0.02 => {
+            Some((words, e)) if *e > ORDERED_BY_VARIABLE && share > LEAST_MISMATCH => {
                 format!("while moving; {words} ({:.0} % of it)", 100.0 * e.min(1.0))
             }
-            _ if share > 0.02 => "while moving; no single variable orders it".into(),
+            _ if share > LEAST_MISMATCH => "while moving; no single variable orders it".into(),
             _ => "nothing beyond the noise".into(),
         };
         list.push(Mismatch { joint: robot.joint_number(JointIndex(j)).0, share, where_ });
@@ -176,7 +177,9 @@ fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
     let range = design.of_joint(joint);
     let n = range.len() as f64;
     let whole = rms(residual[range].iter().map(|r| r * r).sum(), n);
-    if count < 10.0 { whole } else { rms(sum, count) / (7.0_f64 / 6.0).sqrt() }.min(whole).max(1e-12)
+    if count < LEAST_DIFFERENCES { whole } else { rms(sum, count) / (7.0_f64 / 6.0).sqrt() }
+        .min(whole)
+        .max(1e-12)
 }
 
 /// What nothing explains.
@@ -209,10 +212,7 @@ pub(in crate::diagnosis) fn unexplained(model: &ExtendedModel<'_>) -> Unexplaine
 }
 
 /// Torques of the joints that have findings, in the first new motion; the first joint where there are none.
-pub(in crate::diagnosis) fn series(
-    model: &ExtendedModel<'_>,
-    before: &[f64],
-) -> Vec<TorqueSeries> {
+pub(in crate::diagnosis) fn series(model: &ExtendedModel<'_>, before: &[f64]) -> Vec<TorqueSeries> {
     let design = &model.fast.design;
     let context = &model.context;
     let Some(signal) = context.signals.iter().position(|s| s.is_target) else { return Vec::new() };

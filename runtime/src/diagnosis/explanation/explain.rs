@@ -1,7 +1,7 @@
 //! From a model with accepted terms to an outcome: numbers with their uncertainty, held-out errors, curves, sentences.
 
-use crate::diagnosis::DiagnosisError;
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
 use crate::diagnosis::explanation::{curves, delay, words};

@@ -1,7 +1,7 @@
 //! An accepted effect, or a contact, as a finding.
 
-use crate::diagnosis::DiagnosisError;
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::curves;
 use crate::diagnosis::explanation::quantities::{Quantified, quantified, uncertainty};
 use crate::diagnosis::explanation::words;

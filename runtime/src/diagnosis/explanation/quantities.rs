@@ -1,8 +1,10 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
 use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, Parameter};
@@ -28,7 +30,7 @@ pub(in crate::diagnosis) fn uncertainty(
     // The shape of a sensitivity is its amplitude once more.
     let own_shape = !term.effect.form().shape_is_amplitude();
     for (i, &value) in term.shape.iter().enumerate().filter(|_| own_shape) {
-        let step = 0.02 * value.abs().max(1e-6);
+        let step = SHAPE_STEP * value.abs().max(1e-6);
         let moved = |s: f64| {
             let mut shape = term.shape.clone();
             shape[i] += s * step;
@@ -54,7 +56,7 @@ pub(in crate::diagnosis) fn uncertainty(
     let amplitudes = side.term_columns[k].clone().map(sd).collect();
     let mut shapes = vec![0.0; term.shape.len()];
     for (at, &i) in varied.iter().enumerate() {
-        shapes[i] = sd(start + at).min(10.0 * term.shape[i].abs());
+        shapes[i] = sd(start + at).min(LARGEST_SHAPE_SIGMA * term.shape[i].abs());
     }
     Ok((amplitudes, shapes))
 }
@@ -136,7 +138,7 @@ fn propagate(of: impl Fn(&[f64]) -> Vec<Parameter>, shape: &[f64], shape_sigma: 
         if s == 0.0 {
             continue;
         }
-        let step = 1e-4 * shape[i].abs().max(1e-9);
+        let step = QUANTITY_STEP * shape[i].abs().max(1e-9);
         let mut moved = shape.to_vec();
         moved[i] += step;
         for (p, q) in list.iter_mut().zip(of(&moved)) {

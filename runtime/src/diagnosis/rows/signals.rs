@@ -1,8 +1,8 @@
 //! Motions at the full rate, ready for laws and models.
 
-use crate::diagnosis::DiagnosisError;
+use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::rules::{RATE_PER_CUTOFF, SAMPLES_PER_SECOND};
-use crate::model::{JointKind, Model, ParameterKind, Robot, States};
+use crate::model::{Model, ParameterKind, Robot, States};
 use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
 
@@ -234,9 +234,4 @@ pub(in crate::diagnosis) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
         }
     }
     forms
-}
-
-/// Kind of each joint.
-pub(in crate::diagnosis) fn joint_kinds(robot: &Robot) -> Vec<JointKind> {
-    robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect()
 }

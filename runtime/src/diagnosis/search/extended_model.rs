@@ -1,11 +1,11 @@
 //! The standard model with accepted effects, fitted on the rows of both smoothing windows.
 
-use crate::diagnosis::DiagnosisError;
 use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
+use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Regression, TermColumns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;

@@ -3,11 +3,9 @@
 use crate::diagnosis::candidates::candidate::{Candidate, make};
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rules::{MOST_EVALUATIONS, SMALLEST_STEP};
 use crate::diagnosis::search::state::Search;
 use crate::parallel;
-
-/// Shapes that a refinement tries at most.
-const MOST_EVALUATIONS: usize = 80;
 
 impl Search<'_> {
     /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
@@ -49,7 +47,7 @@ impl Search<'_> {
         let mut value = gain(&shape);
         let mut size = 1.0;
         let mut evaluations = 0;
-        while size > 0.02 && evaluations < MOST_EVALUATIONS {
+        while size > SMALLEST_STEP && evaluations < MOST_EVALUATIONS {
             let mut better = false;
             for along in &moves {
                 let next = search.moved(&shape, along, size);

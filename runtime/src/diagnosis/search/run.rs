@@ -3,8 +3,8 @@
 //! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held out.
 
 use crate::diagnosis::candidates::candidate::make;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::StopReason;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::KEPT_FRACTION;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;

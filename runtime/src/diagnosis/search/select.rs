@@ -1,10 +1,10 @@
 //! Which candidate of a round holds.
 
 use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::significance::Evidence;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::{
     FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, NESTED_CASE_SUFFICES, RIVALS, STRETCHES_PER_LOSS,
 };

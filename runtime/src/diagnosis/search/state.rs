@@ -3,8 +3,8 @@
 use crate::diagnosis::candidates::candidate::{Candidate, build, proposals};
 use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
 use crate::diagnosis::candidates::trial::columns;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::OrderSpectrum;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
