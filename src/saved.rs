@@ -75,7 +75,8 @@ pub fn robot_for(
             None => resolve(named.0, Some(named.1))?,
         };
         check_effects(identified, dynamics.model().robot(), path)?;
-        let warning = format!("{file}: saved by an older dynid, without its robot's table: it cannot be checked");
+        let warning =
+            format!("{file}: saved by an older dynid, without its robot's table: it cannot be checked");
         return Ok(Chosen { dynamics, warning: Some(warning) });
     };
     if let Some(name) = asked {
@@ -86,9 +87,13 @@ pub fn robot_for(
         return Ok(Chosen { dynamics, warning });
     }
     let own = own_dynamics(identified, path)?;
-    let Ok(recorded) = resolve(named.0, Some(named.1)) else { return Ok(Chosen { dynamics: own, warning: None }) };
+    let Ok(recorded) = resolve(named.0, Some(named.1)) else {
+        return Ok(Chosen { dynamics: own, warning: None });
+    };
     let robot = recorded.model().robot();
-    let Some(what) = difference(table, robot) else { return Ok(Chosen { dynamics: recorded, warning: None }) };
+    let Some(what) = difference(table, robot) else {
+        return Ok(Chosen { dynamics: recorded, warning: None });
+    };
     if robot.name != table.name {
         return Err(Failure::Input(format!(
             "{file} is a model of {}, and the recording is of {}: --robot {} predicts it all the same",

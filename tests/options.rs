@@ -8,7 +8,8 @@ use serde_json::Value;
 
 fn simulated() -> Folder {
     let folder = Folder::new("options");
-    let words = "simulate planar_2r --out . --motions 3 --period 4 --rate 1000 --record-every 2 --noise 20 --seed 7";
+    let words =
+        "simulate planar_2r --out . --motions 3 --period 4 --rate 1000 --record-every 2 --noise 20 --seed 7";
     let output = folder.run(&words.split(' ').collect::<Vec<_>>());
     assert!(output.status.success(), "{}", error_of(&output));
     folder

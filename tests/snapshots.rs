@@ -18,7 +18,8 @@ fn said(output: &Output) -> String {
 /// A short closed-loop simulation of the planar arm, the same on every machine in the digits that are printed.
 fn simulated(name: &str) -> Folder {
     let folder = Folder::new(name);
-    let words = "simulate planar_2r --out . --motions 3 --period 4 --rate 1000 --record-every 2 --noise 1 --seed 7";
+    let words =
+        "simulate planar_2r --out . --motions 3 --period 4 --rate 1000 --record-every 2 --noise 1 --seed 7";
     let output = folder.run(&words.split(' ').collect::<Vec<_>>());
     assert!(output.status.success(), "{}", error_of(&output));
     folder
@@ -34,14 +35,20 @@ fn robots_and_their_tables() {
 #[test]
 fn identify_and_validate() {
     let folder = simulated("snap-identify");
-    insta::assert_snapshot!("identify", said(&folder.run(&["identify", "recording.yaml", "--out", "m.json"])));
+    insta::assert_snapshot!(
+        "identify",
+        said(&folder.run(&["identify", "recording.yaml", "--out", "m.json"]))
+    );
     insta::assert_snapshot!("validate", said(&folder.run(&["validate", "m.json", "recording.yaml"])));
 }
 
 #[test]
 fn diagnose_where_there_is_nothing_to_find() {
     let folder = simulated("snap-diagnose");
-    insta::assert_snapshot!("diagnose", said(&folder.run(&["diagnose", "recording.yaml", "--test", "recording.yaml"])));
+    insta::assert_snapshot!(
+        "diagnose",
+        said(&folder.run(&["diagnose", "recording.yaml", "--test", "recording.yaml"]))
+    );
 }
 
 #[test]

@@ -50,7 +50,8 @@ pub fn held_out(robot: &str, compared: &Evaluation) -> String {
                 let rest = rows.measured.iter().zip(model).map(|(y, m)| y - m);
                 rows.time.iter().copied().zip(rest).collect()
             };
-            let lines = [("standard model", rows.predicted.first()), ("with what was found", rows.predicted.last())];
+            let lines =
+                [("standard model", rows.predicted.first()), ("with what was found", rows.predicted.last())];
             Panel {
                 title: format!("joint {}, N.m", rows.joint + 1),
                 lines: lines

@@ -108,13 +108,7 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
     }
     let parts: Vec<Part> =
         story.parts.iter().map(|&span| part(model, &path, span)).collect::<Result<_, _>>()?;
-    Ok(story::told(&Told {
-        story,
-        found: &found,
-        compared: &compared,
-        pictures: &pictures,
-        parts: &parts,
-    }))
+    Ok(story::told(&Told { story, found: &found, compared: &compared, pictures: &pictures, parts: &parts }))
 }
 
 /// Diagnoses one part of a single motion and judges on what comes before and after it.
@@ -134,19 +128,17 @@ fn part(model: &dyn Model, path: &Path, span: (f64, f64)) -> Result<Part, Failur
     } else {
         let standard = identified(model, &fitted)?;
         let compared = tested::compared(model, &standard, &found, &rest)?;
-        compared.predictions.first().zip(compared.predictions.last()).map(|(before, after)| {
-            [before.errors.relative_error, after.errors.relative_error]
-        })
+        compared
+            .predictions
+            .first()
+            .zip(compared.predictions.last())
+            .map(|(before, after)| [before.errors.relative_error, after.errors.relative_error])
     };
     let named = found.findings.iter().map(|f| {
         let on: Vec<String> = f.joints.iter().map(ToString::to_string).collect();
         format!("{}@{}", f.effect, on.join("+"))
     });
-    Ok(Part {
-        span,
-        named: named.collect(),
-        rest: errors,
-    })
+    Ok(Part { span, named: named.collect(), rest: errors })
 }
 
 /// Shortest rest that is worth a prediction, s.

@@ -7,7 +7,6 @@ use dynid_runtime::effects::EffectKind;
 use dynid_runtime::prediction::{Evaluation, above_noise};
 use dynid_runtime::report::{percent, significant};
 
-
 /// A recording and how it is divided.
 pub struct Story {
     /// Folder, and robot.
@@ -246,8 +245,11 @@ fn shifts(text: &mut String, found: &Diagnosis) {
 }
 
 /// The models of an evaluation, in its order.
-const MODELS: [&str; 3] =
-    ["standard model, `dynid identify`", "standard model of the diagnosis, skew taken out", "with what was found"];
+const MODELS: [&str; 3] = [
+    "standard model, `dynid identify`",
+    "standard model of the diagnosis, skew taken out",
+    "with what was found",
+];
 
 fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Option<&str>) {
     let _ = writeln!(
@@ -262,7 +264,8 @@ fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Optio
     text.push_str("| model | error | above the noise | ratio |\n|---|---|---|---|\n");
     let whole = |k: usize| compared.predictions.get(k).map_or(f64::NAN, |p| p.errors.relative_error);
     for (k, (name, prediction)) in MODELS.iter().zip(&compared.predictions).enumerate() {
-        let above = compared.noise.as_ref().map(|noise| above_noise(&prediction.errors, noise).relative_error);
+        let above =
+            compared.noise.as_ref().map(|noise| above_noise(&prediction.errors, noise).relative_error);
         let _ = writeln!(
             text,
             "| {name} | {} | {} | {:.2} |",
@@ -275,7 +278,9 @@ fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Optio
         let _ = writeln!(text, "\nNoise of the torques in this band: {}.", percent(noise.relative_error));
     }
     text.push_str("\n| joint | standard model | with what was found | noise |\n|---|---|---|---|\n");
-    let (Some(first), Some(last)) = (compared.predictions.first(), compared.predictions.last()) else { return };
+    let (Some(first), Some(last)) = (compared.predictions.first(), compared.predictions.last()) else {
+        return;
+    };
     for (j, (before, after)) in first.errors.per_joint.iter().zip(&last.errors.per_joint).enumerate() {
         let noise = compared.noise.as_ref().and_then(|n| n.per_joint.get(j));
         let noise = noise.map_or_else(|| "-".to_owned(), |n| percent(*n));

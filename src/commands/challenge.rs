@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use dynid_runtime::diagnosis::{Diagnosis, Progress, Settings, diagnose, fit_known};
 use dynid_runtime::diagnosis::scoring::{Hidden, LEAST_GAP, Naming, Scored, TestErrors, label};
+use dynid_runtime::diagnosis::{Diagnosis, Progress, Settings, diagnose, fit_known};
 use dynid_runtime::effects::{EffectKind, EffectTerm};
 use dynid_runtime::model::{JointNumber, Model};
 use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
 use dynid_runtime::recording::{Manifest, Trajectory, load};
 use dynid_runtime::report::{percent, significant};
 
+use crate::errors::prediction_failure;
 use crate::failure::{Failure, file_failure};
 use crate::output::{Bar, print, table, write_json};
-use crate::errors::prediction_failure;
 use crate::recorded::recording_failure;
 use crate::robots::{Dynamics, resolve};
 use crate::truth::read_truth;
@@ -227,8 +227,7 @@ impl Case {
         let (motions, baseline) = (self.motions("recording.yaml")?, self.baseline()?);
         let robot = self.model().robot();
         let joint = |h: &Hidden| Some(robot.joint_index(JointNumber(*h.joints.first()?))?.0);
-        let effects: Vec<(EffectKind, Option<usize>)> =
-            hidden.iter().map(|h| (h.effect, joint(h))).collect();
+        let effects: Vec<(EffectKind, Option<usize>)> = hidden.iter().map(|h| (h.effect, joint(h))).collect();
         Ok(fit_known(self.model(), &motions, &baseline, &effects, settings).ok())
     }
 }

@@ -161,8 +161,7 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
         errors: diagnosis.after.clone(),
         noise: None,
     };
-    let mut rows =
-        extras.fitted.as_ref().and_then(|e| EvaluatedRows::evaluated(e, 1)).unwrap_or_else(own);
+    let mut rows = extras.fitted.as_ref().and_then(|e| EvaluatedRows::evaluated(e, 1)).unwrap_or_else(own);
     rows.rows_left_out = Some(measured.rows.rows.left_out);
     Identified {
         effects: diagnosis.terms(),

@@ -11,14 +11,14 @@ use dynid_runtime::paper::{Campaign, CampaignError, Case, CaseResult, PaperSetti
 use dynid_runtime::report::{Panel, Sheet};
 use dynid_runtime::signal::{Motion, Preparation, prepare};
 
+use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
 use crate::motions::check_size;
 use crate::output::{Bar, make_folder, print, table, write, write_page};
 use crate::paper_tables::{Results, Rows};
-use crate::arguments::{Sampling, Source};
 use crate::recorded::read;
-use crate::words::joint_number;
 use crate::robots::resolve;
+use crate::words::joint_number;
 
 /// Simulated or recorded, and where to write.
 #[derive(Debug, Args)]
@@ -252,7 +252,10 @@ fn figure(
             for result in &shown {
                 lines.push((format!("case {}", result.case.number()), curve(&rows.predict(&result.chi))));
             }
-            Panel { title: format!("torque of joint {}, N.m", joint_number(model.robot(), rows.equation)), lines }
+            Panel {
+                title: format!("torque of joint {}, N.m", joint_number(model.robot(), rows.equation)),
+                lines,
+            }
         })
         .collect();
     let sheet = Sheet {

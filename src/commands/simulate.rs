@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::effects::EffectTerm;
-use dynid_runtime::model_file::{Identified, to_yaml};
 use dynid_runtime::model::{JointIndex, JointNumber, Model, Robot};
+use dynid_runtime::model_file::{Identified, to_yaml};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
@@ -132,7 +132,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn missing(robot: &Robot, saved: bool, followed: bool) -> Option<String> {
     let mut needed = Vec::new();
     if robot.nominal.is_none() && !saved {
-        needed.push("`nominal:` with the standard parameters (a model saved by `identify` needs none)".to_owned());
+        needed.push(
+            "`nominal:` with the standard parameters (a model saved by `identify` needs none)".to_owned(),
+        );
     }
     if !followed {
         let limits = &robot.limits;
@@ -146,7 +148,8 @@ fn missing(robot: &Robot, saved: bool, followed: bool) -> Option<String> {
             needed.push(format!("`limits:` with {} (--follow needs none)", names.join(", ")));
         }
     }
-    (!needed.is_empty()).then(|| format!("{} cannot be simulated: its YAML lacks {}", robot.name, needed.join(" and ")))
+    (!needed.is_empty())
+        .then(|| format!("{} cannot be simulated: its YAML lacks {}", robot.name, needed.join(" and ")))
 }
 
 /// How the recording names its robot: by name where it is generated, else by the path of a YAML beside the recording: a
@@ -157,8 +160,8 @@ fn named_in_recording(dynamics: &Dynamics, arguments: &Arguments, saved: bool) -
         Dynamics::Generated(model) => return Ok(model.robot().name.to_string()),
         Dynamics::Recursive(model) if saved => ("robot.yaml".to_owned(), to_yaml(model.robot())),
         Dynamics::Recursive(_) => {
-            let text =
-                std::fs::read_to_string(given).map_err(|error| file_failure("read the robot", given, &error))?;
+            let text = std::fs::read_to_string(given)
+                .map_err(|error| file_failure("read the robot", given, &error))?;
             let name = given.file_name().map(|name| name.to_string_lossy().into_owned());
             (name.unwrap_or_else(|| "robot.yaml".to_owned()), text)
         }
@@ -224,7 +227,8 @@ fn plant<'m>(
 ) -> Result<Plant<'m>, Failure> {
     let robot = model.robot();
     let failed = |error: SimulationError| Failure::Input(error.to_string());
-    let elastic = arguments.elastic.iter().map(|text| elastic_joint(robot, text)).collect::<Result<Vec<_>, _>>()?;
+    let elastic =
+        arguments.elastic.iter().map(|text| elastic_joint(robot, text)).collect::<Result<Vec<_>, _>>()?;
     let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
     match parameters {
         Parameters::Base(..) if !more => world.plant("").map_err(failed),
@@ -250,7 +254,11 @@ fn elastic_joint(robot: &Robot, text: &str) -> Result<ElasticJoint, Failure> {
     let number: usize = fields.next().and_then(|x| x.parse().ok()).ok_or_else(wrong)?;
     let JointIndex(joint) = robot.joint_index(JointNumber(number)).ok_or_else(|| {
         let known: Vec<String> = (0..robot.joints()).map(|j| joint_number(robot, j)).collect();
-        Failure::Input(format!("--elastic {text}: the joints of {} are {}, not {number}", robot.name, known.join(", ")))
+        Failure::Input(format!(
+            "--elastic {text}: the joints of {} are {}, not {number}",
+            robot.name,
+            known.join(", ")
+        ))
     })?;
     let numbers: Vec<f64> = fields.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
     match numbers[..] {

@@ -6,9 +6,9 @@ use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use super::diagnosis_finding::found;
 use super::diagnosis_forward::forward;
-use dynid_runtime::simulation::replay::ClosedLoop;
 use crate::errors::noise_words;
 use crate::words::joint_words;
+use dynid_runtime::simulation::replay::ClosedLoop;
 
 /// A recording that took no part in the diagnosis, and both models on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,7 +114,10 @@ fn band(evaluation: &Evaluation) -> String {
 fn errors(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
     page.heading("Before and after");
     let held = &diagnosis.held_out;
-    page.table(&["relative error of the torques", "<band", "before", "after"], &error_rows(diagnosis, extras));
+    page.table(
+        &["relative error of the torques", "<band", "before", "after"],
+        &error_rows(diagnosis, extras),
+    );
     if let Some(words) = extras.tested.as_ref().and_then(|t| noise_words(&t.evaluation)) {
         page.note(&format!("Test recording: {words}."));
     }
@@ -211,12 +214,8 @@ fn unexplained(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
         for (j, curve) in diagnosis.unexplained.curves.iter().enumerate() {
             let points = curve.x.iter().copied().zip(curve.residual.iter().copied()).collect();
             page.plot(
-                &Plot::new(
-                    extras.joint(j),
-                    curve.variable.clone(),
-                    format!("residual, {}", curve.unit),
-                )
-                .with("mean residual", Role::Before, SeriesKind::Points, points),
+                &Plot::new(extras.joint(j), curve.variable.clone(), format!("residual, {}", curve.unit))
+                    .with("mean residual", Role::Before, SeriesKind::Points, points),
             );
         }
     });

@@ -69,7 +69,11 @@ fn verdict(robot: &Robot, identified: &Identified) -> String {
     let worst = (0..identified.per_joint.len())
         .max_by(|&a, &b| identified.per_joint[a].total_cmp(&identified.per_joint[b]));
     let worst = worst.map_or_else(String::new, |joint| {
-        format!(" The worst joint is {} with {}.", joint_number(robot, joint), percent(identified.per_joint[joint]))
+        format!(
+            " The worst joint is {} with {}.",
+            joint_number(robot, joint),
+            percent(identified.per_joint[joint])
+        )
     });
     format!(
         "{} parameters identified with {}: the torques are reproduced with a relative error of {}.{worst}",

@@ -14,8 +14,7 @@ pub struct TermError {
 }
 
 /// A joint on which every law offers all of its shapes.
-const WIDE: Scale =
-    Scale { speed: 1.0, range: 1e3, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
+const WIDE: Scale = Scale { speed: 1.0, range: 1e3, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
 
 impl EffectTerm {
     /// Checks that every place, length and number of the term is one that its effect has on this robot.
@@ -62,7 +61,10 @@ impl EffectTerm {
                 let known = if law.together() { 1 } else { variants };
                 let Place::Variant(v) = self.place else { return self.wrong_place("variant") };
                 if v >= known {
-                    return wrong("place.variant", format!("{v}: {} has {known} on {}", self.effect.id(), robot.name));
+                    return wrong(
+                        "place.variant",
+                        format!("{v}: {} has {known} on {}", self.effect.id(), robot.name),
+                    );
                 }
                 Ok(())
             }
@@ -84,7 +86,9 @@ impl EffectTerm {
             Form::Window => {
                 let known = |link: usize| (1..=robot.frames.len()).contains(&link);
                 match self.wrenches.iter().position(|w| !known(w.link)) {
-                    Some(k) => wrong(format!("wrenches[{k}].link"), format!("{} has no such link", robot.name)),
+                    Some(k) => {
+                        wrong(format!("wrenches[{k}].link"), format!("{} has no such link", robot.name))
+                    }
                     None => Ok(()),
                 }
             }
@@ -93,17 +97,21 @@ impl EffectTerm {
 
     /// Every number is finite, and what must be positive is.
     fn check_numbers(&self) -> Result<(), TermError> {
-        for (field, numbers) in [("shape", &self.shape), ("amplitude", &self.amplitude), ("sigma", &self.sigma)] {
+        for (field, numbers) in
+            [("shape", &self.shape), ("amplitude", &self.amplitude), ("sigma", &self.sigma)]
+        {
             if let Some(k) = numbers.iter().position(|x| !x.is_finite()) {
                 return wrong(format!("{field}[{k}]"), "it is not a finite number".to_owned());
             }
         }
         if !self.sigma.is_empty() && self.sigma.len() < self.amplitude.len() {
-            return wrong("sigma", format!("{} values for {} amplitudes", self.sigma.len(), self.amplitude.len()));
+            return wrong(
+                "sigma",
+                format!("{} values for {} amplitudes", self.sigma.len(), self.amplitude.len()),
+            );
         }
         let Some(s) = self.scale else { return Ok(()) };
-        for (field, value) in
-            [("speed", s.speed), ("range", s.range), ("torque", s.torque), ("gear", s.gear)]
+        for (field, value) in [("speed", s.speed), ("range", s.range), ("torque", s.torque), ("gear", s.gear)]
         {
             if !(value.is_finite() && value > 0.0) {
                 return wrong(format!("scale.{field}"), format!("{value}: it must be positive"));
@@ -119,9 +127,10 @@ impl EffectTerm {
         let n = robot.joints();
         match self.place {
             Place::Joint(j) if j < n => Ok(()),
-            Place::Joint(j) => {
-                wrong("place.joint", format!("{j}: {} has the joints 0 to {}", robot.name, n.saturating_sub(1)))
-            }
+            Place::Joint(j) => wrong(
+                "place.joint",
+                format!("{j}: {} has the joints 0 to {}", robot.name, n.saturating_sub(1)),
+            ),
             _ => self.wrong_place("joint"),
         }
     }

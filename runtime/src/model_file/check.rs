@@ -66,7 +66,10 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
     let stated = identified.fingerprint.as_deref().unwrap_or("");
     let own = fingerprint(robot);
     if stated != own {
-        return wrong("fingerprint", format!("'{stated}', but that of the table is {own}: the file was edited"));
+        return wrong(
+            "fingerprint",
+            format!("'{stated}', but that of the table is {own}: the file was edited"),
+        );
     }
     if let Err(missing) = identified.chi(robot) {
         return wrong("base_parameters", format!("{missing} of the table is not there"));
@@ -76,7 +79,10 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
         return wrong("base_parameters", format!("{found}, but the table has {known}"));
     }
     if identified.per_joint.len() != robot.joints() {
-        return wrong("per_joint", format!("{} values for {} joints", identified.per_joint.len(), robot.joints()));
+        return wrong(
+            "per_joint",
+            format!("{} values for {} joints", identified.per_joint.len(), robot.joints()),
+        );
     }
     for (k, term) in identified.effects.iter().enumerate() {
         term.check(robot).map_err(|e| FileError::new(format!("effects[{k}].{}", e.field), &e.what))?;

@@ -28,8 +28,12 @@ pub fn to_yaml(robot: &Robot) -> String {
         .collect();
     let _ = writeln!(text, "drive:\n  gear: [{}]", gear.join(", "));
     if !robot.drive.coupled_friction.is_empty() {
-        let motors: Vec<String> =
-            robot.drive.coupled_friction.iter().map(|motor| robot.joint_number(JointIndex(*motor)).to_string()).collect();
+        let motors: Vec<String> = robot
+            .drive
+            .coupled_friction
+            .iter()
+            .map(|motor| robot.joint_number(JointIndex(*motor)).to_string())
+            .collect();
         let _ = writeln!(text, "  coupled_friction: [{}]", motors.join(", "));
     }
     text

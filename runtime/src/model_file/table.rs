@@ -32,7 +32,10 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
             return wrong(format!("base[{k}].standard"), "there is no such standard parameter");
         }
         if !base.combination.iter().all(known) {
-            return wrong(format!("base[{k}].combination"), "it names a standard parameter that is not there");
+            return wrong(
+                format!("base[{k}].combination"),
+                "it names a standard parameter that is not there",
+            );
         }
     }
     let limits = &robot.limits;
@@ -56,8 +59,7 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
 
 fn check_nominal(robot: &Robot, n: usize) -> Result<(), FileError> {
     let Some(nominal) = &robot.nominal else { return Ok(()) };
-    let wrong =
-        |field: &str, what: &str| Err(FileError::new(format!("table.nominal.{field}"), what));
+    let wrong = |field: &str, what: &str| Err(FileError::new(format!("table.nominal.{field}"), what));
     if nominal.standard.len() != robot.standard.len() {
         return wrong("standard", "one value per standard parameter");
     }

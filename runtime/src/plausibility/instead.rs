@@ -97,7 +97,9 @@ impl Instead {
         let own = judged.model;
         let model = match self {
             Instead::Robot(name) => *others.iter().find(|m| m.robot().name == name.as_str())?,
-            Instead::Sign { .. } | Instead::Exchange { .. } | Instead::Unit(_) | Instead::Offset { .. } => own,
+            Instead::Sign { .. } | Instead::Exchange { .. } | Instead::Unit(_) | Instead::Offset { .. } => {
+                own
+            }
         };
         let (gear, other) = (&own.robot().drive, &model.robot().drive);
         let kinds = own.robot().joint_kinds();
@@ -127,7 +129,9 @@ impl Instead {
         match *self {
             Instead::Robot(_) => {}
             Instead::Sign { of: Signal::Torque, joint: JointIndex(joint) } => scale(&mut torque[joint], -1.0),
-            Instead::Sign { joint: JointIndex(joint), .. } => positions.into_iter().for_each(|p| scale(&mut p[joint], -1.0)),
+            Instead::Sign { joint: JointIndex(joint), .. } => {
+                positions.into_iter().for_each(|p| scale(&mut p[joint], -1.0))
+            }
             Instead::Exchange { of, joints: [JointIndex(a), JointIndex(b)] } => {
                 if of != Signal::Torque {
                     positions.into_iter().for_each(|p| p.swap(a, b));

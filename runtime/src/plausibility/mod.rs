@@ -70,14 +70,15 @@ pub fn judge(
 ) -> Verdict {
     let robot = judged.model.robot();
     let Some(own) = physical_fit(robot, torques, estimated) else { return Verdict::Plausible };
-    let Some(worst) = largest(own.per_equation.len(), |j| own.per_equation[j]) else { return Verdict::Plausible };
+    let Some(worst) = largest(own.per_equation.len(), |j| own.per_equation[j]) else {
+        return Verdict::Plausible;
+    };
     let error = own.per_equation[worst];
     let mut candidates = Vec::new();
     if own.strain > STRAINED || error > POOR {
         let kinds = robot.joint_kinds();
-        let alike = |other: &&&dyn Model| {
-            other.robot().name != robot.name && other.robot().joint_kinds() == kinds
-        };
+        let alike =
+            |other: &&&dyn Model| other.robot().name != robot.name && other.robot().joint_kinds() == kinds;
         candidates.extend(others.iter().filter(alike).map(|m| Instead::Robot(m.robot().name.to_string())));
     }
     if own.strain > OVERSTRAINED || error > BAD {

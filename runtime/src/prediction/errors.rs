@@ -25,8 +25,5 @@ pub fn above_noise(errors: &Errors, noise: &Errors) -> Errors {
 /// The errors of base parameters on the observation that they were identified from, without its rows: of a recording
 /// that is too long to be held. The same figures as [`super::evaluate`]'s on the same rows.
 pub fn observed_errors(observation: &Observation, chi: &[f64]) -> Errors {
-    Errors {
-        relative_error: relative_error(observation, chi),
-        per_joint: per_equation(observation, chi),
-    }
+    Errors { relative_error: relative_error(observation, chi), per_joint: per_equation(observation, chi) }
 }

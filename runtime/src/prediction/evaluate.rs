@@ -181,7 +181,11 @@ struct Sums {
 
 impl Sums {
     fn new(joints: usize, models: usize) -> Self {
-        Self { whole: vec![0.0; joints], left: vec![vec![0.0; joints]; models], noise: Some(vec![0.0; joints]) }
+        Self {
+            whole: vec![0.0; joints],
+            left: vec![vec![0.0; joints]; models],
+            noise: Some(vec![0.0; joints]),
+        }
     }
 
     fn add(&mut self, rows: &JointRows, motion: &Motion, plan: &RowPlan, predicted: &[&[f64]]) {

@@ -14,8 +14,8 @@ mod evaluate;
 mod noise;
 mod predictor;
 
-pub use comparison::{Comparison, Prepared};
 pub use crate::diagnosis::Errors;
+pub use comparison::{Comparison, Prepared};
 pub use errors::{above_noise, observed_errors};
 pub use evaluate::{Evaluation, JointRows, Prediction, evaluate};
 pub use predictor::{PredictionError, Predictor};

@@ -155,7 +155,8 @@ fn a_recording_is_not_compared_above_the_band_that_it_carries() {
         time,
     };
     for (asked, expected) in [(None, 10.0), (Some(40.0), 10.0), (Some(4.0), 4.0)] {
-        let prepared = Comparison { band: asked, ..Comparison::default() }.prepare(std::slice::from_ref(&trajectory));
+        let prepared =
+            Comparison { band: asked, ..Comparison::default() }.prepare(std::slice::from_ref(&trajectory));
         assert_eq!(prepared.unwrap().settings.band, expected, "{asked:?}");
     }
 }

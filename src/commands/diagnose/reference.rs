@@ -48,7 +48,8 @@ pub(super) fn as_the_reference(
         .motions
         .iter()
         .map(|motion| {
-            let torque = predictor.torques(model, motion).map_err(|error| prediction_failure(path, &error))?;
+            let torque =
+                predictor.torques(model, motion).map_err(|error| prediction_failure(path, &error))?;
             Ok(with_torque(motion, torque))
         })
         .collect()
