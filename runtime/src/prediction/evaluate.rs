@@ -1,6 +1,5 @@
 //! Models on the rows of a recording.
 
-use super::errors::of_squares;
 use super::noise::variance;
 use super::predictor::{PredictionError, Predictor};
 use crate::diagnosis::Errors;
@@ -116,7 +115,7 @@ pub fn evaluate(
         predictions: sums
             .left
             .iter()
-            .map(|left| Prediction { errors: of_squares(left, &sums.whole) })
+            .map(|left| Prediction { errors: Errors::of_squares(left, &sums.whole) })
             .collect(),
         noise: sums.noise(),
         band: settings.band,
@@ -216,6 +215,6 @@ impl Sums {
     }
 
     fn noise(&self) -> Option<Errors> {
-        self.noise.as_ref().map(|noise| of_squares(noise, &self.whole))
+        self.noise.as_ref().map(|noise| Errors::of_squares(noise, &self.whole))
     }
 }
