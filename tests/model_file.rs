@@ -49,6 +49,10 @@ fn a_table_that_was_edited_since_is_said_and_the_models_own_is_used() {
 #[test]
 fn a_model_of_another_robot_is_refused() {
     let folder = identified("other");
+    // A robot of another name with the same table would be the same robot.
+    folder.write("arm.yaml", &ARM.replace("l1: 0.5", "l1: 0.8"));
+    let output = folder.run(&["identify", "recording.yaml", "--out", "m.json"]);
+    assert!(output.status.success(), "{}", error_of(&output));
     folder.write("recording.yaml", MANIFEST);
     let output = folder.run(&["validate", "m.json", "recording.yaml"]);
     let error = error_of(&output);

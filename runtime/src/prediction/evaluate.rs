@@ -36,8 +36,7 @@ pub struct JointRows {
 pub struct Evaluation {
     /// One for each model, in the order in which they were given.
     pub predictions: Vec<Prediction>,
-    /// Relative error that noise alone makes, a lower bound ([`Evaluation::noise_matters`]); `None` where it cannot be
-    /// estimated.
+    /// Relative error that white noise of the level found above the band makes; `None` where it cannot be estimated.
     pub noise: Option<Errors>,
     /// Band of the rows, Hz.
     pub band: f64,
