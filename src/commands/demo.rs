@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
-use dynid_runtime::model::{Model, ParameterKind, Robot};
+use dynid_runtime::model::{JointIndex, Model, ParameterKind, Robot};
 use dynid_runtime::recording::{self, Trajectory};
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, MotionKind, excite};
@@ -98,7 +98,7 @@ fn hidden_effect(robot: &Robot, standard: &[f64], seed: u64) -> EffectTerm {
     EffectTerm {
         effect,
         place: Place::Joint(joint),
-        joints: vec![joint + 1],
+        joints: vec![robot.joint_number(JointIndex(joint)).0],
         shape,
         amplitude: vec![amplitude],
         sigma: vec![0.0],

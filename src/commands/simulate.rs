@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::estimation::Identified;
-use dynid_runtime::model::{Model, Robot};
+use dynid_runtime::model::{JointIndex, JointNumber, Model, Robot};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
@@ -175,7 +175,8 @@ fn plant<'m>(
 ) -> Result<Plant<'m>, Failure> {
     let robot = model.robot();
     let failed = |error: SimulationError| Failure::Input(error.to_string());
-    let elastic = arguments.elastic.iter().map(|text| elastic_joint(text)).collect::<Result<Vec<_>, _>>()?;
+    let elastic =
+        arguments.elastic.iter().map(|text| elastic_joint(robot, text)).collect::<Result<Vec<_>, _>>()?;
     let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
     match parameters {
         Parameters::Base(chi, terms) if !more => {
@@ -198,15 +199,21 @@ fn plant<'m>(
     }
 }
 
-fn elastic_joint(text: &str) -> Result<ElasticJoint, Failure> {
+fn elastic_joint(robot: &Robot, text: &str) -> Result<ElasticJoint, Failure> {
     let wrong = || Failure::Input(format!("--elastic {text}: expected JOINT:STIFFNESS[:DAMPING[:PLAY]]"));
     let mut fields = text.split(':');
-    let joint: usize = fields.next().and_then(|x| x.parse().ok()).filter(|&j| j > 0).ok_or_else(wrong)?;
+    let number = fields.next().and_then(|x| x.parse().ok()).map(JointNumber).ok_or_else(wrong)?;
+    let Some(JointIndex(joint)) = robot.joint_index(number) else {
+        return Err(Failure::Input(format!(
+            "--elastic {text}: expected the number of a joint of {}, not {number}",
+            robot.name
+        )));
+    };
     let numbers: Vec<f64> = fields.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
     match numbers[..] {
-        [stiffness] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping: 0.0, play: 0.0 }),
-        [stiffness, damping] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play: 0.0 }),
-        [stiffness, damping, play] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play }),
+        [stiffness] => Ok(ElasticJoint { joint, stiffness, damping: 0.0, play: 0.0 }),
+        [stiffness, damping] => Ok(ElasticJoint { joint, stiffness, damping, play: 0.0 }),
+        [stiffness, damping, play] => Ok(ElasticJoint { joint, stiffness, damping, play }),
         _ => Err(wrong()),
     }
 }

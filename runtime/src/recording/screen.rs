@@ -3,11 +3,13 @@
 use std::ops::Range;
 
 use super::Reason;
-use crate::model::{JointKind, Robot};
+use crate::model::{JointIndex, JointKind, JointNumber, Robot};
 
 /// What a joint can do, generously: beyond it a value is garbage, not motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reach {
+    /// Per joint, its number in the table.
+    pub numbers: Vec<JointNumber>,
     /// Per joint, rad or m.
     pub position: Vec<[f64; 2]>,
     /// Per joint, magnitude, rad/s or m/s.
@@ -20,8 +22,7 @@ impl Reach {
     /// Twice the range of the position limits about its middle, three times the velocity limit, ten times the
     /// torque limit; where the robot states none: 100 rad or 100 m, 30 rad/s or 20 m/s, 1e5 N.m or N.
     pub fn of(robot: &Robot) -> Self {
-        let kinds: Vec<JointKind> =
-            robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect();
+        let kinds = robot.joint_kinds();
         let magnitude = |limits: &[[f64; 2]], j: usize| {
             limits.get(j).map(|[low, high]| low.abs().max(high.abs())).filter(|m| m.is_finite() && *m > 0.0)
         };
@@ -37,6 +38,7 @@ impl Reach {
             magnitude(&robot.limits.velocity, j).map_or(unknown, |v| 3.0 * v)
         };
         Self {
+            numbers: (0..kinds.len()).map(|j| robot.joint_number(JointIndex(j))).collect(),
             position: (0..kinds.len()).map(position).collect(),
             velocity: kinds.iter().enumerate().map(velocity).collect(),
             torque: (0..kinds.len())
@@ -114,19 +116,16 @@ pub(super) fn screen(piece: &Piece, reach: &Reach, speed_limits: bool) -> Verdic
         for (row, x) in
             piece.position[j].iter().enumerate().filter(|(_, x)| x.is_nan() || *x < low || *x > high)
         {
-            leave(&mut good, row, Reason::OutOfReach, format!("position {} of joint {}", short(*x), j + 1));
+            let what = format!("position {} of joint {}", short(*x), reach.numbers[j]);
+            leave(&mut good, row, Reason::OutOfReach, what);
         }
     }
     let bounded = [(&piece.velocity, &reach.velocity, "velocity"), (&piece.torque, &reach.torque, "torque")];
     for (channel, bounds, quantity) in bounded {
         for (j, (values, bound)) in channel.iter().zip(bounds).enumerate() {
             for (row, x) in values.iter().enumerate().filter(|(_, x)| x.is_nan() || x.abs() > *bound) {
-                leave(
-                    &mut good,
-                    row,
-                    Reason::OutOfReach,
-                    format!("{quantity} {} of joint {}", short(*x), j + 1),
-                );
+                let what = format!("{quantity} {} of joint {}", short(*x), reach.numbers[j]);
+                leave(&mut good, row, Reason::OutOfReach, what);
             }
         }
     }
@@ -150,7 +149,7 @@ pub(super) fn screen(piece: &Piece, reach: &Reach, speed_limits: bool) -> Verdic
                 };
                 format!(
                     "joint {} jumps by {}, {} a second: beyond {known}",
-                    j + 1,
+                    reach.numbers[j],
                     short(q[b] - q[a]),
                     short(speed)
                 )

@@ -1,10 +1,16 @@
 use proptest::prelude::*;
 
 use super::{Piece, Reach, Verdict, out_of_order, screen};
+use crate::model::JointNumber;
 use crate::recording::Reason;
 
 fn reach(joints: usize) -> Reach {
-    Reach { position: vec![[-10.0, 10.0]; joints], velocity: vec![40.0; joints], torque: vec![1e3; joints] }
+    Reach {
+        numbers: (1..=joints).map(JointNumber).collect(),
+        position: vec![[-10.0, 10.0]; joints],
+        velocity: vec![40.0; joints],
+        torque: vec![1e3; joints],
+    }
 }
 
 /// A slow motion of two joints at 1 kHz.

@@ -6,7 +6,7 @@ use super::extra::ExtraTorque;
 use super::rest::{Decision, RestScratch};
 use super::scheme::Scheme;
 use super::stiff::Stiff;
-use crate::model::{Model, ParameterKind};
+use crate::model::{JointIndex, Model, ParameterKind, Robot};
 
 /// Compliance and play between motor and link of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -169,9 +169,10 @@ impl<'m> Plant<'m> {
             }
         }
         for (k, joint) in elastic.iter().enumerate() {
-            check_elastic(joint, &inertia)?;
+            check_elastic(robot, joint, &inertia)?;
             if elastic[..k].iter().any(|other| other.joint == joint.joint) {
-                let (what, found) = ("each elastic joint", (joint.joint + 1) as f64);
+                let number = robot.joint_number(JointIndex(joint.joint)).0;
+                let (what, found) = ("each elastic joint", number as f64);
                 return Err(SimulationError::Setting { what, expected: "another joint", found });
             }
         }
@@ -303,10 +304,11 @@ impl<'m> Plant<'m> {
     }
 }
 
-fn check_elastic(joint: &ElasticJoint, inertia: &[f64]) -> Result<(), SimulationError> {
+fn check_elastic(robot: &Robot, joint: &ElasticJoint, inertia: &[f64]) -> Result<(), SimulationError> {
     let setting = |what, expected, found| Err(SimulationError::Setting { what, expected, found });
     let Some(&rotor) = inertia.get(joint.joint) else {
-        return setting("the elastic joint", "the number of a joint of the robot", (joint.joint + 1) as f64);
+        let found = robot.joint_number(JointIndex(joint.joint)).0 as f64;
+        return setting("the elastic joint", "the number of a joint of the robot", found);
     };
     if !(joint.stiffness > 0.0 && joint.stiffness.is_finite()) {
         return setting("the stiffness of an elastic joint", "positive", joint.stiffness);

@@ -22,7 +22,7 @@ pub use select::LeftOut;
 pub use settings::{Equations, ExtraColumns, ObserveSettings, Progress};
 pub use standstill::Standstill;
 
-use crate::model::{Model, ParameterKind};
+use crate::model::{JointIndex, Model, ParameterKind};
 use crate::signal::{Decimator, Motion};
 use prepared::Prepared;
 
@@ -75,6 +75,11 @@ pub fn observe(
     };
     let mut exact: Vec<bool> = robot.base.iter().map(|p| exact(robot.standard[p.standard].kind)).collect();
     exact.resize(unknowns.len(), false);
+    let numbered = |rows: &LeftOut| {
+        let torque = equations == Equations::Torque;
+        let joint = torque.then(|| robot.joint_number(JointIndex(rows.equation)));
+        LeftOut { joint, ..rows.clone() }
+    };
     Ok(Observation {
         equations,
         exact,
@@ -85,7 +90,7 @@ pub fn observe(
         bands: prepared.iter().map(|p| band_of(&p.decimator, p.motion.rate)).collect(),
         groups,
         blocks,
-        left_out: prepared.iter().flat_map(|p| p.selection.iter().map(|s| s.left_out.clone())).collect(),
+        left_out: prepared.iter().flat_map(|p| p.selection.iter().map(|s| numbered(&s.left_out))).collect(),
         samples: motions.iter().map(|m| m.q.first().map_or(0, Vec::len)).sum(),
         rows,
     })

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::block::BLOCK;
 use super::error::ObserveError;
 use super::settings::{Equations, ExtraColumns};
-use crate::model::{LINE, Lanes, Line, Model, ParameterKind, States};
+use crate::model::{JointIndex, LINE, Lanes, Line, Model, ParameterKind, Robot, States};
 use crate::signal::Motion;
 
 /// Most joints that an observation can have.
@@ -58,7 +58,7 @@ pub(super) fn source<'a>(
     extra: Option<&'a dyn ExtraColumns>,
 ) -> Result<Box<dyn Source + 'a>, ObserveError> {
     let n = model.robot().joints();
-    check(n, motion)?;
+    check(model.robot(), motion)?;
     let signals = MotionOfMovingJoints::new(motion, n);
     Ok(match equations {
         Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
@@ -72,7 +72,8 @@ pub(super) fn source<'a>(
     })
 }
 
-fn check(n: usize, motion: &Motion) -> Result<(), ObserveError> {
+fn check(robot: &Robot, motion: &Motion) -> Result<(), ObserveError> {
+    let n = robot.joints();
     if n > MAX_JOINTS {
         return Err(ObserveError::TooManyJoints { found: n });
     }
@@ -90,7 +91,8 @@ fn check(n: usize, motion: &Motion) -> Result<(), ObserveError> {
         }
     }
     if let Some(&joint) = motion.fixed.iter().find(|&&j| j >= n) {
-        return Err(ObserveError::FixedJoint { motion: motion.name.clone(), joint: joint + 1 });
+        let joint = robot.joint_number(JointIndex(joint));
+        return Err(ObserveError::FixedJoint { motion: motion.name.clone(), joint });
     }
     Ok(())
 }
