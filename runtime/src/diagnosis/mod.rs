@@ -21,6 +21,7 @@ mod judging;
 mod outcome;
 mod predict;
 mod rows;
+pub mod scoring;
 mod search;
 mod settings;
 
@@ -28,7 +29,7 @@ pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
     ParameterShift, ParameterValue, TorqueSeries, Unexplained,
 };
-pub use predict::{predict_errors, term_torques};
+pub use predict::term_torques;
 pub use settings::{DiagnosisError, Progress, Settings, Silent};
 
 use crate::effects::{EffectKind, EffectTerm, Place};
@@ -95,7 +96,11 @@ fn examine(
     let (cutoff, settings) = settings::fitted_to(settings, trajectories)?;
     let settings = &settings;
     let mut signals = prepare_all(baseline, trajectories, delay, cutoff)?;
-    let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
+    let given = settings::given_speeds(settings, n)?;
+    let slowest = match &given {
+        Some(speeds) => speeds.clone(),
+        None => top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect(),
+    };
     let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
     let short = duration < SHORT;
     let slow_window = if short { settings.fast_window } else { settings.slow_window };
@@ -103,7 +108,8 @@ fn examine(
     let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
     // The narrower window needs less margin to a standstill.
-    let fast_limits: Vec<f64> = slowest.iter().map(|v| v / 1.5).collect();
+    let fast_limits: Vec<f64> =
+        if given.is_some() { slowest.clone() } else { slowest.iter().map(|v| v / 1.5).collect() };
     let plan = |half: f64| Plan {
         half,
         slowest: if half < settings.slow_window { &fast_limits } else { &slowest },
@@ -184,6 +190,9 @@ pub fn slowest_speeds(
     settings: &Settings,
 ) -> Result<Vec<f64>, DiagnosisError> {
     let (cutoff, settings) = settings::fitted_to(settings, trajectories)?;
+    if let Some(speeds) = settings::given_speeds(&settings, model.robot().joints())? {
+        return Ok(speeds);
+    }
     let signals = prepare_all(&[], trajectories, 0.0, cutoff)?;
     Ok(top_speeds(&signals, model.robot().joints()).iter().map(|v| settings.standstill * v).collect())
 }

@@ -9,6 +9,7 @@ mod added_mass;
 mod asymmetric_friction;
 mod backlash;
 mod base_tilt;
+mod check;
 mod compliance;
 mod contact;
 mod coupled_transmission;
@@ -35,6 +36,7 @@ mod torque_ripple;
 mod torque_saturation;
 mod wrong_sample_rate;
 
+pub use check::TermError;
 pub use compliance::{Compliance, Transmission, deflection};
 pub use contact::{Wrench, unit_force_torques};
 pub use coupled_transmission::CoupledTransmission;

@@ -18,6 +18,7 @@ mod extra;
 mod forward;
 mod integrator;
 mod lu;
+mod motion_file;
 mod plant;
 mod reference;
 mod residue;
@@ -35,6 +36,7 @@ pub use didim::{DidimError, DidimEstimate, DidimSettings, Experiment, didim, sim
 pub use effect::SimulatedEffects;
 pub use error::SimulationError;
 pub use extra::{ExtraTorque, Instant};
+pub use motion_file::{MotionFileError, from_csv, sampled, to_csv};
 pub use plant::{ElasticJoint, Hold, Plant, State};
 pub use reference::{Reference, SampledReference};
 pub use residue::Residue;

@@ -58,7 +58,10 @@ pub(super) fn source<'a>(
     extra: Option<&'a dyn ExtraColumns>,
 ) -> Result<Box<dyn Source + 'a>, ObserveError> {
     let n = model.robot().joints();
-    check(model.robot(), motion)?;
+    if n > MAX_JOINTS {
+        return Err(ObserveError::TooManyJoints { found: n });
+    }
+    check_shape(model.robot(), motion)?;
     let signals = MotionOfMovingJoints::new(motion, n);
     Ok(match equations {
         Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
@@ -72,11 +75,9 @@ pub(super) fn source<'a>(
     })
 }
 
-fn check(robot: &Robot, motion: &Motion) -> Result<(), ObserveError> {
+/// Whether a motion is one of this robot's, with channels of one length.
+pub(super) fn check_shape(robot: &Robot, motion: &Motion) -> Result<(), ObserveError> {
     let n = robot.joints();
-    if n > MAX_JOINTS {
-        return Err(ObserveError::TooManyJoints { found: n });
-    }
     let samples = motion.q.first().map_or(0, Vec::len);
     for channels in [&motion.q, &motion.dq, &motion.ddq, &motion.torque] {
         if channels.len() != n {
