@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-/// A SCARA whose second axis is bolted to a bracket: frame 2 is fixed, the joints are 1, 3 and 4.
+/// Two revolute axes with a bracket between them, and a prismatic one: frame 2 is fixed, the joints are 1, 3 and 4.
 const ARM: &str = "\
 name: bracket_arm
 description: three joints, with a fixed frame between the first two
@@ -21,9 +21,11 @@ limits:
   acceleration: [20, 30, 8]
   torque: [160, 100, 160]
 nominal:
-  parameters: {ZZ1: 0.3, Ia1: 0.35, Fv1: 5, Fc1: 6, off1: 0.3,
-    ZZ3: 0.12, MX3: 0.5, Ia3: 0.12, Fv3: 2.2, Fc3: 3, off3: -0.2, XX3: 0.1, YY3: 0.1, M3: 5,
-    XX4: 0.015, YY4: 0.015, ZZ4: 0.01, M4: 1.2, Ia4: 2, Fv4: 25, Fc4: 12, off4: 0.5}
+  parameters: {
+    XX1: 0.0126, YY1: 0.278833, ZZ1: 0.278833, MX1: 1.12, M1: 7, Ia1: 0.35, Fv1: 5, Fc1: 6, off1: 0.3,
+    XX3: 0.0135, XZ3: -0.018, YY3: 0.132042, ZZ3: 0.127542, MX3: 0.6, MZ3: 0.15, M3: 5,
+    Ia3: 0.12, Fv3: 2.2, Fc3: 3, off3: -0.2,
+    XX4: 0.0152932, YY4: 0.0152932, ZZ4: 8.64e-5, MZ4: 0.06, M4: 1.2, Ia4: 2, Fv4: 25, Fc4: 12, off4: 0.5}
   controller: {kp: [9000, 2500, 25000], kd: [220, 65, 450], ki: [20000, 6000, 60000]}
   noise: {position: [2e-5, 2e-5, 2e-6], torque: [0.4, 0.2, 0.4]}
 ";
@@ -111,7 +113,7 @@ fn identify_and_validate_say_the_numbers_that_show_says() {
         .filter(|line| line.contains('%'))
         .filter_map(|line| line.split_whitespace().find(|word| word.parse::<usize>().is_ok()))
         .collect();
-    assert!(rows.ends_with(&["1", "3", "4"]), "{validated}");
+    assert!(rows.windows(3).any(|joints| joints == ["1", "3", "4"]), "{validated}");
 }
 
 #[test]
