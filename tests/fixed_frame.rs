@@ -147,7 +147,7 @@ fn an_elastic_joint_is_chosen_by_its_number() {
     };
     let (status, text) = simulate("2:1e5");
     assert_eq!(status, 2, "{text}");
-    assert!(text.contains("joint of bracket_arm, not 2"), "{text}");
+    assert!(text.contains("the joints of bracket_arm are 1, 3, 4, not 2"), "{text}");
     let (status, text) = simulate("4:1e6");
     assert_eq!(status, 0, "{text}");
 }

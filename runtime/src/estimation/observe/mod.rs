@@ -25,7 +25,7 @@ pub use settings::{Equations, ExtraColumns, ObserveSettings, Progress};
 pub use standstill::Standstill;
 
 use crate::model::{JointIndex, Model, ParameterKind};
-use crate::signal::{Decimator, Motion};
+use crate::signal::Motion;
 use prepared::Prepared;
 
 /// Observes motions: evaluates the model at the full rate in blocks, decimates Y and every column of W with one
