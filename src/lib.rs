@@ -5,7 +5,6 @@
 #![deny(missing_docs)]
 
 pub mod arguments;
-pub mod closed_loop;
 pub mod commands;
 pub mod errors;
 pub mod failure;

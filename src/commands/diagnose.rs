@@ -9,9 +9,9 @@ use clap::Args;
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
 use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
 use dynid_runtime::prediction::Comparison;
+use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
-use crate::closed_loop::{ClosedLoop, closed_loop};
 use crate::failure::Failure;
 use crate::output::{Bar, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page};
@@ -116,7 +116,7 @@ fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<
     let progress = |done: f64| bar.share(done, "simulation");
     let model = measured.dynamics.model();
     Some(
-        closed_loop(model, &measured.title, &measured.trajectories, diagnosis, &progress)
+        replay(model, &measured.title, &measured.trajectories, diagnosis, &progress)
             .map_err(|error| error.to_string()),
     )
 }

@@ -6,9 +6,9 @@ use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use super::diagnosis_finding::found;
 use super::diagnosis_forward::forward;
-use crate::closed_loop::ClosedLoop;
 use crate::errors::noise_words;
 use crate::words::joint_words;
+use dynid_runtime::simulation::replay::ClosedLoop;
 
 /// A recording that took no part in the diagnosis, and both models on it.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@ use dynid_runtime::diagnosis::Diagnosis;
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
 use super::diagnosis::Extras;
-use crate::closed_loop::ClosedLoop;
+use dynid_runtime::simulation::replay::ClosedLoop;
 
 /// Recorded and simulated torques.
 pub(super) fn forward(

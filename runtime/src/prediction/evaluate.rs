@@ -4,7 +4,7 @@ use super::errors::of_squares;
 use super::noise::variance;
 use super::predictor::{PredictionError, Predictor};
 use crate::diagnosis::Errors;
-use crate::estimation::observe::{LeftOut, ObserveError, ObserveSettings, RowPlan, row_plans};
+use crate::estimation::observe::{LeftOut, ObserveError, ObserveSettings, RowPlan, row_plans, why_nothing};
 use crate::model::Model;
 use crate::signal::Motion;
 
@@ -110,7 +110,7 @@ pub fn evaluate(
     }
     let left_out: Vec<LeftOut> = plans.iter().flat_map(|p| p.left_out.clone()).collect();
     if left_out.iter().all(|l| l.used == 0) {
-        return Err(ObserveError::NoRows { reason: why_nothing(&left_out, settings) }.into());
+        return Err(ObserveError::NoRows { reason: why_nothing(&plans, motions, settings) }.into());
     }
     Ok(Evaluation {
         predictions: sums
@@ -217,19 +217,5 @@ impl Sums {
 
     fn noise(&self) -> Option<Errors> {
         self.noise.as_ref().map(|noise| of_squares(noise, &self.whole))
-    }
-}
-
-/// What is to blame when no row is left.
-fn why_nothing(left_out: &[LeftOut], settings: &ObserveSettings) -> String {
-    let sum = |of: fn(&LeftOut) -> usize| left_out.iter().map(of).sum::<usize>();
-    if left_out.is_empty() {
-        "there is no motion".to_owned()
-    } else if sum(|l| l.windows) > 0 {
-        "every row reaches into a window that is left out".to_owned()
-    } else if sum(|l| l.standstill + l.fixed) > 0 {
-        "no joint moves".to_owned()
-    } else {
-        format!("the motions are shorter than the filters need for rows of {} Hz", settings.band)
     }
 }

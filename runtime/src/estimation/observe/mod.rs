@@ -18,7 +18,7 @@ mod work;
 
 pub use error::ObserveError;
 pub use observation::{EquationFactor, Observation, TimeBlock};
-pub(crate) use row_plan::{RowPlan, row_plans};
+pub(crate) use row_plan::{RowPlan, row_plans, why_nothing};
 pub use rows::Rows;
 pub use select::LeftOut;
 pub use settings::{Equations, ExtraColumns, ObserveSettings, Progress};

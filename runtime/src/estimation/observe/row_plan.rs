@@ -1,7 +1,7 @@
 //! Which rows a motion has, without the columns: for what is compared on the rows of an observation.
 
 use super::error::ObserveError;
-use super::select::{LeftOut, Selection, select};
+use super::select::{self, LeftOut, Selection, select};
 use super::settings::{Equations, ObserveSettings};
 use super::source::check_shape;
 use crate::model::{JointIndex, Robot};
@@ -52,6 +52,14 @@ pub(crate) fn row_plans(
             Ok(RowPlan { decimator, grid, used, left_out, band })
         })
         .collect()
+}
+
+/// What is to blame when no row of the plans is used.
+pub(crate) fn why_nothing(plans: &[RowPlan], motions: &[Motion], settings: &ObserveSettings) -> String {
+    let left_out = plans.iter().flat_map(|p| &p.left_out);
+    let duration = |m: &Motion| m.q.first().map_or(0, Vec::len) as f64 / m.rate;
+    let longest = motions.iter().map(duration).fold(0.0, f64::max);
+    select::why_nothing(left_out, motions.is_empty(), longest, settings.band)
 }
 
 /// The samples that no filter has spoiled.
