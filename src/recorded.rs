@@ -278,8 +278,7 @@ pub fn recording_failure(error: RecordingError) -> Failure {
     if error.is_about_data() { Failure::Data(error.to_string()) } else { Failure::Input(error.to_string()) }
 }
 
-/// An error with the recording that it is about.
-pub fn in_recording(path: &Path, error: &dyn std::error::Error) -> String {
+fn in_recording(path: &Path, error: &dyn std::error::Error) -> String {
     format!("{}: {error}", path.display())
 }
 

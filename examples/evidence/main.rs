@@ -11,7 +11,6 @@ mod story;
 mod tested;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Parser;
 use dynid::robots::resolve;
@@ -91,9 +90,7 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
             (vec![within(motion, [from, cut])?], vec![within(motion, [cut, to])?])
         }
     };
-    let start = Instant::now();
     let found = diagnose(model, &fitted, &[], &Settings::default(), &Silent)?;
-    let seconds = start.elapsed().as_secs_f64();
     let standard = identified(model, &fitted)?;
     let compared = tested::compared(model, &standard, &found, &test)?;
     let mut pictures = Vec::new();
@@ -111,14 +108,7 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
     }
     let parts: Vec<Part> =
         story.parts.iter().map(|&span| part(model, &path, span)).collect::<Result<_, _>>()?;
-    Ok(story::told(&Told {
-        story,
-        found: &found,
-        compared: &compared,
-        pictures: &pictures,
-        parts: &parts,
-        seconds,
-    }))
+    Ok(story::told(&Told { story, found: &found, compared: &compared, pictures: &pictures, parts: &parts }))
 }
 
 /// Diagnoses one part of a single motion and judges on what comes before and after it.

@@ -113,8 +113,6 @@ pub struct Told<'a> {
     pub pictures: &'a [(&'static str, String)],
     /// What the other parts say.
     pub parts: &'a [Part],
-    /// Time of the diagnosis, s.
-    pub seconds: f64,
 }
 
 /// What one part of a recording says when it is diagnosed for itself.
@@ -170,10 +168,9 @@ fn located(text: &mut String, told: &Told<'_>) {
     let _ = writeln!(
         text,
         "### Where the standard model fails\n\nOn the part that is diagnosed the standard model leaves {} in sample. {} \
-         candidates, each an effect at a place with all of its shapes, were tried in {} s.\n",
+         candidates, each an effect at a place with all of its shapes, were tried.\n",
         percent(found.before.relative_error),
-        found.tried,
-        significant(told.seconds, 2)
+        found.tried
     );
     text.push_str("| joint | error of the standard model | share of what is unexplained | where it lives |\n|---|---|---|---|\n");
     for m in &found.mismatch {

@@ -15,7 +15,7 @@ use dynid_runtime::report::{percent, significant};
 use crate::errors::prediction_failure;
 use crate::failure::{Failure, file_failure};
 use crate::output::{Bar, print, table, write_json};
-use crate::recorded::{in_recording, recording_failure};
+use crate::recorded::recording_failure;
 use crate::robots::{Dynamics, resolve};
 use crate::truth::read_truth;
 
@@ -198,7 +198,7 @@ impl Case {
         let comparison = Comparison { threads: settings.threads, ..Comparison::default() };
         let test = comparison
             .prepare(&self.motions("test.yaml")?)
-            .map_err(|error| Failure::Data(in_recording(&file, &error)))?;
+            .map_err(|error| prediction_failure(&file, &error))?;
         let known = self.with_known(hidden, settings)?;
         let (terms, true_terms) = (found.terms(), known.as_ref().map(Diagnosis::terms).unwrap_or_default());
         let none: &[EffectTerm] = &[];

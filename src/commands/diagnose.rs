@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
 use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
-use dynid_runtime::prediction::Comparison;
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
@@ -95,13 +94,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The settings of a diagnosis as they were asked for.
 fn settings(options: &DiagnosisOptions, joints: usize) -> Settings {
-    Settings {
-        band: options.band,
-        cutoff: options.cutoff,
-        standstill_speeds: options.speeds(joints),
-        threads: options.threads,
-        ..Settings::default()
-    }
+    let mut settings = Settings::default();
+    settings.band = options.band;
+    settings.cutoff = options.cutoff;
+    settings.standstill_speeds = options.speeds(joints);
+    settings.threads = options.threads;
+    settings
 }
 
 /// The recording by forward simulation, where there is something to compare and the recording is short or it was
@@ -123,7 +121,11 @@ fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<
 
 /// What a diagnosis refuses, as the end of a command.
 pub(crate) fn diagnosis_failure(recording: &Path, error: &DiagnosisError) -> Failure {
-    Failure::Data(format!("{}: {error}", recording.display()))
+    let words = format!("{}: {error}", recording.display());
+    match error {
+        DiagnosisError::Setting { .. } | DiagnosisError::StandstillSpeeds { .. } => Failure::Input(words),
+        _ => Failure::Data(words),
+    }
 }
 
 impl Progress for Bar {
@@ -153,7 +155,7 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
         samples: measured.trajectories.iter().map(|t| t.time.len()).sum(),
         rows_left_out: None,
         equations: Vec::new(),
-        band: Comparison::BAND,
+        band: diagnosis.sampling.band,
         errors: diagnosis.after.clone(),
         noise: None,
     };

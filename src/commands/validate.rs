@@ -12,7 +12,7 @@ use crate::arguments::{ComparisonOptions, Source};
 use crate::errors::{band_words, noise_words, prediction_failure};
 use crate::failure::Failure;
 use crate::output::{print, table, warn, write_json};
-use crate::recorded::{Measured, heading, in_recording, left_out_words, measure_as, recording_failure};
+use crate::recorded::{Measured, heading, left_out_words, measure_as, recording_failure};
 use crate::robots::found_again;
 use crate::saved::{known_parameters, read_model, robot_for};
 
@@ -67,7 +67,7 @@ fn recording(arguments: &Arguments, identified: &Identified) -> Result<(Measured
         .comparison
         .comparison(joints)
         .prepare(&measured.trajectories)
-        .map_err(|error| Failure::Data(in_recording(&source.recording, &error)))?;
+        .map_err(|error| prediction_failure(&source.recording, &error))?;
     Ok((measured, prepared))
 }
 

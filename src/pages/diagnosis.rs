@@ -83,14 +83,14 @@ pub(crate) fn error_rows(diagnosis: &Diagnosis, extras: &Extras) -> Vec<Vec<Stri
         Some(evaluation) => rows.push(evaluated("fitted motion".to_owned(), evaluation)),
         None => rows.push(vec![
             "fitted motion".to_owned(),
-            OWN.to_owned(),
+            own_band(diagnosis),
             percent(diagnosis.before.relative_error),
             percent(diagnosis.after.relative_error),
         ]),
     }
     rows.push(vec![
         format!("held out ({})", diagnosis.held_out.how),
-        OWN.to_owned(),
+        own_band(diagnosis),
         percent(diagnosis.held_out.before),
         percent(diagnosis.held_out.after),
     ]);
@@ -105,7 +105,9 @@ pub(crate) fn error_rows(diagnosis: &Diagnosis, extras: &Extras) -> Vec<Vec<Stri
 }
 
 /// The band of what only the diagnosis' own rows say: they are smoothed, not decimated.
-const OWN: &str = "its own rows";
+fn own_band(diagnosis: &Diagnosis) -> String {
+    format!("{} Hz, its own rows", significant(diagnosis.sampling.band, 3))
+}
 
 fn band(evaluation: &Evaluation) -> String {
     format!("{} Hz", significant(evaluation.band, 3))
@@ -127,7 +129,8 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
         (0..held.per_joint_before.len()).map(|j| row(j).collect()).collect()
     };
     let own: [&[f64]; 2] = [&held.per_joint_before, &held.per_joint_after];
-    page.table(&["", "held out, before", "after"], &per_joint(&own));
+    let header = format!("held out, {}, before", own_band(diagnosis));
+    page.table(&["", &header, "after"], &per_joint(&own));
     let columns = |predictions: &[Prediction]| -> Vec<Vec<f64>> {
         predictions.iter().map(|p| p.errors.per_joint.clone()).collect()
     };

@@ -1,7 +1,6 @@
 //! Accepted effects as part of a model: their torques on any motion.
 
-use super::DiagnosisError;
-use super::outcome::Errors;
+use super::error::DiagnosisError;
 use super::rows::context::{Context, scales};
 use super::rows::signals::Signals;
 use crate::effects::{EffectTerm, Place};
@@ -57,13 +56,4 @@ fn torques_on(
         }
     }
     Ok(out)
-}
-
-/// Relative errors from squares per joint.
-pub(super) fn errors(left: &[f64], whole: &[f64]) -> Errors {
-    let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
-    Errors {
-        relative_error: ratio(left.iter().sum(), whole.iter().sum()),
-        per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
-    }
 }

@@ -1,11 +1,23 @@
 //! What a diagnosis can be told, and what it tells while it works.
 
-use super::rows::signals::CUTOFF;
+use super::error::DiagnosisError;
+use super::rules;
 use crate::estimation::choose_bandwidth;
 use crate::recording::Trajectory;
 
-/// Settings of a diagnosis. None of them knows a robot: speeds and travels count relative to the joint's own.
+/// Settings of a diagnosis. None of them knows a robot: speeds and travels count relative to the joint's own, unless
+/// absolute speeds are given.
+///
+/// ```
+/// use dynid_runtime::diagnosis::Settings;
+///
+/// let mut settings = Settings::default();
+/// settings.threads = 1;
+/// settings.band = Some(15.0);
+/// assert_eq!(settings.cutoff, None);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// Half-width of the smoothing for effects that are as slow as the motion, s.
     pub slow_window: f64,
@@ -59,7 +71,7 @@ pub(super) fn fitted_to(
     match settings.cutoff {
         Some(cutoff) if cutoff > 0.0 && cutoff.is_finite() => Ok((cutoff, fitted)),
         Some(cutoff) => Err(DiagnosisError::Setting { option: "cutoff", value: cutoff }),
-        None => Ok((cutoff.min(CUTOFF), fitted)),
+        None => Ok((cutoff.min(rules::HIGHEST_CUTOFF), fitted)),
     }
 }
 
@@ -78,12 +90,12 @@ pub(super) fn given_speeds(settings: &Settings, joints: usize) -> Result<Option<
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            slow_window: 0.045,
-            fast_window: 0.020,
-            standstill: 0.015,
-            least_share: 0.12,
-            least_confidence: 0.99,
-            most_effects: 12,
+            slow_window: rules::SLOW_WINDOW,
+            fast_window: rules::FAST_WINDOW,
+            standstill: rules::STANDSTILL,
+            least_share: rules::LEAST_EXPLAINED_FRACTION,
+            least_confidence: rules::LEAST_CONFIDENCE,
+            most_effects: rules::MOST_EFFECTS,
             band: None,
             cutoff: None,
             standstill_speeds: None,
@@ -104,66 +116,4 @@ pub struct Silent;
 
 impl Progress for Silent {
     fn at(&self, _: f64, _: &str) {}
-}
-
-/// Why the data cannot support a diagnosis.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum DiagnosisError {
-    /// A signal could not be prepared.
-    #[error(transparent)]
-    Signal(#[from] crate::signal::SignalError),
-    /// The recursive model could not be built.
-    #[error(transparent)]
-    Model(#[from] crate::model::RecursiveModelError),
-    /// A setting that cannot be.
-    #[error("{option} {value}: it must be a positive, finite number")]
-    Setting {
-        /// Which.
-        option: &'static str,
-        /// What it was set to.
-        value: f64,
-    },
-    /// Speeds of standstill for another number of joints.
-    #[error("{given} speeds of standstill are given for a robot of {joints} joints")]
-    StandstillSpeeds {
-        /// Speeds given.
-        given: usize,
-        /// Joints of the robot.
-        joints: usize,
-    },
-    /// No motion at all.
-    #[error("the recording has no motion")]
-    NoMotion,
-    /// Too few usable rows on a joint.
-    #[error(
-        "joint {joint}: only {rows} usable rows of motion, {needed} are needed; it stands still or the recording is too short"
-    )]
-    TooLittleMotion {
-        /// Number j of the joint.
-        joint: usize,
-        /// Rows found.
-        rows: usize,
-        /// Rows needed.
-        needed: usize,
-    },
-    /// The standard model's own parameters are not determined.
-    #[error(
-        "the motion does not excite the standard model: {free} of its {parameters} parameters are not determined ({names}); use a motion that moves all joints at different speeds"
-    )]
-    NotExciting {
-        /// Parameters not determined.
-        free: usize,
-        /// All parameters.
-        parameters: usize,
-        /// Their names.
-        names: String,
-    },
-    /// The standard model does not describe the recording at all.
-    #[error(
-        "the standard model explains only {explained:.0} % of the torque: is this the right robot, with the right units and joint order?"
-    )]
-    AnotherRobot {
-        /// Per cent.
-        explained: f64,
-    },
 }

@@ -1,6 +1,7 @@
 //! In which band, and on which rows, models are compared.
 
-use crate::estimation::observe::{ObserveSettings, Standstill};
+use super::predictor::PredictionError;
+use crate::estimation::observe::{ObserveError, ObserveSettings, Standstill};
 use crate::estimation::{Bandwidth, choose_bandwidth};
 use crate::recording::Trajectory;
 use crate::signal::{Motion, Preparation, SignalError, prepare_all};
@@ -44,8 +45,12 @@ impl Comparison {
     /// Filters the motions of a recording and settles the band.
     ///
     /// # Errors
-    /// Stamps or values that cannot be right, or motions that are all too short for the filters.
-    pub fn prepare(&self, trajectories: &[Trajectory]) -> Result<Prepared, SignalError> {
+    /// A band that is not positive, stamps or values that cannot be right, or motions that are all too short for the
+    /// filters.
+    pub fn prepare(&self, trajectories: &[Trajectory]) -> Result<Prepared, PredictionError> {
+        if let Some(band) = self.band.filter(|band| !(band.is_finite() && *band > 0.0)) {
+            return Err(ObserveError::Frequency { what: "band", value: band }.into());
+        }
         let carried = choose_bandwidth(trajectories)?.band;
         let band = self.band.unwrap_or(Self::BAND).min(carried);
         let cutoff = self.cutoff.or_else(|| Bandwidth::cutoff_of(band, trajectories));

@@ -1,17 +1,8 @@
-//! Relative errors of torques from sums of squares.
+//! Relative errors and noise.
 
 use crate::diagnosis::Errors;
 use crate::estimation::observe::Observation;
 use crate::estimation::{per_equation, relative_error};
-
-/// From the sums of squares that are left and that there were, per joint.
-pub(super) fn of_squares(left: &[f64], whole: &[f64]) -> Errors {
-    let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
-    Errors {
-        relative_error: ratio(left.iter().sum(), whole.iter().sum()),
-        per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
-    }
-}
 
 /// What is left of errors when the squares of others, those that noise makes, are taken away.
 pub fn above_noise(errors: &Errors, noise: &Errors) -> Errors {

@@ -1,6 +1,5 @@
 //! Models on the rows of a recording.
 
-use super::errors::of_squares;
 use super::noise::variance;
 use super::predictor::{PredictionError, Predictor};
 use crate::diagnosis::Errors;
@@ -40,7 +39,7 @@ pub struct Evaluation {
     /// Relative error that noise alone makes, a lower bound ([`Evaluation::noise_matters`]); `None` where it cannot be
     /// estimated.
     pub noise: Option<Errors>,
-    /// Band of the rows, Hz: the least of the motions'.
+    /// Band of the rows, Hz.
     pub band: f64,
     /// Names of the motions.
     pub trajectories: Vec<String>,
@@ -116,10 +115,10 @@ pub fn evaluate(
         predictions: sums
             .left
             .iter()
-            .map(|left| Prediction { errors: of_squares(left, &sums.whole) })
+            .map(|left| Prediction { errors: Errors::of_squares(left, &sums.whole) })
             .collect(),
         noise: sums.noise(),
-        band: plans.iter().map(|p| p.band).fold(f64::INFINITY, f64::min),
+        band: settings.band,
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),
         left_out,
         excluded: left_out_by_window,
@@ -216,6 +215,6 @@ impl Sums {
     }
 
     fn noise(&self) -> Option<Errors> {
-        self.noise.as_ref().map(|noise| of_squares(noise, &self.whole))
+        self.noise.as_ref().map(|noise| Errors::of_squares(noise, &self.whole))
     }
 }

@@ -9,7 +9,7 @@ use crate::arguments::{DiagnosisOptions, Source};
 use crate::errors::prediction_failure;
 use crate::failure::Failure;
 use crate::pages::diagnosis::Tested;
-use crate::recorded::{Measured, in_recording, measure};
+use crate::recorded::{Measured, measure};
 
 /// The errors on the recording itself, but for windows in which something pushed the robot. `None` where it is too
 /// short for the rows of the comparison.
@@ -37,7 +37,7 @@ pub(super) fn tested(
     let prepared = options
         .comparison(model.robot().joints())
         .prepare(&measured.trajectories)
-        .map_err(|error| Failure::Data(in_recording(&source.recording, &error)))?;
+        .map_err(|error| prediction_failure(&source.recording, &error))?;
     let evaluation = before_and_after(model, diagnosis, &prepared, &[])
         .map_err(|error| prediction_failure(&source.recording, &error))?;
     Ok(Tested { name: measured.title, evaluation })
