@@ -1,12 +1,14 @@
 //! Recordings: manifests, files, units, trajectories.
 
 mod channel;
-mod duplicate_key;
+mod column;
 mod error;
 #[cfg(test)]
 mod folder;
 mod load;
 mod manifest;
+mod manifest_reader;
+mod manifest_values;
 mod npy;
 mod number;
 mod regear;
@@ -19,10 +21,12 @@ mod trajectory;
 mod unit;
 mod window;
 mod write;
+mod yaml;
 
+pub use column::Column;
 pub use error::RecordingError;
 pub use load::{Loader, Recording, load};
-pub use manifest::{Channel, Column, Layout, Manifest, Side, Time, Window};
+pub use manifest::{Channel, Layout, Manifest, Side, Time, Window};
 pub use regear::regear;
 pub use report::{Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RowReport};
 pub use rows::Rows;
