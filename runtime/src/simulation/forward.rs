@@ -3,7 +3,7 @@
 use super::driven::Driven;
 use super::extra::Instant;
 use super::plant::{Hold, Plant, State, Work};
-use super::rest::{self, Decision};
+use super::stiction::{self, Decision};
 use super::{SimulationError, cholesky};
 
 impl Plant<'_> {
@@ -122,11 +122,11 @@ impl Plant<'_> {
             cholesky::solve(self.freedom, &self.work.mass, &mut free);
             self.choose_sticking(&state.hold);
             self.condense(&free);
-            let Work { a, b, limits, levels, chosen, decisions, rest, .. } = &mut self.work;
+            let Work { a, b, limits, levels, chosen, decisions, stiction: memory, .. } = &mut self.work;
             for (limit, &k) in limits.iter_mut().zip(chosen.iter()) {
                 *limit = [-levels[k][0], levels[k][1]];
             }
-            rest::decide(chosen.len(), a, b, limits, rest, decisions);
+            stiction::decide(chosen.len(), a, b, limits, memory, decisions);
             for (&k, decision) in chosen.iter().zip(decisions.iter()) {
                 state.hold[k] = match decision {
                     Decision::Stick => Hold::Sticking,

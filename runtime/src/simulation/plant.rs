@@ -3,8 +3,8 @@
 use super::SimulationError;
 use super::drive::{DriveFriction, rotor_matrix};
 use super::extra::ExtraTorque;
-use super::rest::{Decision, RestScratch};
 use super::scheme::Scheme;
+use super::stiction::{Decision, StictionScratch};
 use super::stiff::Stiff;
 use crate::model::{Model, ParameterKind};
 
@@ -85,7 +85,7 @@ pub(super) struct Work {
     pub(super) limits: Vec<[f64; 2]>,
     pub(super) chosen: Vec<usize>,
     pub(super) decisions: Vec<Decision>,
-    pub(super) rest: RestScratch,
+    pub(super) stiction: StictionScratch,
     pub(super) extra: Vec<f64>,
     pub(super) joint_levels: Vec<[f64; 2]>,
     pub(super) levels: Vec<[f64; 2]>,
@@ -220,7 +220,7 @@ impl<'m> Plant<'m> {
             limits: vec![[0.0; 2]; elements],
             chosen: Vec::with_capacity(elements),
             decisions: vec![Decision::Stick; elements],
-            rest: RestScratch::new(elements),
+            stiction: StictionScratch::new(elements),
             extra: vec![0.0; n],
             joint_levels: vec![[0.0; 2]; n],
             levels: friction.elements.iter().map(|e| [e.level; 2]).collect(),
