@@ -1,6 +1,6 @@
 //! What a diagnosis found, as data: the JSON of the contract and what a report draws.
 
-use crate::effects::{EffectTerm, Parameter, ContactForce};
+use crate::effects::{ContactForce, EffectTerm, Parameter};
 use serde::{Deserialize, Serialize};
 
 /// Relative errors |Y - W chi| / |Y|.

@@ -21,7 +21,7 @@ pub use bandwidth::{Bandwidth, choose_bandwidth};
 pub use estimate::{EstimateSettings, errors_against, estimate, per_equation, relative_error};
 pub use factor::{BLOCK_ROWS, Factor};
 pub use identified::{EquationRows, EssentialParameters, Identified, NamedParameter, Observed};
-pub use instrumental::{InstrumentalEstimate, Instruments, instrumental_variables};
+pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
 pub use outcome::{
     BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,
 };

@@ -17,8 +17,9 @@ const MOST_STEPS: usize = 400;
 const NEXT: f64 = 20.0;
 /// The fit is this close to the best possible one, as a share of its squared error.
 const GAP: f64 = 0.01;
-/// Size, SI, at which a parameter that the recording does not see is held; one that it sees may be of any size.
-const UNSEEN: f64 = 1e3;
+/// Scale, SI, of the quadratic prior on every standard parameter: weak beside any data, it bounds what the recording
+/// does not identify.
+const PRIOR_SCALE: f64 = 1e3;
 
 /// The best fit whose parameters belong to real bodies and whose friction dissipates.
 #[derive(Debug, Clone, PartialEq)]
@@ -207,9 +208,9 @@ impl Problem {
         (&self.g * x - &self.y).norm_squared()
     }
 
-    /// -log of everything that must be positive, `None` where it is not; and what holds the unseen.
+    /// Log barrier plus a weak quadratic prior that bounds what the data do not identify; `None` where infeasible.
     fn barrier(&self, x: &DVector<f64>) -> Option<f64> {
-        let mut sum = 0.5 * x.norm_squared() / (UNSEEN * UNSEEN);
+        let mut sum = 0.5 * x.norm_squared() / (PRIOR_SCALE * PRIOR_SCALE);
         for combination in &self.positive {
             let value = at(combination, x);
             if value <= 0.0 {
@@ -253,9 +254,9 @@ impl Problem {
     /// Newton's step and the squared decrement.
     fn newton(&self, x: &DVector<f64>, weight: f64) -> Option<(DVector<f64>, f64)> {
         let residual = &self.g * x - &self.y;
-        let mut gradient = self.g.tr_mul(&residual) * (2.0 * weight) + x / (UNSEEN * UNSEEN);
+        let mut gradient = self.g.tr_mul(&residual) * (2.0 * weight) + x / (PRIOR_SCALE * PRIOR_SCALE);
         let mut hessian = &self.normal * (2.0 * weight);
-        (0..x.len()).for_each(|k| hessian[(k, k)] += 1.0 / (UNSEEN * UNSEEN));
+        (0..x.len()).for_each(|k| hessian[(k, k)] += 1.0 / (PRIOR_SCALE * PRIOR_SCALE));
         for combination in &self.positive {
             let value = at(combination, x);
             for &(i, a) in combination {
