@@ -6,7 +6,7 @@ use super::extra::ExtraTorque;
 use super::scheme::Scheme;
 use super::stiction::{Decision, StictionScratch};
 use super::stiff::Stiff;
-use crate::model::{Model, ParameterKind};
+use crate::model::{JointIndex, Model, ParameterKind};
 
 /// Compliance and play between motor and link of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,7 +171,8 @@ impl<'m> Plant<'m> {
         for (k, joint) in elastic.iter().enumerate() {
             check_elastic(joint, &inertia)?;
             if elastic[..k].iter().any(|other| other.joint == joint.joint) {
-                let (what, found) = ("each elastic joint", (joint.joint + 1) as f64);
+                let number = robot.joint_number(JointIndex(joint.joint));
+                let (what, found) = ("each elastic joint", number.0 as f64);
                 return Err(SimulationError::Setting { what, expected: "another joint", found });
             }
         }
