@@ -7,7 +7,7 @@
 //! let plot = Plot::new("Torque", "time, s", "N.m").with("measured", Role::Measured, SeriesKind::Line, points);
 //! let mut page = Page::new("A recording");
 //! page.paragraph(&format!("The model explains all but {}.", percent(0.034))).plot(&plot);
-//! assert!(page.finish().contains("<svg"));
+//! assert!(page.to_html().contains("<svg"));
 //! ```
 
 mod axis;
