@@ -1,6 +1,6 @@
 //! What a diagnosis found, as data: the JSON of the contract and what a report draws.
 
-use crate::effects::{EffectTerm, Parameter, Wrench};
+use crate::effects::{EffectTerm, Parameter, ContactForce};
 use serde::{Deserialize, Serialize};
 
 /// Relative errors |Y - W chi| / |Y|.
@@ -148,7 +148,7 @@ pub struct Finding {
     pub term: EffectTerm,
     /// Where it is a contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub contacts: Vec<Wrench>,
+    pub contacts: Vec<ContactForce>,
 }
 
 /// A value in the JSON.

@@ -6,7 +6,7 @@ use super::rows::context::{Context, scales};
 use super::rows::design::{Design, Plan};
 use super::rows::signals::{ModelTorques, Signals, directions};
 use super::settings::Settings;
-use crate::effects::{EffectTerm, Form, Place, Transmission};
+use crate::effects::{EffectTerm, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
 use crate::signal::Motion;
@@ -46,12 +46,7 @@ fn torques_on(
             context.scales[j] = scale.into();
         }
         let mut amplitude = term.amplitude.clone();
-        if let (Form::Compliance(_), Place::Joint(j), &[k, d, rotor, play]) =
-            (term.effect.form(), term.place, term.amplitude.as_slice())
-        {
-            let prismatic = context.scales[j].prismatic;
-            let known =
-                Transmission { stiffness: k, damping: d, rotor, play, frequency: term.shape[0], prismatic };
+        if let Some((j, known)) = term.transmission() {
             context.transmissions = vec![(j, known)];
             amplitude = vec![1.0];
         }

@@ -54,11 +54,8 @@ impl Hidden {
         let plain = robot.model.robot();
         let [_, _, g] = plain.gravity;
         // Turned about y, then about x.
-        let gravity = [
-            g * about_y.sin(),
-            -g * about_y.cos() * about_x.sin(),
-            g * about_y.cos() * about_x.cos(),
-        ];
+        let gravity =
+            [g * about_y.sin(), -g * about_y.cos() * about_x.sin(), g * about_y.cos() * about_x.cos()];
         let mut tilted = Robot::with_standard_as_base(
             &plain.name,
             gravity,

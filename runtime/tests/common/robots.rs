@@ -1,10 +1,9 @@
 //! The robots as tables, and what moves them.
 
 use dynid_codegen::base::base_set;
-use dynid_codegen::robot as symbolic;
-use dynid_runtime::model::{
-    BaseParameter, Drive, Frame, JointKind, Limits, Model, Nominal, RecursiveModel, Robot,
-};
+use dynid_codegen::numeric_robot;
+use dynid_codegen::robot::parse;
+use dynid_runtime::model::{Model, RecursiveModel};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, ExcitingMotion, MotionKind, excite};
 use dynid_runtime::simulation::{ExtraTorque, LoopSettings, Plant, SimulatedEffects, simulate};
@@ -24,7 +23,6 @@ limits:
   position: [pi, 150*pi/180]
   velocity: [5, 7]
   acceleration: [30, 50]
-  torque: [160, 50]
 nominal:
   parameters: {
     XX1: 0.0018, YY1: 0.334233, ZZ1: 0.334233, MX1: 1, M1: 4,
@@ -50,7 +48,6 @@ limits:
   position: [170*pi/180, 150*pi/180, 0.2]
   velocity: [8, 10, 1.5]
   acceleration: [60, 80, 20]
-  torque: [160, 60, 160]
 nominal:
   parameters: {
     XX1: 0.0126, YY1: 0.278833, ZZ1: 0.278833, MX1: 1.12, M1: 7,
@@ -88,7 +85,8 @@ pub fn scara() -> SimulatedRobot {
 
 impl SimulatedRobot {
     fn of(table: &str) -> Self {
-        let robot = numeric(&symbolic::parse("table", table.as_bytes()).expect("the table is right"));
+        let table = parse("table", table.as_bytes()).expect("the table is right");
+        let robot = numeric_robot(&table, &base_set(&table));
         let standard = robot.nominal.as_ref().expect("it has nominal values").standard.to_vec();
         Self { model: RecursiveModel::new(robot).expect("the table is right"), standard }
     }
@@ -138,55 +136,4 @@ impl SimulatedRobot {
         };
         motions.iter().enumerate().map(record).collect()
     }
-}
-
-/// The table evaluated, with its base parameters.
-fn numeric(robot: &symbolic::Robot) -> Robot {
-    let frames: Vec<Frame> = robot
-        .frames
-        .iter()
-        .map(|f| Frame {
-            parent: f.parent.checked_sub(1),
-            kind: match f.kind {
-                symbolic::JointKind::Revolute => JointKind::Revolute,
-                symbolic::JointKind::Prismatic => JointKind::Prismatic,
-                symbolic::JointKind::Fixed => JointKind::Fixed,
-            },
-            gamma: f.gamma.value(),
-            b: f.b.value(),
-            alpha: f.alpha.value(),
-            d: f.d.value(),
-            theta: f.theta.value(),
-            r: f.r.value(),
-        })
-        .collect();
-    let drive = Drive { gear: robot.drive.gear.concat().into(), coupled_friction: Vec::new().into() };
-    let limits = Limits {
-        position: robot.limits.position.clone().into(),
-        velocity: robot.limits.velocity.clone().into(),
-        acceleration: robot.limits.acceleration.clone().into(),
-        // The drives can do what the motions ask for.
-        torque: Vec::new().into(),
-    };
-    let mut numbers = Robot::with_standard_as_base(&robot.name, robot.gravity, frames, drive, limits);
-    let base = base_set(robot).base.into_iter().map(|p| BaseParameter {
-        name: p.name.into(),
-        standard: p.standard,
-        combination: p.combination.into(),
-        relation: p.relation.into(),
-        unit: p.unit.into(),
-    });
-    numbers.base = base.collect::<Vec<_>>().into();
-    numbers.nominal = robot.nominal.as_ref().map(|n| {
-        let value = |name: &str| n.standard.iter().find(|(known, _)| known == name).map_or(0.0, |p| p.1);
-        Nominal {
-            standard: numbers.standard.iter().map(|p| value(&p.name)).collect(),
-            kp: n.kp.clone().into(),
-            kd: n.kd.clone().into(),
-            ki: n.ki.clone().into(),
-            position_noise: n.position_noise.clone().into(),
-            torque_noise: n.torque_noise.clone().into(),
-        }
-    });
-    numbers
 }

@@ -3,7 +3,7 @@
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
-use crate::effects::{Wrench, unit_force_torques};
+use crate::effects::{ContactForce, unit_force_torques};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 pub(in crate::diagnosis) struct Contacts {
     /// Times per signal that no other row may use.
     pub windows: Vec<Vec<[f64; 2]>>,
-    pub wrenches: Vec<Wrench>,
+    pub wrenches: Vec<ContactForce>,
     /// Residual squares in the windows in units of the noise, without a force and with the force of the neighbouring
     /// instants.
     pub before: f64,
@@ -233,7 +233,7 @@ fn explain(
     sigma: &[f64],
     signal: usize,
     window: [f64; 2],
-) -> Option<(Wrench, [f64; 3])> {
+) -> Option<(ContactForce, [f64; 3])> {
     let s = &context.signals[signal];
     // Rows of all joints per instant.
     let mut instants: BTreeMap<usize, Vec<(usize, f64, f64)>> = BTreeMap::new();
@@ -286,7 +286,7 @@ fn explain(
     let torque = instants.values().flatten().map(|(j, _, y)| (y / sigma[*j]).powi(2)).sum::<f64>();
     let mean = forces.iter().sum::<Vector3<f64>>() / forces.len() as f64;
     let largest = forces.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied().unwrap_or(mean);
-    let wrench = Wrench {
+    let wrench = ContactForce {
         motion: s.name.clone(),
         window,
         link: frame + 1,

@@ -1,6 +1,5 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
-use crate::diagnosis::candidates::candidate::pace;
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::explanation::explain::Bare;
 use crate::diagnosis::joint_number;
@@ -9,57 +8,27 @@ use crate::diagnosis::rows::design::{Design, RowAt};
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::search::state::{Accepted, Search};
-use crate::effects::EffectKind;
+use crate::effects::Abscissa;
 
 /// Bins of a curve.
 const BINS: usize = 40;
 
-/// A variable of a row: its name with the unit, and its value.
-type Variable<'a> = (&'a str, Box<dyn Fn(&RowAt) -> f64 + 'a>);
-
-fn variable<'a>(search: &'a Search<'_, '_>, joint: usize, term: &'a Accepted) -> Variable<'a> {
-    let context = &*search.context;
-    let unit = context.scales[joint].position_unit();
-    let prismatic = unit == "m";
-    let signals = context.signals;
-    let torques = &context.torques;
-    match term.effect {
-        EffectKind::LoadDependentFriction => (
-            if prismatic { "load, N" } else { "load torque, N.m" },
-            Box::new(move |r| torques[r.signal].rigid[joint][r.centre]),
-        ),
-        EffectKind::FrictionDrift => ("time, s", Box::new(move |r| signals[r.signal].time(r.centre))),
-        EffectKind::PreslidingHysteresis => (
-            "distance since reversal",
-            Box::new(move |r| since_reversal(&signals[r.signal], joint, r.centre)),
-        ),
-        EffectKind::TorqueRipple => {
-            let order = term.shape[0];
-            (
-                "angle within one wave, rad",
-                Box::new(move |r| {
-                    (order * signals[r.signal].q[joint][r.centre]).rem_euclid(2.0 * std::f64::consts::PI)
-                }),
-            )
+/// The variable that reveals a term, at a row of its first joint.
+fn abscissa(search: &Search<'_, '_>, joint: usize, term: &Accepted, r: &RowAt) -> f64 {
+    let s = &search.context.signals[r.signal];
+    let torques = &search.context.torques[r.signal];
+    match term.effect.properties().abscissa {
+        Abscissa::Speed => s.dq[joint][r.centre],
+        Abscissa::Position => s.q[joint][r.centre],
+        Abscissa::Acceleration => s.ddq[joint][r.centre],
+        Abscissa::Load => torques.rigid[joint][r.centre],
+        Abscissa::ModelTorque => torques.total[joint][r.centre],
+        Abscissa::Time => s.time(r.centre),
+        Abscissa::SinceReversal => since_reversal(s, joint, r.centre),
+        Abscissa::WaveAngle => {
+            let order = term.shape.first().copied().unwrap_or(1.0);
+            (order * s.q[joint][r.centre]).rem_euclid(2.0 * std::f64::consts::PI)
         }
-        EffectKind::TorqueConstantError | EffectKind::TorqueSaturation | EffectKind::FrictionLevelChange => {
-            ("model torque", Box::new(move |r| torques[r.signal].total[joint][r.centre]))
-        }
-        EffectKind::JointElasticity => {
-            ("acceleration", Box::new(move |r| signals[r.signal].ddq[joint][r.centre]))
-        }
-        EffectKind::Backlash => ("load torque", Box::new(move |r| torques[r.signal].rigid[joint][r.centre])),
-        EffectKind::Stribeck
-        | EffectKind::NonlinearViscous
-        | EffectKind::AsymmetricFriction
-        | EffectKind::CoupledTransmission => (
-            if prismatic { "joint speed, m/s" } else { "joint speed, rad/s" },
-            Box::new(move |r| signals[r.signal].dq[joint][r.centre]),
-        ),
-        _ => (
-            if prismatic { "joint position, m" } else { "joint position, rad" },
-            Box::new(move |r| signals[r.signal].q[joint][r.centre]),
-        ),
     }
 }
 
@@ -75,7 +44,7 @@ fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
 /// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
 pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Option<Curve> {
     let joint = *term.own.first()?;
-    let side = search.side(pace(term.effect));
+    let side = search.side(term.effect.properties().window);
     let design = &side.design;
     let dense = dense_columns(search.context, design, term.effect, term.place, &term.shape, search.change);
     let amplitude: Vec<f64> = match term.fixed {
@@ -83,25 +52,24 @@ pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k:
         None => side.term_columns[k].clone().map(|c| side.fit.chi[c]).collect(),
     };
     let residual = side.fit.residual(design);
-    let (name, value) = variable(search, joint, term);
+    let properties = term.effect.properties();
     let signals = search.context.signals;
-    // Friction opposes the motion: over anything but the speed, both directions would hide each other.
-    let opposes = matches!(
-        term.effect,
-        EffectKind::LoadDependentFriction | EffectKind::FrictionDrift | EffectKind::PositionDependentFriction
-    );
-    let along = |r: &RowAt| if opposes { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 };
+    let along = |r: &RowAt| {
+        if properties.along_motion { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 }
+    };
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
         .filter(|&r| signals[design.rows[r].signal].fresh)
         .map(|r| {
             let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
             let sign = along(&design.rows[r]);
-            (value(&design.rows[r]), sign * (residual[r] + law), sign * law)
+            (abscissa(search, joint, term, &design.rows[r]), sign * (residual[r] + law), sign * law)
         })
         .collect();
     let mut curve = binned(rows);
-    curve.variable = if opposes { format!("{name} (torques along the motion)") } else { name.into() };
+    let name = properties.abscissa.label(search.context.scales[joint].prismatic);
+    curve.variable =
+        if properties.along_motion { format!("{name} (torques along the motion)") } else { name.into() };
     curve.unit = search.context.scales[joint].torque_unit().into();
     Some(curve)
 }

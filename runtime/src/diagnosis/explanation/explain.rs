@@ -1,10 +1,9 @@
 //! From accepted terms to findings: numbers with their uncertainty, held-out errors, curves, sentences.
 
-use crate::diagnosis::candidates::candidate::pace;
 use crate::diagnosis::candidates::trial::delay_columns;
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::explanation::curves;
-use crate::diagnosis::explanation::quantities::{parameters, uncertainty};
+use crate::diagnosis::explanation::quantities::{Quantified, quantified, uncertainty};
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::judging::folds::single_motion;
 use crate::diagnosis::judging::held_back::{HeldBack, hold_back};
@@ -17,7 +16,7 @@ use crate::diagnosis::rows::fit::fit_weighted;
 use crate::diagnosis::search::state::{Accepted, Search, Side};
 use crate::diagnosis::settings::Settings;
 use crate::diagnosis::{DiagnosisError, NAMED_DELAY, joint_number, unit_term};
-use crate::effects::{EffectKind, EffectTerm, Form, Place};
+use crate::effects::{Abscissa, EffectKind, EffectTerm, Place};
 use crate::model::Model;
 use std::collections::BTreeSet;
 
@@ -154,7 +153,13 @@ pub(in crate::diagnosis) fn explain(
         spectra: search
             .spectra
             .iter()
-            .filter(|s| findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&s.joint)))
+            .filter(|s| {
+                let waves = |f: &Finding| {
+                    let effect = EffectKind::from_id(&f.effect);
+                    effect.is_some_and(|e| e.properties().abscissa == Abscissa::WaveAngle)
+                };
+                findings.iter().any(|f| waves(f) && f.joints.contains(&s.joint))
+            })
             .cloned()
             .collect(),
         series: curves::series(&search, &bare.fitted_fast, &terms),
@@ -222,33 +227,21 @@ fn shifts(model: &dyn Model, before: &Estimated, after: &Estimated) -> Vec<Param
 /// Numbers j of the joints that an effect at a place is named on.
 fn named_on(model: &dyn Model, effect: EffectKind, place: Place) -> Vec<usize> {
     let robot = model.robot();
-    match (place, effect.form()) {
-        (Place::Joint(j), _) => vec![joint_number(robot, j)],
-        (Place::Pair(a, b), _) => vec![joint_number(robot, a), joint_number(robot, b)],
-        (Place::Variant(v), Form::Sensitivity(law)) if !law.together() => law
-            .variants(robot)
-            .get(v)
-            .and_then(|x| x.joint)
-            .map(|j| joint_number(robot, j))
-            .into_iter()
-            .collect(),
-        (Place::Link(frame), _) if effect == EffectKind::AddedMass => vec![frame + 1],
-        _ => Vec::new(),
-    }
+    effect.form().named_joints(robot, place).into_iter().map(|j| joint_number(robot, j)).collect()
 }
 
 fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k: usize) -> Finding {
     let robot = model.robot();
     let accepted = &terms[k];
-    let which = pace(accepted.effect);
+    let which = accepted.effect.properties().window;
     let joints = named_on(model, accepted.effect, accepted.place);
     let side = search.side(which);
     let range = side.term_columns[k].clone();
-    let mut amplitude: Vec<f64> = range.clone().map(|c| side.fit.chi[c]).collect();
+    let amplitude: Vec<f64> = range.clone().map(|c| side.fit.chi[c]).collect();
     let with = hold_back(&side.design, &side.sigma, false);
     let curve = curves::of_term(search, accepted, k);
-    let (mut sigma, shape_sigma) = uncertainty(search, terms, k, &amplitude);
-    let parameters = parameters(search, accepted, &mut amplitude, &mut sigma, &shape_sigma, model);
+    let deviations = uncertainty(search, terms, k, &amplitude);
+    let Quantified { parameters, amplitude, sigma } = quantified(search, accepted, amplitude, deviations);
     let scale = match accepted.place {
         Place::Joint(j) => Some(search.context.scales[j].into()),
         _ => None,

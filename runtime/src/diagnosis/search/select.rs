@@ -1,13 +1,13 @@
 //! Which candidate of a round holds.
 
-use crate::diagnosis::candidates::candidate::{Candidate, Pace};
+use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::judging::evidence::{block_evidence, doubt, waveform_evidence};
 use crate::diagnosis::judging::folds::single_motion;
 use crate::diagnosis::judging::judge::{Verdict, holds_forward, judge};
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::search::state::{Rival, Search, Side};
 use crate::diagnosis::settings::Settings;
-use crate::effects::EffectKind;
+use crate::effects::SmoothingWindow;
 use crate::parallel;
 
 /// A law gives way to the one that it extends where that one makes this share of its gain.
@@ -17,7 +17,7 @@ const MOST_CHECKED: usize = 30;
 
 /// What passed a round: the side it is on, the candidate's index, and its verdict.
 pub(in crate::diagnosis) struct Winner {
-    pub pace: Pace,
+    pub pace: SmoothingWindow,
     pub index: usize,
     pub verdict: Verdict,
     pub significance: f64,
@@ -27,7 +27,7 @@ pub(in crate::diagnosis) struct Winner {
 
 /// A candidate of a round: the side it is on, its index there, and its verdict.
 pub(in crate::diagnosis) struct Ranked {
-    pub pace: Pace,
+    pub pace: SmoothingWindow,
     pub index: usize,
     pub verdict: Verdict,
 }
@@ -79,7 +79,7 @@ impl Search<'_, '_> {
     /// Candidates, on `joint` where one is given, that are not settled: those that gain most on held-back motion first.
     pub(in crate::diagnosis) fn ranked(&self, joint: Option<usize>) -> Vec<Ranked> {
         let mut ranked = Vec::new();
-        for pace in [Pace::Slow, Pace::Fast] {
+        for pace in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
             let side = self.side(pace);
             let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
                 let candidate = &side.candidates[index];
@@ -153,24 +153,13 @@ impl Search<'_, '_> {
 
     /// Whether the simpler law of which this one is an extension explains nearly as much at the same place.
     fn simpler_does(&self, ranked: &[Ranked], more: &Candidate, verdict: &Verdict) -> bool {
-        let Some(simpler) = simpler_than(more.effect) else { return false };
+        let Some(simpler) = more.effect.special_case() else { return false };
         ranked.iter().any(|other| {
             let candidate = self.of(other).1;
             candidate.effect == simpler
                 && candidate.place == more.place
                 && other.verdict.total() > SIMPLER_DOES * verdict.total()
         })
-    }
-}
-
-/// The law that another one extends, and that it comes back to where its own number vanishes.
-fn simpler_than(effect: EffectKind) -> Option<EffectKind> {
-    match effect {
-        // Play is one number more than a spring.
-        EffectKind::Backlash => Some(EffectKind::JointElasticity),
-        // A level that changes slowly, against one that has changed since the baseline.
-        EffectKind::FrictionDrift => Some(EffectKind::FrictionLevelChange),
-        _ => None,
     }
 }
 

@@ -3,7 +3,7 @@
 //! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held back.
 
 use crate::diagnosis::DiagnosisError;
-use crate::diagnosis::candidates::candidate::{Candidate, Pace, build, make, pace, proposals};
+use crate::diagnosis::candidates::candidate::{Candidate, build, make, proposals};
 use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
 use crate::diagnosis::candidates::trial::{columns, delay_columns, dense_columns};
 use crate::diagnosis::judging::folds::{Fold, folds, single_motion};
@@ -16,7 +16,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::{Fit, fit_weighted};
 use crate::diagnosis::search::select::Winner;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::{EffectKind, Form, Place};
+use crate::effects::{EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 
 /// An accepted effect.
@@ -101,17 +101,6 @@ pub(in crate::diagnosis) struct Search<'c, 'a> {
     pub threads: usize,
 }
 
-/// Effects whose columns follow the standard parameters.
-fn follows_parameters(effect: EffectKind) -> bool {
-    matches!(
-        effect,
-        EffectKind::LoadDependentFriction
-            | EffectKind::TorqueConstantError
-            | EffectKind::TorqueSaturation
-            | EffectKind::FrictionLevelChange
-    )
-}
-
 /// Largest error, in units of its number, along the way to which derivatives are taken.
 const LARGEST_ERROR: f64 = 0.7;
 
@@ -168,11 +157,11 @@ impl<'c, 'a> Search<'c, 'a> {
         progress.at(0.15, "order spectra");
         self.spectra = self.order_spectra();
         let orders: Vec<Vec<f64>> = self.spectra.iter().map(|s| peaks(s, 2)).collect();
-        let slow = proposals(self.context, Pace::Slow, self.change, &orders);
-        let mut fast = proposals(self.context, Pace::Fast, self.change, &orders);
+        let slow = proposals(self.context, SmoothingWindow::Slow, self.change, &orders);
+        let mut fast = proposals(self.context, SmoothingWindow::Fast, self.change, &orders);
         if settings.fast_window >= settings.slow_window {
             // The recording is too slow to hold the ringing and the bursts of compliant transmissions.
-            fast.retain(|(effect, ..)| !matches!(effect.form(), Form::Compliance(_)));
+            fast.retain(|(effect, ..)| !effect.form().is_fast_only());
         }
         self.tried = slow.iter().chain(&fast).map(|p| p.2.len()).sum();
         let (context, change, threads) = (&*self.context, self.change, self.threads);
@@ -246,10 +235,10 @@ impl<'c, 'a> Search<'c, 'a> {
     /// Takes the given effects as known, on a joint where one is given: only shapes and amplitudes are fitted.
     pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) {
         for &(effect, joint) in known {
-            if matches!(effect.form(), Form::Compliance(_)) {
+            if effect.form().fixed_amplitude().is_some() {
                 self.polish(self.threads);
             }
-            let which = pace(effect);
+            let which = effect.properties().window;
             let side = self.side(which);
             let best = side
                 .candidates
@@ -278,14 +267,14 @@ impl<'c, 'a> Search<'c, 'a> {
 
     /// Puts the terms into both designs, and lets loads follow the standard parameters.
     pub fn refit(&mut self) {
-        let bent = self.terms.iter().any(|t| matches!(t.effect.form(), Form::Sensitivity(_)));
+        let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
         for _ in 0..if bent { 4 } else { 2 } {
             self.slow.set_terms(self.context, &self.terms, self.change);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi);
             // An error that is not small bends its own column: derivatives are taken along the way to it.
             for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
-                if matches!(term.effect.form(), Form::Sensitivity(_)) {
+                if term.effect.form().shape_is_amplitude() {
                     term.shape = columns
                         .clone()
                         .map(|c| self.slow.fit.chi[c].clamp(-LARGEST_ERROR, LARGEST_ERROR))
@@ -313,7 +302,7 @@ impl<'c, 'a> Search<'c, 'a> {
                     return;
                 }
                 for trial in &mut candidate.trials {
-                    if follows_parameters(candidate.effect) {
+                    if candidate.effect.properties().follows_parameters {
                         trial.columns =
                             columns(context, design, candidate.effect, candidate.place, &trial.shape, change);
                         trial.refresh(design);
@@ -356,12 +345,15 @@ impl<'c, 'a> Search<'c, 'a> {
     /// Whether a candidate is in the model already, or has been taken out of it.
     pub fn settled(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
-        candidate.effect != EffectKind::TorqueRipple && self.terms.iter().any(same)
+        !candidate.effect.properties().repeats && self.terms.iter().any(same)
             || self.rejected.iter().any(same)
     }
 
-    pub fn side(&self, pace: Pace) -> &Side {
-        if pace == Pace::Slow { &self.slow } else { &self.fast }
+    pub fn side(&self, window: SmoothingWindow) -> &Side {
+        match window {
+            SmoothingWindow::Slow => &self.slow,
+            SmoothingWindow::Fast => &self.fast,
+        }
     }
 
     /// The winner as a term, its shape refined on all motion.
@@ -422,14 +414,14 @@ impl<'c, 'a> Search<'c, 'a> {
         let mut k = 0;
         while k < self.terms.len() {
             let error = |search: &Self, term: &Accepted| {
-                let side = search.side(pace(term.effect));
+                let side = search.side(term.effect.properties().window);
                 hold_back(&side.design, &side.sigma, false).error_on(&term.own)
             };
             let with = error(self, &self.terms[k]);
             let term = self.terms.remove(k);
             self.refit();
             let without = error(self, &term);
-            let side = self.side(pace(term.effect));
+            let side = self.side(term.effect.properties().window);
             let candidate = make(
                 self.context,
                 &side.design,
