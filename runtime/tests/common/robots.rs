@@ -6,7 +6,7 @@ use dynid_codegen::robot::parse;
 use dynid_runtime::model::{Model, RecursiveModel};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, ExcitingMotion, MotionKind, excite};
-use dynid_runtime::simulation::{ExtraTorque, LoopSettings, Plant, SimulatedEffects, simulate};
+use dynid_runtime::simulation::{LoopSettings, World, simulate};
 
 use super::Hidden;
 
@@ -91,16 +91,11 @@ impl SimulatedRobot {
         Self { model: RecursiveModel::new(robot).expect("the table is right"), standard }
     }
 
-    /// Index of a standard parameter.
-    pub fn parameter(&self, name: &str) -> usize {
-        self.model.robot().standard.iter().position(|p| p.name == name).expect("the robot has the parameter")
-    }
-
-    /// Random Fourier motions of 8 s within 80 % of the limits. Other seeds give other motions.
-    pub fn motions(&self, count: u64, seed: u64) -> Vec<ExcitingMotion> {
+    /// Random Fourier motions of `length` seconds within 80 % of the limits. Other seeds give other motions.
+    pub fn motions(&self, count: u64, length: f64, seed: u64) -> Vec<ExcitingMotion> {
         let chi = self.model.robot().base_from_standard(&self.standard);
         let motion = |k: u64| {
-            let kind = MotionKind::Fourier { harmonics: 5 + k as usize, period: 8.0, periods: 1 };
+            let kind = MotionKind::Fourier { harmonics: 5 + k as usize, period: length, periods: 1 };
             let settings =
                 ExcitationSettings { kind, share: 0.8, seed: 1000 * seed + k, ..Default::default() };
             excite(&self.model, Some(&chi), &settings, &|_| {}).expect("the robot has limits").motions
@@ -108,30 +103,21 @@ impl SimulatedRobot {
         (0..count).flat_map(motion).collect()
     }
 
-    /// Records motions in closed loop at 500 Hz with the nominal noise. Laws and springs that are hidden are unknown
-    /// to the controller.
+    /// Records motions in closed loop at 500 Hz with the nominal noise. The controller knows nothing of effects.
     pub fn record(&self, motions: &[ExcitingMotion], hidden: &Hidden, seed: u64) -> Vec<Trajectory> {
-        let tilted = hidden.tilted(self);
-        let world: &dyn Model = tilted.as_ref().unwrap_or(&self.model);
-        let standard = hidden.standard(self);
-        let chi = world.robot().base_from_standard(&standard);
+        let mut world = World::from_standard(&self.model, &self.standard);
+        (hidden.put)(&mut world);
+        assert_eq!(world.left_out(), [], "the simulation has to have what is hidden");
         let record = |(k, motion): (usize, &ExcitingMotion)| {
-            let mut settings = LoopSettings::nominal(world, &chi, motion, RATE, 100 * seed + k as u64);
+            let name = format!("motion {}", k + 1);
+            let noise = 100 * seed + k as u64;
+            let mut settings = LoopSettings::nominal(world.model(), &world.chi(), motion, RATE, noise);
             settings.record_every = RECORD_EVERY;
-            settings.name = format!("motion {}", k + 1);
-            let torques = SimulatedEffects::new(world, &chi, &hidden.laws).torques;
-            let torques = torques.into_iter().map(|torque| torque as Box<dyn ExtraTorque>).collect();
-            let plant = if hidden.elastic.is_empty() {
-                Plant::with_torques(world, &chi, torques)
-            } else {
-                Plant::with_effects(world, &standard, &hidden.elastic, torques)
-            };
-            let mut plant = plant.expect("the robot can exist");
+            let mut plant = world.plant(&name).expect("the robot can exist");
+            settings.name = name;
             let run = simulate(&mut plant, motion, &settings, &mut |_| {}).expect("the loop is stable");
             let mut recorded = run.recorded;
-            if let Some(distort) = hidden.distortion {
-                distort(&mut recorded);
-            }
+            (hidden.distort)(&mut recorded);
             recorded
         };
         motions.iter().enumerate().map(record).collect()
