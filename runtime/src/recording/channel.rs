@@ -113,8 +113,8 @@ fn conversion(
     }
     gain.resize(joints, 1.0);
     if let Some(j) = gain.iter().position(|g| *g == 0.0) {
-        let number = robot.joint_number(JointIndex(j));
-        let message = format!("0 for joint {number}: nothing would be left of the signal");
+        let message =
+            format!("0 for joint {}: nothing would be left of the signal", robot.joint_number(JointIndex(j)));
         return Err(manifest.error(&[quantity, "gain"], &message));
     }
     let mut offset = channel.offset.clone();
