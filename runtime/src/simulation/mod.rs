@@ -48,6 +48,7 @@ mod lu;
 mod plant;
 mod push;
 mod reference;
+#[cfg(feature = "diagnosis")]
 pub mod replay;
 mod residue;
 mod rosenbrock;
