@@ -49,6 +49,7 @@ mod motion_file;
 mod plant;
 mod push;
 mod reference;
+#[cfg(feature = "diagnosis")]
 pub mod replay;
 mod residue;
 mod rosenbrock;
