@@ -6,8 +6,9 @@ use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
 use serde::{Deserialize, Serialize};
 
-use crate::hiding::{Number, hide, of, plain};
+use crate::hiding::{hide, of, plain};
 use crate::motions::{planned, recorded};
+use crate::put::Number;
 use crate::random::Random;
 use crate::secret::{Secret, is_change};
 use crate::size::VISIBLE;

@@ -13,6 +13,7 @@ mod journal;
 mod motions;
 mod page;
 mod places;
+mod put;
 mod random;
 mod secret;
 mod size;

@@ -1,7 +1,7 @@
 //! The report of `diagnose`: the verdict first, then for every finding where it was seen and what it changed.
 
 use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueSeries};
-use dynid_runtime::effects::EffectKind;
+use dynid_runtime::effects::{Abscissa, EffectKind};
 use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 use dynid_runtime::simulation::replay::ClosedLoop;
 
@@ -127,15 +127,20 @@ pub(crate) fn confidence_words(confidence: f64) -> String {
 }
 
 fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
-    let words = EffectKind::from_id(&finding.effect).map(EffectKind::words);
+    let effect = EffectKind::from_id(&finding.effect);
+    let words = effect.map(EffectKind::words);
     let title = words.map_or(finding.effect.as_str(), |w| w.title);
     page.heading(&format!("{title} on {}", joint_words(&finding.joints)));
     page.paragraph(&finding.sentence);
+    if let Some(formula) = finding.formula() {
+        page.paragraph(&format!("Its law: {formula}."));
+    }
     if let Some(curve) = &finding.curve {
         page.plot(&revealing(curve));
     }
     for spectrum in diagnosis.spectra.iter().filter(|s| finding.joints.contains(&s.joint)) {
-        if finding.effect == EffectKind::TorqueRipple.id() {
+        let waves = effect.is_some_and(|e| e.properties().abscissa == Abscissa::WaveAngle);
+        if waves {
             page.plot(&orders(spectrum, unit(finding)));
         }
     }

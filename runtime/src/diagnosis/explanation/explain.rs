@@ -242,10 +242,7 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
     let curve = curves::of_term(search, accepted, k);
     let deviations = uncertainty(search, terms, k, &amplitude);
     let Quantified { parameters, amplitude, sigma } = quantified(search, accepted, amplitude, deviations);
-    let scale = match accepted.place {
-        Place::Joint(j) => Some(search.context.scales[j].into()),
-        _ => None,
-    };
+    let scale = accepted.place.joint().map(|j| search.context.scales[j].into());
     // Without this term, everything else refitted.
     search.terms.remove(k);
     search.refit();
