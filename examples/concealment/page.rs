@@ -6,7 +6,7 @@ use dynid_runtime::effects::EffectKind;
 use dynid_runtime::report::significant;
 
 use crate::hide::Hidden;
-use crate::hiding::of;
+use crate::hiding;
 use crate::size::{SIZES, VISIBLE};
 use crate::{Case, Options, Outcome, Score};
 
@@ -144,7 +144,7 @@ pub fn what_can_be_seen(
                 text,
                 "| {} | {} | {} |",
                 effect.id(),
-                of(effect).map_or("", |h| h.counts),
+                hiding::of(effect).map_or("", |h| h.counts),
                 cells.join(" | ")
             );
         }
@@ -379,7 +379,7 @@ fn what_is_hidden(text: &mut String, effects: &[EffectKind]) {
     line(text, "| effect | magnitude | most |");
     line(text, "|---|---|---|");
     for &effect in effects {
-        let Some(hiding) = of(effect) else { continue };
+        let Some(hiding) = hiding::of(effect) else { continue };
         let (what, most) = (hiding.counts, hiding.most);
         let _ = writeln!(text, "| {} | {what} | {most} |", effect.id());
     }
