@@ -44,7 +44,8 @@ pub fn errors(
     let mut counted = Vec::new();
     for band in bands {
         // A Hann window of half-width T lets half of the amplitude through at 1 / (2 T).
-        let settings = Settings { fast_window: 0.5 / band, ..settings.clone() };
+        let mut settings = settings.clone();
+        settings.fast_window = 0.5 / band;
         for (rows, slowest) in [("rows where the joint moves", &slowest), ("all rows", &none)] {
             let of = |parameters: &Estimated, terms: &[EffectTerm]| {
                 predict_errors(model, parameters, terms, found.delay, test, slowest, &settings)

@@ -1,13 +1,75 @@
 //! Diagnosis: locate the mismatch between a model and a recording, name the physics that was left out, add it, and
-//! show on motion that was held back that the fit got better.
+//! show on motion that was held out that the fit got better.
 //!
-//! 1. Windows in which something outside pushed the robot are found and set aside.
-//! 2. Rows at two paces: smoothed as slow as the motion (friction, load, springs, bodies), and faster (ripple,
-//!    elasticity, backlash).
+//! 1. The band is chosen, the motions are filtered, recordings that cannot be diagnosed are refused, and a skew between
+//!    torques and positions is taken out.
+//! 2. Windows in which something outside pushed the robot are found and set aside.
 //! 3. Every effect of the catalogue, at every place and with a grid of shapes, is tried together with all standard
-//!    parameters, and judged on motion that was held back; the best that holds becomes part of the model; then again.
-//!    On a short recording, where one law hides another, two of a joint are tried together.
+//!    parameters, and judged on motion that was held out; the best that holds becomes part of the model; then again.
+//!    Rows are smoothed by two windows: as slow as the motion (friction, load, springs, bodies), and faster (ripple,
+//!    elasticity, backlash). On a short recording, where one law hides another, two of a joint are tried together.
 //! 4. What was accepted is reconsidered, pruned and explained.
+//!
+//! Every threshold is in `rules.rs`, with the reason for its value.
+//!
+//! A pendulum of two links whose second joint has a spring that the model does not know:
+//!
+//! ```
+//! use dynid_runtime::diagnosis::{Settings, Silent, StopReason, diagnose};
+//! use dynid_runtime::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot, StateSlices, torques};
+//! use dynid_runtime::recording::Trajectory;
+//!
+//! // Its table and its base parameters: of the standard parameters those that a planar arm's torques depend on.
+//! let row = |parent, d| {
+//!     let kind = JointKind::Revolute;
+//!     Frame { parent, kind, gamma: 0.0, b: 0.0, alpha: 0.0, d, theta: 0.0, r: 0.0 }
+//! };
+//! let frames = vec![row(None, 0.0), row(Some(0), 0.5)];
+//! let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
+//! let mut robot = Robot::with_standard_as_base("pendulum", [0.0, -9.81, 0.0], frames, drive, Limits::default());
+//! let known = [
+//!     ("ZZ1", 0.9), ("MX1", 2.0), ("MY1", 0.1), ("Fv1", 1.0), ("Fc1", 0.8), ("off1", 0.1),
+//!     ("ZZ2", 0.3), ("MX2", 0.8), ("MY2", 0.05), ("Fv2", 0.6), ("Fc2", 0.5), ("off2", -0.2),
+//! ];
+//! let value = |name: &str| known.iter().find(|k| k.0 == name).map(|k| k.1);
+//! robot.base = robot.base.iter().filter(|b| value(&b.name).is_some()).cloned().collect();
+//! let chi: Vec<f64> = robot.base.iter().filter_map(|b| value(&b.name)).collect();
+//! let model = RecursiveModel::new(robot)?;
+//!
+//! // Three motions of ten seconds, their torques with the spring of 4 N.m/rad and a little noise.
+//! let mut noise = 1_u32;
+//! let mut recorded = |name: &str, phase: f64| {
+//!     let time: Vec<f64> = (0..2000).map(|t| f64::from(t) / 200.0).collect();
+//!     let series = |j: f64, order: i32| -> Vec<f64> {
+//!         let wave = |t: f64, w: f64, p: f64| {
+//!             let quarters = f64::from(order) * std::f64::consts::FRAC_PI_2;
+//!             w.powi(order) * (w * t + p + quarters).sin()
+//!         };
+//!         let at = |t: f64| {
+//!             0.9 * wave(t, 1.3 + 0.4 * j, phase * (1.0 + j)) + 0.4 * wave(t, 3.1 - 0.5 * j, 2.0 * phase)
+//!         };
+//!         time.iter().map(|&t| at(t)).collect()
+//!     };
+//!     let [q, dq, ddq] = [0, 1, 2].map(|order| vec![series(0.0, order), series(1.0, order)]);
+//!     let mut torque = torques(&model, &chi, StateSlices::new(&q, &dq, &ddq).states());
+//!     torque[1].iter_mut().zip(&q[1]).for_each(|(torque, q)| *torque += 4.0 * q);
+//!     for x in torque.iter_mut().flatten() {
+//!         noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+//!         *x += 0.1 * (f64::from(noise) / f64::from(u32::MAX) - 0.5);
+//!     }
+//!     Trajectory { name: name.into(), time, position: q, velocity: None, torque, fixed: vec![] }
+//! };
+//! let recording = [recorded("one", 0.3), recorded("two", 1.1), recorded("three", 2.4)];
+//!
+//! let found = diagnose(&model, &recording, &[], &Settings::default(), &Silent)?;
+//! assert_eq!(found.findings.len(), 1, "{:?}", found.verdict);
+//! let spring = &found.findings[0];
+//! assert_eq!((spring.effect.as_str(), spring.joints.as_slice()), ("spring", [2].as_slice()));
+//! assert!((spring.parameters["k"].value - 4.0).abs() < 0.1);
+//! assert!(found.held_out.after < 0.2 * found.held_out.before);
+//! assert_eq!(found.search.stop, StopReason::NoneAccepted);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![allow(
     clippy::needless_range_loop,
@@ -16,44 +78,43 @@
 
 mod candidates;
 mod contact;
+mod error;
 mod explanation;
 mod judging;
 mod outcome;
 mod predict;
+mod preparation;
 mod rows;
+mod rules;
 mod search;
 mod settings;
 
+pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
-    ParameterShift, ParameterValue, TorqueSeries, Unexplained,
+    ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, StopReason, TorqueSeries, Unexplained,
 };
 pub use predict::{predict_errors, term_torques};
-pub use settings::{DiagnosisError, Progress, Settings, Silent};
+pub use preparation::slowest_speeds;
+pub use settings::{Progress, Settings, Silent};
 
-use crate::effects::{EffectKind, EffectTerm, Place};
+use crate::effects::EffectKind;
 use crate::model::Model;
 use crate::recording::Trajectory;
-use contact::search as contact_search;
-use explanation::explain;
-use rows::context::{Context, scales, top_speeds};
-use rows::design::{Design, Plan};
-use rows::fit;
-use rows::signals::{Signals, directions};
+use contact::search::{self as contact_search, Contacts};
+use explanation::explain::{Ended, explain};
+use explanation::standard_model::StandardModelFit;
+use preparation::Prepared;
+use rows::fit::Fit;
+use search::extended_model::ExtendedModel;
 use search::state::Search;
-
-/// Stretches that few motions are split into, all together.
-const STRETCHES: usize = 8;
-/// From this many motions on, whole motions are held back.
-const ENOUGH_MOTIONS: usize = 3;
-/// A recording shorter than this has no rows to spare, s: slow effects are smoothed no more than fast ones.
-const SHORT: f64 = 12.0;
-/// A delay is named from this many samples and seconds; a smaller one is part of sampling and silently taken out.
-const NAMED_DELAY: (f64, f64) = (0.75, 1e-3);
 
 /// Diagnoses a recording; `baseline` are motions of the same robot before it changed, empty where there are none.
 ///
-/// With a baseline only what changed is looked for. Errors where the data cannot support an answer.
+/// With a baseline only what changed is looked for.
+///
+/// # Errors
+/// [`DiagnosisError`] where the data cannot support an answer, or a setting cannot be.
 pub fn diagnose(
     model: &dyn Model,
     trajectories: &[Trajectory],
@@ -61,11 +122,15 @@ pub fn diagnose(
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
-    examine(model, trajectories, baseline, None, settings, progress)
+    let recordings = Recordings { trajectories, baseline };
+    run(model, recordings, None, settings, progress)
 }
 
 /// Fits known effects, on a joint (0-based) where one is given, instead of looking for any: their shapes and
 /// amplitudes come from the recording. What [`diagnose`] would ideally find.
+///
+/// # Errors
+/// As [`diagnose`].
 pub fn fit_known(
     model: &dyn Model,
     trajectories: &[Trajectory],
@@ -73,191 +138,92 @@ pub fn fit_known(
     known: &[(EffectKind, Option<usize>)],
     settings: &Settings,
 ) -> Result<Diagnosis, DiagnosisError> {
-    examine(model, trajectories, baseline, Some(known), settings, &Silent)
+    let recordings = Recordings { trajectories, baseline };
+    run(model, recordings, Some(known), settings, &Silent)
 }
 
-fn examine(
+/// What is diagnosed, and the same robot before it changed.
+struct Recordings<'a> {
+    trajectories: &'a [Trajectory],
+    baseline: &'a [Trajectory],
+}
+
+fn run(
     model: &dyn Model,
-    trajectories: &[Trajectory],
-    baseline: &[Trajectory],
+    recordings: Recordings<'_>,
     known: Option<&[(EffectKind, Option<usize>)]>,
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
-    if trajectories.is_empty() {
-        return Err(DiagnosisError::NoMotion);
-    }
+    // 1. Band, motions, checks, skew.
     progress.at(0.0, "signals");
-    let n = model.robot().joints();
-    let forms = directions(model.robot());
-    let change = !baseline.is_empty();
-    let mut delay = 0.0;
-    let (cutoff, settings) = settings::fitted_to(settings, trajectories)?;
-    let settings = &settings;
-    let mut signals = prepare_all(baseline, trajectories, delay, cutoff)?;
-    let slowest: Vec<f64> = top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
-    let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
-    let short = duration < SHORT;
-    let slow_window = if short { settings.fast_window } else { settings.slow_window };
-    let motions = trajectories.len();
-    let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
-    let nothing = vec![Vec::new(); signals.len()];
-    // The narrower window needs less margin to a standstill.
-    let fast_limits: Vec<f64> = slowest.iter().map(|v| v / 1.5).collect();
-    let plan = |half: f64| Plan {
-        half,
-        slowest: if half < settings.slow_window { &fast_limits } else { &slowest },
-        directions: &forms,
-        chunks,
-        excluded: &nothing,
-    };
-    let open = Design::new(model, &signals, &plan(settings.slow_window));
-    check(model, &open)?;
-    let mut sigma = vec![1.0; n];
-    let first = fit::fit_weighted(&open, &mut sigma, |_| true);
-    let chi: Vec<f64> = first.chi.iter().take(open.parameters).copied().collect();
-    check_fit(model, &open, &first, &sigma)?;
+    let prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
+    let change = !recordings.baseline.is_empty();
 
-    // A skew of more than a sample is taken out of the signals themselves.
-    for _ in 0..2 {
-        let found = {
-            let context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
-            let design = Design::new(model, &signals, &plan(settings.slow_window));
-            explain::delay_of(&context, design)
-        };
-        let rate = signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
-        if found.abs() * rate < 0.75 {
-            break;
-        }
-        delay += found;
-        signals = prepare_all(baseline, trajectories, delay, cutoff)?;
-    }
+    // 2. Windows in which something outside pushed the robot.
     progress.at(0.05, "contacts");
-    let mut context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
-    let aligned = Design::new(model, &signals, &plan(settings.slow_window));
-    let mut contacts = contact_search::find(&context, &aligned, &signals);
-    let diagnosis = loop {
-        let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
-        let slow = Design::new(model, &signals, &Plan { excluded, ..plan(slow_window) });
-        let fast = if short {
-            slow.clone()
-        } else {
-            Design::new(model, &signals, &Plan { excluded, ..plan(settings.fast_window) })
-        };
-        if contacts.is_some() {
-            let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);
-            let chi: Vec<f64> = fit.chi.iter().take(slow.parameters).copied().collect();
-            context.update(chi);
-        }
+    let signals = &prepared.motions.signals;
+    let mut contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
+
+    loop {
+        // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
-        let mut search = Search::new(&mut context, slow, fast, slowest.clone(), change, settings, progress)?;
-        let bare = explain::Bare::new(&search, &aligned);
-        match known {
-            Some(known) => search.force(known),
-            None => search.run(settings, progress),
-        }
+        let (mut search, standard, sampling) = begin(model, &prepared, contacts.as_ref(), change, progress)?;
+        let settings = prepared.motions.settings();
+        let report = match known {
+            Some(known) => search.force(known)?,
+            None => search.run(settings, progress)?,
+        };
+
+        // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
         if let Some(found) = &contacts
-            && !contact_search::remain(
-                found,
-                &aligned,
-                &search.residual_on(&aligned),
-                &search.slow.sigma,
-                &signals,
-            )
+            && !remain(found, &prepared, &search)
         {
-            // What looked like pushes from outside is explained by what is now in the model.
             contacts = None;
-            context.update(chi.clone());
             continue;
         }
+
+        // 5. Numbers, errors, curves, sentences.
         progress.at(0.92, "explanations");
-        break explain::explain(model, search, &bare, contacts.as_ref(), delay, settings)?;
-    };
-    progress.at(1.0, "done");
-    Ok(diagnosis)
-}
-
-/// Speeds below which a joint counts as standing still in a recording, rad/s or m/s.
-pub fn slowest_speeds(
-    model: &dyn Model,
-    trajectories: &[Trajectory],
-    settings: &Settings,
-) -> Result<Vec<f64>, DiagnosisError> {
-    let (cutoff, settings) = settings::fitted_to(settings, trajectories)?;
-    let signals = prepare_all(&[], trajectories, 0.0, cutoff)?;
-    Ok(top_speeds(&signals, model.robot().joints()).iter().map(|v| settings.standstill * v).collect())
-}
-
-/// Baseline first, then the recording that is diagnosed.
-fn prepare_all(
-    baseline: &[Trajectory],
-    trajectories: &[Trajectory],
-    delay: f64,
-    cutoff: f64,
-) -> Result<Vec<Signals>, DiagnosisError> {
-    let old = baseline.iter().map(|t| Signals::new(t, false, delay, cutoff));
-    old.chain(trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff))).collect()
-}
-
-/// Refuses motions that leave a joint without rows.
-fn check(model: &dyn Model, design: &Design) -> Result<(), DiagnosisError> {
-    let robot = model.robot();
-    for j in 0..design.joints {
-        let rows = design.count(j, |g| design.segments[g].fresh);
-        let needed = 40;
-        if rows < needed {
-            return Err(DiagnosisError::TooLittleMotion { joint: joint_number(robot, j), rows, needed });
-        }
+        let ended = Ended {
+            standard: &standard,
+            contacts: contacts.as_ref(),
+            report,
+            delay: prepared.delay,
+            sampling,
+        };
+        let diagnosis = explain(&search, ended, settings)?;
+        progress.at(1.0, "done");
+        return Ok(diagnosis);
     }
-    Ok(())
 }
 
-/// Refuses motions that do not determine the standard model, and recordings that it has nothing to do with.
-fn check_fit(
-    model: &dyn Model,
-    design: &Design,
-    fit: &fit::Fit,
-    sigma: &[f64],
-) -> Result<(), DiagnosisError> {
-    let free: Vec<usize> = fit.undetermined(1e-4);
-    let parameters = design.parameters;
-    if free.len() * 4 > parameters {
-        let names: Vec<String> = free
-            .iter()
-            .filter(|&&k| k < parameters)
-            .map(|&k| model.robot().base[k].name.to_string())
-            .collect();
-        return Err(DiagnosisError::NotExciting { free: free.len(), parameters, names: names.join(", ") });
+/// The standard model on the rows outside of contacts, and all candidates.
+fn begin<'a>(
+    model: &'a dyn Model,
+    prepared: &'a Prepared,
+    contacts: Option<&Contacts>,
+    change: bool,
+    progress: &dyn Progress,
+) -> Result<(Search<'a>, StandardModelFit, Sampling), DiagnosisError> {
+    let motions = &prepared.motions;
+    let rows = motions.rows(model, contacts.map(|c| c.windows.as_slice()));
+    let sampling = motions.sampling(&rows);
+    let mut context = prepared.context(model)?;
+    if contacts.is_some() {
+        let fit = Fit::weighted(&rows.slow, &prepared.sigma)?;
+        context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
     }
-    let mut left = 0.0;
-    let mut all = 0.0;
-    for (j, s) in sigma.iter().enumerate() {
-        let rows = design.of_joint(j);
-        left += s * s * rows.len() as f64;
-        all += design.y[rows].iter().map(|y| y * y).sum::<f64>();
-    }
-    let explained = 100.0 * (1.0 - left / all.max(1e-300));
-    if explained < 40.0 {
-        return Err(DiagnosisError::AnotherRobot { explained });
-    }
-    Ok(())
+    let extended = ExtendedModel::new(context, rows.slow, rows.fast, change)?;
+    let search = Search::new(extended, &motions.slowest, motions.settings(), progress);
+    let standard = StandardModelFit::new(&search.model, &prepared.aligned)?;
+    Ok((search, standard, sampling))
 }
 
-/// Number j of the frame of a joint.
-pub(crate) fn joint_number(robot: &crate::model::Robot, joint: usize) -> usize {
-    1 + robot.joint_of_frame().iter().position(|f| *f == Some(joint)).unwrap_or(joint)
-}
-
-/// A term with unit amplitudes: what an effect at a place with a shape is.
-fn unit_term(effect: EffectKind, place: Place, shape: Vec<f64>) -> EffectTerm {
-    EffectTerm {
-        effect,
-        place,
-        joints: Vec::new(),
-        shape,
-        amplitude: Vec::new(),
-        sigma: Vec::new(),
-        scale: None,
-        wrenches: Vec::new(),
-    }
+/// Whether contacts still stand out of what the model with its effects leaves.
+fn remain(contacts: &Contacts, prepared: &Prepared, search: &Search<'_>) -> bool {
+    let aligned = &prepared.aligned;
+    let residual = search.model.residual_on(aligned);
+    let sigma = &search.model.slow.sigma;
+    contact_search::remain(contacts, aligned, &residual, sigma, &prepared.motions.signals)
 }

@@ -1,9 +1,10 @@
 //! Accepted effects as part of a model: their torques on any motion, and the errors of a model with them.
 
-use super::DiagnosisError;
+use super::error::DiagnosisError;
 use super::outcome::{Errors, Estimated};
 use super::rows::context::{Context, scales};
-use super::rows::design::{Design, Plan};
+use super::rows::design::Design;
+use super::rows::selection::RowSelection;
 use super::rows::signals::{ModelTorques, Signals, directions};
 use super::settings::Settings;
 use crate::effects::{EffectTerm, Place};
@@ -78,9 +79,14 @@ pub fn predict_errors(
         trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff)).collect::<Result<_, _>>()?;
     let forms = directions(model.robot());
     let nothing = vec![Vec::new(); signals.len()];
-    let plan =
-        Plan { half: settings.fast_window, slowest, directions: &forms, chunks: 1, excluded: &nothing };
-    let design = Design::new(model, &signals, &plan);
+    let selection = RowSelection {
+        half: settings.fast_window,
+        slowest,
+        directions: &forms,
+        segments: 1,
+        excluded: &nothing,
+    };
+    let design = Design::new(model, &signals, &selection);
     let added = torques_on(model, &parameters.chi, terms, &signals)?;
     let n = design.joints;
     let (mut left, mut whole) = (vec![0.0; n], vec![0.0; n]);
@@ -97,14 +103,5 @@ pub fn predict_errors(
             }
         }
     }
-    Ok(errors(&left, &whole))
-}
-
-/// Relative errors from squares per joint.
-pub(super) fn errors(left: &[f64], whole: &[f64]) -> Errors {
-    let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
-    Errors {
-        relative_error: ratio(left.iter().sum(), whole.iter().sum()),
-        per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
-    }
+    Ok(Errors::of_squares(&left, &whole))
 }

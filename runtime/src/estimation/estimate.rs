@@ -6,7 +6,7 @@ use super::observe::{Equations, Observation};
 use super::outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning};
 use super::robust::reweight;
 use super::solve::{Solution, back_substitute};
-use super::total::total_least_squares;
+use super::total::{NoGenericSolution, total_least_squares};
 use super::weights::{Weights, equal, from_own_fits, iterate, residual_norm, solve_active, stack};
 
 /// How parameters are estimated from an observation.
@@ -70,11 +70,11 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
     if settings.solver == Solver::Total {
         let exact: Vec<bool> = active.iter().map(|&l| observation.exact[l]).collect();
         match total_least_squares(&stacked, &exact) {
-            Some(chi) => {
+            Ok(chi) => {
                 solution.residual_norm = stacked.residual_norm(&chi);
                 solution.chi = chi;
             }
-            None => warnings.push(Warning::NoTotalSolution),
+            Err(NoGenericSolution) => warnings.push(Warning::NoTotalSolution),
         }
     }
 

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why something cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// A slice of the wrong length.
     #[error("{expected} {what} expected, {found} given")]

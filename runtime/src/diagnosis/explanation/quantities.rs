@@ -1,31 +1,36 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
 use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::search::state::{Accepted, Search};
+use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::term::Accepted;
 use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, Parameter};
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
 /// derivative of the columns (variable projection, Golub and Pereyra 1973).
+///
+/// # Errors
+/// [`SingularDesign`] where there is no fit with these derivatives.
 pub(in crate::diagnosis) fn uncertainty(
-    search: &Search<'_, '_>,
-    terms: &[Accepted],
+    model: &ExtendedModel<'_>,
     k: usize,
     amplitude: &[f64],
-) -> (Vec<f64>, Vec<f64>) {
-    let term = &terms[k];
-    let side = search.side(term.effect.properties().window);
+) -> Result<(Vec<f64>, Vec<f64>), SingularDesign> {
+    let term = &model.terms[k];
+    let side = model.regression(term.effect.properties().window);
     let mut design = side.design.clone();
     let dense = |shape: &[f64]| {
-        dense_columns(search.context, &side.design, term.effect, term.place, shape, search.change)
+        dense_columns(&model.context, &side.design, term.effect, term.place, shape, model.change)
     };
     let start = design.columns.len();
     let mut varied = Vec::new();
     // The shape of a sensitivity is its amplitude once more.
     let own_shape = !term.effect.form().shape_is_amplitude();
     for (i, &value) in term.shape.iter().enumerate().filter(|_| own_shape) {
-        let step = 0.02 * value.abs().max(1e-6);
+        let step = SHAPE_STEP * value.abs().max(1e-6);
         let moved = |s: f64| {
             let mut shape = term.shape.clone();
             shape[i] += s * step;
@@ -45,15 +50,15 @@ pub(in crate::diagnosis) fn uncertainty(
         }
     }
     design.refresh_from(start);
-    let fit = Fit::new(&design, &side.sigma, |_| true);
+    let fit = Fit::whole(&design, &side.sigma)?;
     let variances = fit.variances();
     let sd = |c: usize| variances[c].max(0.0).sqrt();
     let amplitudes = side.term_columns[k].clone().map(sd).collect();
     let mut shapes = vec![0.0; term.shape.len()];
     for (at, &i) in varied.iter().enumerate() {
-        shapes[i] = sd(start + at).min(10.0 * term.shape[i].abs());
+        shapes[i] = sd(start + at).min(LARGEST_SHAPE_SIGMA * term.shape[i].abs());
     }
-    (amplitudes, shapes)
+    Ok((amplitudes, shapes))
 }
 
 /// What a finding and a model keep of an accepted effect.
@@ -69,12 +74,12 @@ pub(in crate::diagnosis) struct Quantified {
 /// The quantities a person knows, with the uncertainty of shapes propagated to first order; from the amplitudes and
 /// the standard deviations of amplitudes and shape.
 pub(in crate::diagnosis) fn quantified(
-    search: &Search<'_, '_>,
+    model: &ExtendedModel<'_>,
     term: &Accepted,
     amplitude: Vec<f64>,
     (sigma, shape_sigma): (Vec<f64>, Vec<f64>),
 ) -> Quantified {
-    let context = &*search.context;
+    let context = &model.context;
     let parameters = match term.effect.form() {
         Form::Joint(law) => term.place.joint().map(|j| {
             let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, &amplitude, &sigma);
@@ -133,7 +138,7 @@ fn propagate(of: impl Fn(&[f64]) -> Vec<Parameter>, shape: &[f64], shape_sigma: 
         if s == 0.0 {
             continue;
         }
-        let step = 1e-4 * shape[i].abs().max(1e-9);
+        let step = QUANTITY_STEP * shape[i].abs().max(1e-9);
         let mut moved = shape.to_vec();
         moved[i] += step;
         for (p, q) in list.iter_mut().zip(of(&moved)) {

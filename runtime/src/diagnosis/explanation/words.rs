@@ -1,6 +1,7 @@
 //! Sentences for a person.
 
 use crate::diagnosis::outcome::{Diagnosis, Finding};
+use crate::diagnosis::rules;
 use crate::effects::{EffectKind, Parameter, Quantities};
 use crate::model::Robot;
 use crate::report::falls_or_rises;
@@ -86,14 +87,14 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             .collect();
         lines.push(format!("The standard model leaves out: {}.", names.join("; ")));
         lines.push(format!(
-            "With it, the error on motion that was held back ({}) {} from {:.2} % to {:.2} %.",
+            "With it, the error on motion that was held out ({}) {} from {:.2} % to {:.2} %.",
             d.held_out.how,
             falls_or_rises(d.held_out.before, d.held_out.after),
             100.0 * d.held_out.before,
             100.0 * d.held_out.after
         ));
     }
-    if d.unexplained.share > 0.3 {
+    if d.unexplained.share > rules::UNEXPLAINED {
         lines.push(format!(
             "{:.0} % of what remains is not noise: something is left that nothing in the catalogue explains.",
             100.0 * d.unexplained.share

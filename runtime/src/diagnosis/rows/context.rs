@@ -1,7 +1,8 @@
 //! Everything that columns are made from: the model, the motions, and the current standard parameters.
 
-use crate::diagnosis::DiagnosisError;
-use crate::diagnosis::rows::signals::{ModelTorques, Signals, joint_kinds};
+use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::rows::signals::{ModelTorques, Signals};
+use crate::diagnosis::rules::{DRIVING_BAND, LEAST_LINK_INERTIA, RATE_PER_CUTOFF, TOP_SPEED_PERCENT};
 use crate::effects::{
     At, CoupledRotor, Direction, EffectKind, Form, JointLaw, Place, Scale, Sensitivity, Transmission,
     body_columns, deflection, derivable, derivative,
@@ -21,9 +22,6 @@ struct Links {
     /// Mass matrix, `[i * n + j][t]`.
     mass: Vec<Vec<f64>>,
 }
-
-/// Cut-off of the motion that drives compliant links, Hz.
-const DRIVING_BAND: f64 = 15.0;
 
 pub(in crate::diagnosis) struct Context<'a> {
     pub model: &'a dyn Model,
@@ -202,7 +200,8 @@ impl<'a> Context<'a> {
         let t = self.transmission(j, shape);
         let links = self.links(signal);
         let own = &links.mass[j * n + j];
-        let inertia: Vec<f64> = own.iter().map(|m| (m - t.rotor).max(1e-3 * m.abs()).max(1e-9)).collect();
+        let inertia: Vec<f64> =
+            own.iter().map(|m| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9)).collect();
         let load: Vec<f64> = links.load[j].iter().zip(&links.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
         let mut transmitted_torque = vec![0.0; load.len()];
         deflection(&load, &inertia, self.signals[signal].rate, &t, &mut transmitted_torque);
@@ -229,7 +228,7 @@ impl<'a> Context<'a> {
         self.links[signal].get_or_init(|| {
             let s = &self.signals[signal];
             let n = s.q.len();
-            let filter = Butterworth::low_pass(4, DRIVING_BAND.min(s.rate / 5.0), s.rate).ok();
+            let filter = Butterworth::low_pass(4, DRIVING_BAND.min(s.rate / RATE_PER_CUTOFF), s.rate).ok();
             let q: Vec<Vec<f64>> =
                 s.q.iter()
                     .map(|x| filter.as_ref().and_then(|f| f.zero_phase(x).ok()).unwrap_or_else(|| x.clone()))
@@ -267,7 +266,7 @@ impl<'a> Context<'a> {
 pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec<Scale> {
     let robot = model.robot();
     let n = robot.joints();
-    let kinds = joint_kinds(robot);
+    let kinds = robot.joint_kinds();
     let speeds = top_speeds(signals, n);
     let duration = signals.iter().map(|s| s.time(s.len().max(1) - 1)).fold(0.0, f64::max);
     let mut torque = vec![0.0_f64; n];
@@ -302,7 +301,7 @@ pub(in crate::diagnosis) fn top_speeds(signals: &[Signals], joints: usize) -> Ve
                 .map(|s| {
                     let mut v: Vec<f64> = s.dq[j].iter().map(|x| x.abs()).collect();
                     v.sort_by(f64::total_cmp);
-                    v.get(v.len() * 98 / 100).copied().unwrap_or(0.0)
+                    v.get(v.len() * TOP_SPEED_PERCENT / 100).copied().unwrap_or(0.0)
                 })
                 .fold(0.0, f64::max)
         })

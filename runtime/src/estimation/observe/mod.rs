@@ -30,6 +30,10 @@ use prepared::Prepared;
 /// linear-phase filter, leaves out the rows that say nothing, and reduces the rest to orthogonal factors.
 ///
 /// Neither W nor any of its columns is ever held at the full rate.
+///
+/// # Errors
+/// Motions of another robot or with channels of unequal length; more than 32 joints; a band or rate that is not
+/// positive; [`ObserveError::NoRows`] where no row is left, with the reason.
 pub fn observe(
     model: &dyn Model,
     motions: &[Motion],
