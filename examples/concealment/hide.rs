@@ -1,7 +1,7 @@
 //! A case: what is drawn for it, and its recordings.
 
 use dynid_runtime::effects::EffectKind;
-use dynid_runtime::model::{JointIndex, JointNumber, Model};
+use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
 use serde::{Deserialize, Serialize};
@@ -18,11 +18,10 @@ use crate::{Case, Failure};
 /// An effect as it was hidden.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Hidden {
-    /// Which.
+    /// Which, and 0-based joint.
     pub effect: EffectKind,
     /// Joint that it must be named on; `None` for the whole robot's.
-    #[serde(rename = "joint_number")]
-    pub joint: Option<JointNumber>,
+    pub joint: Option<usize>,
     /// Its magnitude, see [`crate::hiding::Hiding::counts`].
     pub magnitude: f64,
     /// Its torque relative to the noise, on the joint where it shows most.
@@ -78,11 +77,10 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
             secret.most_torque = most_torque(&recorded(&plain(model)?, &motions, &[], noise)?, joint);
         }
         let (size, seen) = sized(model, &secret, VISIBLE[case.size], &motions[..1], noise)?;
-        // A payload is the robot's: it has one place.
-        let named_on = secret.joint.filter(|_| effect != EffectKind::Payload);
         hidden.push(Hidden {
             effect,
-            joint: named_on.map(|joint| model.robot().joint_number(JointIndex(joint))),
+            // A payload is the robot's: it has one place.
+            joint: secret.joint.filter(|_| effect != EffectKind::Payload),
             magnitude: size,
             visible: seen,
             numbers: hide(&mut plain(model)?, model, &secret, size)?,

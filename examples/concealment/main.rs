@@ -298,8 +298,7 @@ fn score(case: &Case) -> Result<Score, Failure> {
     let model = models::find(&case.robot).ok_or("no such robot")?;
     let whole = Instant::now();
     let recordings = recordings(model, case, false)?;
-    let mut settings = Settings::default();
-    settings.threads = 1;
+    let settings = Settings { threads: 1, ..Settings::default() };
     let start = Instant::now();
     let found = diagnose(model, &recordings.motions, &recordings.baseline, &settings, &Silent);
     let mut score = Score { seconds: start.elapsed().as_secs_f64(), ..Score::default() };
@@ -316,7 +315,7 @@ fn score(case: &Case) -> Result<Score, Failure> {
 
 fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
     let here = |hidden: &Hidden, joints: &[usize]| {
-        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&joint.0))
+        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&(joint + 1)))
     };
     for finding in &found.findings {
         if !score.found.contains(&finding.effect) {
