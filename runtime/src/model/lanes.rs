@@ -210,7 +210,7 @@ mod tests {
             let (s, c) = Lanes::splat(x).sin_cos();
             worst = worst.max((s.to_array()[0] - x.sin()).abs()).max((c.to_array()[3] - x.cos()).abs());
         }
-        assert!(worst < 2.3e-16, "{worst}");
+        assert!(worst < 2.0 * f64::EPSILON, "{worst}");
     }
 
     #[test]
