@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use dynid_runtime::model::{JointKind, Robot};
+use dynid_runtime::model::{JointIndex, JointKind, Robot};
 use dynid_runtime::report::{Panel, Sheet};
 use dynid_runtime::simulation::excitation::{MotionKind, Profile};
 use dynid_runtime::simulation::{Reference, SampledReference, from_csv, sampled};
@@ -93,7 +93,7 @@ pub fn to_svg(motion: &dyn Reference, robot: &Robot, title: &str) -> String {
                 .enumerate()
                 .map(|(j, values)| {
                     let points = values.iter().enumerate().map(|(k, &v)| (k as f64 / rate, v)).collect();
-                    (format!("joint {}", j + 1), points)
+                    (format!("joint {}", robot.joint_number(JointIndex(j))), points)
                 })
                 .collect(),
         })

@@ -40,6 +40,12 @@ fn revealing(finding: &Finding) -> Option<Panel> {
     })
 }
 
+/// The number of a joint (0-based) in the table.
+pub fn joint_number(compared: &Evaluation, joint: usize) -> String {
+    let number = compared.left_out.iter().find(|rows| rows.equation == joint).and_then(|rows| rows.joint);
+    number.map_or_else(String::new, |number| number.to_string())
+}
+
 /// What both models leave of the torques of the first test motion, joint by joint.
 pub fn held_out(robot: &str, compared: &Evaluation) -> String {
     let first: Vec<&JointRows> = compared.rows.iter().filter(|rows| rows.trajectory == 0).collect();
@@ -53,7 +59,7 @@ pub fn held_out(robot: &str, compared: &Evaluation) -> String {
             let lines =
                 [("standard model", rows.predicted.first()), ("with what was found", rows.predicted.last())];
             Panel {
-                title: format!("joint {}, N.m", rows.joint + 1),
+                title: format!("joint {}, N.m", joint_number(compared, rows.joint)),
                 lines: lines
                     .into_iter()
                     .filter_map(|(name, model)| Some((name.to_owned(), left(model?))))

@@ -7,6 +7,8 @@ use dynid_runtime::effects::EffectKind;
 use dynid_runtime::prediction::{Evaluation, above_noise};
 use dynid_runtime::report::{percent, significant};
 
+use crate::figures::joint_number;
+
 /// A recording and how it is divided.
 pub struct Story {
     /// Folder, and robot.
@@ -284,7 +286,13 @@ fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Optio
     for (j, (before, after)) in first.errors.per_joint.iter().zip(&last.errors.per_joint).enumerate() {
         let noise = compared.noise.as_ref().and_then(|n| n.per_joint.get(j));
         let noise = noise.map_or_else(|| "-".to_owned(), |n| percent(*n));
-        let _ = writeln!(text, "| {} | {} | {} | {noise} |", j + 1, percent(*before), percent(*after));
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {noise} |",
+            joint_number(compared, j),
+            percent(*before),
+            percent(*after)
+        );
     }
     if let Some(file) = picture {
         let _ = writeln!(text, "\n![what is left of the torques]({file})");

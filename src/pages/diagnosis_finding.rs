@@ -1,7 +1,7 @@
 //! One finding of a diagnosis on its page.
 
 use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueSeries};
-use dynid_runtime::effects::{EffectKind, Words};
+use dynid_runtime::effects::{Abscissa, EffectKind, Words};
 use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
 use super::diagnosis::confidence_words;
@@ -9,15 +9,19 @@ use crate::words::joint_words;
 
 /// A finding: what it is, where it was seen, what it changed.
 pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
-    let words = EffectKind::from_id(&finding.effect).map(EffectKind::words);
+    let effect = EffectKind::from_id(&finding.effect);
+    let words = effect.map(EffectKind::words);
     let title = words.map_or(finding.effect.as_str(), |w| w.title);
     page.heading(&format!("{title} on {}", joint_words(&finding.joints)));
     page.paragraph(&finding.sentence);
+    if let Some(formula) = finding.formula() {
+        page.paragraph(&format!("Its law: {formula}."));
+    }
     if let Some(curve) = &finding.curve {
         page.plot(&revealing(curve));
     }
     for spectrum in diagnosis.spectra.iter().filter(|s| finding.joints.contains(&s.joint)) {
-        if finding.effect == EffectKind::TorqueRipple.id() {
+        if effect.is_some_and(|e| e.properties().abscissa == Abscissa::WaveAngle) {
             page.plot(&orders(spectrum, unit(finding)));
         }
     }

@@ -106,7 +106,7 @@ pub struct EssentialParameters {
 pub struct EquationRows {
     /// Name of the trajectory.
     pub trajectory: String,
-    /// Joint, counted from 1; 0 for the power model.
+    /// Number of the joint in the table; 0 for the power model.
     pub joint: usize,
     /// Equations used.
     pub used: usize,
@@ -247,8 +247,7 @@ pub struct EvaluatedRows {
 impl EvaluatedRows {
     /// From the observation that an estimate was made from; `errors` are those of the torques.
     pub fn observed(observation: &Observation, band: f64, estimate: &Estimate, errors: Errors) -> Self {
-        let power = estimate.method.is_power();
-        let rows = |l| equation_rows(l, &observation.trajectories, &estimate.errors, power);
+        let rows = |l| equation_rows(l, &observation.trajectories, &estimate.errors);
         Self {
             samples: observation.samples,
             rows_left_out: None,
@@ -261,7 +260,7 @@ impl EvaluatedRows {
 
     /// From an evaluation, for the model at `place` in it.
     pub fn evaluated(evaluation: &Evaluation, place: usize) -> Option<Self> {
-        let rows = |l| equation_rows(l, &evaluation.trajectories, &[], false);
+        let rows = |l| equation_rows(l, &evaluation.trajectories, &[]);
         Some(Self {
             samples: evaluation.samples,
             rows_left_out: None,
@@ -273,16 +272,11 @@ impl EvaluatedRows {
     }
 }
 
-fn equation_rows(
-    rows: &LeftOut,
-    trajectories: &[String],
-    errors: &[EquationError],
-    power: bool,
-) -> EquationRows {
+fn equation_rows(rows: &LeftOut, trajectories: &[String], errors: &[EquationError]) -> EquationRows {
     let error = errors.iter().find(|e| e.trajectory == rows.trajectory && e.equation == rows.equation);
     EquationRows {
         trajectory: trajectories.get(rows.trajectory).cloned().unwrap_or_default(),
-        joint: if power { 0 } else { rows.equation + 1 },
+        joint: rows.joint.map_or(0, |number| number.0),
         used: rows.used,
         standstill: rows.standstill,
         fixed: rows.fixed,

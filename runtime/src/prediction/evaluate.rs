@@ -90,7 +90,7 @@ pub fn evaluate(
     excluded: &[(&str, [f64; 2])],
 ) -> Result<Evaluation, PredictionError> {
     let joints = model.robot().joints();
-    let mut plans = row_plans(joints, motions, settings)?;
+    let mut plans = row_plans(model.robot(), motions, settings)?;
     let mut left_out_by_window = 0;
     for (plan, motion) in plans.iter_mut().zip(motions) {
         left_out_by_window += exclude(plan, motion, excluded);

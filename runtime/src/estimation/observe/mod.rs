@@ -24,7 +24,7 @@ pub use select::LeftOut;
 pub use settings::{Equations, ExtraColumns, ObserveSettings, Progress};
 pub use standstill::Standstill;
 
-use crate::model::{Model, ParameterKind};
+use crate::model::{JointIndex, Model, ParameterKind};
 use crate::signal::Motion;
 use prepared::Prepared;
 
@@ -32,6 +32,10 @@ use prepared::Prepared;
 /// linear-phase filter, leaves out the rows that say nothing, and reduces the rest to orthogonal factors.
 ///
 /// Neither W nor any of its columns is ever held at the full rate.
+///
+/// # Errors
+/// Motions of another robot or with channels of unequal length; more than 32 joints; a band or rate that is not
+/// positive; [`ObserveError::NoRows`] where no row is left, with the reason.
 pub fn observe(
     model: &dyn Model,
     motions: &[Motion],
@@ -77,6 +81,11 @@ pub fn observe(
     };
     let mut exact: Vec<bool> = robot.base.iter().map(|p| exact(robot.standard[p.standard].kind)).collect();
     exact.resize(unknowns.len(), false);
+    let joint = |rows: &LeftOut| match equations {
+        Equations::Torque => Some(robot.joint_number(JointIndex(rows.equation))),
+        Equations::Power { .. } => None,
+    };
+    let numbered = |s: &select::Selection| LeftOut { joint: joint(&s.left_out), ..s.left_out.clone() };
     Ok(Observation {
         equations,
         exact,
@@ -87,7 +96,7 @@ pub fn observe(
         bands: prepared.iter().map(|p| row_plan::band_of(&p.decimator, p.motion.rate)).collect(),
         groups,
         blocks,
-        left_out: prepared.iter().flat_map(|p| p.selection.iter().map(|s| s.left_out.clone())).collect(),
+        left_out: prepared.iter().flat_map(|p| p.selection.iter().map(numbered)).collect(),
         samples: motions.iter().map(|m| m.q.first().map_or(0, Vec::len)).sum(),
         rows,
     })

@@ -3,6 +3,8 @@
 use super::error::ObserveError;
 use super::select::{self, LeftOut, Selection, select};
 use super::settings::{Equations, ObserveSettings};
+use super::source::check_shape;
+use crate::model::{JointIndex, Robot};
 use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// The rows of the torque equations of one motion.
@@ -19,12 +21,12 @@ pub(crate) struct RowPlan {
     pub band: f64,
 }
 
-/// The rows that [`super::observe`] uses of motions of a robot with `joints` joints.
+/// The rows that [`super::observe`] uses of motions of a robot.
 ///
 /// # Errors
 /// As of [`super::observe`], but for motions without any usable row.
 pub(crate) fn row_plans(
-    joints: usize,
+    robot: &Robot,
     motions: &[Motion],
     settings: &ObserveSettings,
 ) -> Result<Vec<RowPlan>, ObserveError> {
@@ -34,13 +36,18 @@ pub(crate) fn row_plans(
         .iter()
         .enumerate()
         .map(|(trajectory, motion)| {
-            check_shape(joints, motion)?;
+            check_shape(robot, motion)?;
             let decimator = decimator(motion.rate, settings)?;
             let grid = decimator.kept_rows(valid_samples(motion));
             let selection =
                 select(trajectory, motion, Equations::Torque, &decimator, grid, &detected, settings)?;
-            let (used, left_out) =
-                selection.into_iter().map(|Selection { used, left_out }| (used, left_out)).unzip();
+            let (used, left_out) = selection
+                .into_iter()
+                .map(|Selection { used, left_out }| {
+                    let joint = Some(robot.joint_number(JointIndex(left_out.equation)));
+                    (used, LeftOut { joint, ..left_out })
+                })
+                .unzip();
             let band = band_of(&decimator, motion.rate);
             Ok(RowPlan { decimator, grid, used, left_out, band })
         })
@@ -68,23 +75,6 @@ fn check_frequencies(settings: &ObserveSettings) -> Result<(), ObserveError> {
         }
     }
     Ok(())
-}
-
-fn check_shape(joints: usize, motion: &Motion) -> Result<(), ObserveError> {
-    let samples = motion.q.first().map_or(0, Vec::len);
-    for channels in [&motion.q, &motion.dq, &motion.ddq, &motion.torque] {
-        if channels.len() != joints {
-            let (motion, found) = (motion.name.clone(), channels.len());
-            return Err(ObserveError::Joints { motion, found, expected: joints });
-        }
-        if channels.iter().any(|c| c.len() != samples) {
-            return Err(ObserveError::Samples { motion: motion.name.clone() });
-        }
-    }
-    match motion.fixed.iter().find(|&&j| j >= joints) {
-        Some(&joint) => Err(ObserveError::FixedJoint { motion: motion.name.clone(), joint: joint + 1 }),
-        None => Ok(()),
-    }
 }
 
 /// The filter for a recording's rate.
