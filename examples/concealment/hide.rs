@@ -1,7 +1,7 @@
 //! A case: what is drawn for it, and its recordings.
 
 use dynid_runtime::effects::EffectKind;
-use dynid_runtime::model::Model;
+use dynid_runtime::model::{JointIndex, JointNumber, Model};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
 use serde::{Deserialize, Serialize};
@@ -17,10 +17,11 @@ use crate::{Case, Failure};
 /// An effect as it was hidden.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Hidden {
-    /// Which, and 0-based joint.
+    /// Which.
     pub effect: EffectKind,
     /// Joint that it must be named on; `None` for the whole robot's.
-    pub joint: Option<usize>,
+    #[serde(rename = "joint_number")]
+    pub joint: Option<JointNumber>,
     /// Its magnitude, see [`magnitude`].
     pub magnitude: f64,
     /// Its torque relative to the noise, on the joint where it shows most.
@@ -76,10 +77,11 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
             secret.most_torque = most_torque(&recorded(&World::plain(model)?, &motions, &[], noise)?, joint);
         }
         let (size, seen) = sized(model, &secret, VISIBLE[case.size], &motions[..1], noise)?;
+        // A payload is the robot's: it has one place.
+        let named_on = secret.joint.filter(|_| effect != EffectKind::Payload);
         hidden.push(Hidden {
             effect,
-            // A payload is the robot's: it has one place.
-            joint: secret.joint.filter(|_| effect != EffectKind::Payload),
+            joint: named_on.map(|joint| model.robot().joint_number(JointIndex(joint))),
             magnitude: size,
             visible: seen,
             numbers: World::plain(model)?.hide(&secret, size)?,

@@ -55,6 +55,7 @@ mod tests {
     use crate::Outcome;
     use crate::hide::Hidden;
     use dynid_runtime::effects::EffectKind;
+    use dynid_runtime::model::JointNumber;
 
     #[test]
     fn a_test_that_was_stopped_goes_on_where_it_was() -> Result<(), Failure> {
@@ -67,7 +68,7 @@ mod tests {
         };
         let hidden = Hidden {
             effect: EffectKind::Stribeck,
-            joint: Some(2),
+            joint: Some(JointNumber(3)),
             magnitude: 1.5,
             visible: 2.5,
             numbers: Vec::new(),

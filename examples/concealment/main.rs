@@ -315,7 +315,7 @@ fn score(case: &Case) -> Result<Score, Failure> {
 
 fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
     let here = |hidden: &Hidden, joints: &[usize]| {
-        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&(joint + 1)))
+        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&joint.0))
     };
     for finding in &found.findings {
         if !score.found.contains(&finding.effect) {

@@ -71,7 +71,7 @@ impl Outcome {
 }
 
 fn joints_of(hidden: &Hidden) -> Vec<usize> {
-    hidden.joint.map(|j| j + 1).into_iter().collect()
+    hidden.joint.map(|number| number.0).into_iter().collect()
 }
 
 fn at(effect: &str, joints: &[usize]) -> String {

@@ -85,12 +85,7 @@ fn places(effect: EffectKind, model: &dyn Model) -> Places {
 }
 
 fn revolute(robot: &Robot) -> Vec<bool> {
-    robot
-        .frames
-        .iter()
-        .filter(|f| f.kind != JointKind::Fixed)
-        .map(|f| f.kind == JointKind::Revolute)
-        .collect()
+    robot.joint_kinds().iter().map(|&kind| kind == JointKind::Revolute).collect()
 }
 
 /// Whether a motor turns with this joint and another.

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
-use dynid_runtime::model::{Link, Model, ParameterKind, RecursiveModel, Robot};
+use dynid_runtime::model::{JointIndex, Link, Model, ParameterKind, RecursiveModel, Robot};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::{ElasticJoint, ExtraTorque, Plant, SimulatedEffects, SimulationError};
 
@@ -142,10 +142,11 @@ impl World {
             }
         };
         let scale = TermScale { speed, range, torque: 1.0, duration: 10.0, gear, prismatic: false };
+        let number = self.nominal.robot().joint_number(JointIndex(j));
         self.laws.push(EffectTerm {
             effect: secret.effect,
             place: Place::Joint(j),
-            joints: vec![j + 1],
+            joints: vec![number.0],
             shape,
             sigma: vec![0.0; amplitude.len()],
             amplitude,

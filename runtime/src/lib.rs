@@ -6,8 +6,12 @@ pub mod diagnosis;
 pub mod effects;
 pub mod estimation;
 pub mod model;
+pub mod model_file;
 #[cfg(feature = "paper")]
 pub mod paper;
+pub mod plausibility;
+#[cfg(feature = "diagnosis")]
+pub mod prediction;
 pub mod recording;
 pub mod report;
 pub mod signal;

@@ -40,7 +40,8 @@ fn run(robot: &SimulatedRobot, hidden: &Hidden, baseline: &[Trajectory]) -> Diag
     let motions = robot.record(&robot.motions(MOTIONS, LENGTH, SEED), hidden, SEED);
     let simulated = start.elapsed().as_secs_f64();
     // The tests themselves are parallel.
-    let settings = Settings { threads: 1, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.threads = 1;
     let diagnosis = diagnose(&robot.model, &motions, baseline, &settings, &Silent).unwrap();
     let took = start.elapsed().as_secs_f64() - simulated;
     eprintln!(

@@ -46,7 +46,6 @@ mod essential;
 mod estimate;
 mod factor;
 mod householder;
-mod identified;
 mod instrumental;
 pub mod observe;
 mod outcome;
@@ -60,7 +59,6 @@ mod weights;
 pub use bandwidth::{Bandwidth, choose_bandwidth};
 pub use estimate::{EstimateSettings, errors_against, estimate, per_equation, relative_error};
 pub use factor::{BLOCK_ROWS, Factor};
-pub use identified::{EquationRows, EssentialParameters, Identified, NamedParameter, Observed};
 pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
 pub use outcome::{
     BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,

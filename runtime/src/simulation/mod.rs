@@ -45,6 +45,7 @@ mod forward;
 mod integrator;
 mod less_friction;
 mod lu;
+mod motion_file;
 mod plant;
 mod push;
 mod reference;
@@ -68,6 +69,7 @@ pub use didim::{DidimError, DidimEstimate, DidimSettings, Experiment, didim, sim
 pub use elastic::ElasticJoint;
 pub use error::SimulationError;
 pub use extra::{ExtraTorque, Instant};
+pub use motion_file::{MotionFileError, from_csv, sampled, to_csv};
 pub use plant::Plant;
 pub use reference::{Reference, SampledReference};
 pub use residue::Residue;
