@@ -6,6 +6,7 @@ pub mod diagnosis;
 pub mod effects;
 pub mod estimation;
 pub mod model;
+#[cfg(feature = "diagnosis")]
 pub mod model_file;
 #[cfg(feature = "paper")]
 pub mod paper;

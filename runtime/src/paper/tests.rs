@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::signal::{Preparation, prepare};
 use crate::simulation::testing::tx40;
 
-const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
+const SEEDS: [u64; 3] = [1, 2, 3];
 
 fn of(results: &[CaseResult], case: Case) -> &CaseResult {
     results.iter().find(|r| r.case == case).unwrap()
@@ -16,11 +16,11 @@ fn of(results: &[CaseResult], case: Case) -> &CaseResult {
 fn the_findings_of_the_paper_hold_in_simulation() {
     let (model, standard) = tx40();
     let campaign = Campaign { rate: 2000.0, ..Campaign::default() };
-    let run = |seed| {
+    let all: Vec<Vec<CaseResult>> = crate::parallel::map(0, SEEDS.len(), |k| {
         let settings = PaperSettings::default();
-        campaign.run(&model, &standard, &Preparation::default(), &settings, seed, &|_| {}).unwrap().cases
-    };
-    let all: Vec<Vec<CaseResult>> = SEEDS.into_iter().map(run).collect();
+        let run = campaign.run(&model, &standard, &Preparation::default(), &settings, SEEDS[k], &|_| {});
+        run.unwrap().cases
+    });
     for (seed, results) in SEEDS.iter().zip(&all) {
         let reconstruction = |case| of(results, case).reconstruction_error;
         let (one, two, three) =

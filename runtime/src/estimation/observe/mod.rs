@@ -5,6 +5,8 @@ mod error;
 mod merge;
 mod observation;
 mod prepared;
+// Its plans of rows are for the evaluator, which needs the feature.
+#[cfg_attr(not(feature = "diagnosis"), allow(dead_code))]
 mod row_plan;
 mod rows;
 mod select;
@@ -18,6 +20,7 @@ mod work;
 
 pub use error::ObserveError;
 pub use observation::{EquationFactor, Observation, TimeBlock};
+#[cfg(feature = "diagnosis")]
 pub(crate) use row_plan::{RowPlan, row_plans, why_nothing};
 pub use rows::Rows;
 pub use select::LeftOut;
