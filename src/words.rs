@@ -1,6 +1,7 @@
-//! Robots' joints in words.
+//! Joints and confidences in words.
 
 use dynid_runtime::model::{JointIndex, Robot};
+use dynid_runtime::report::significant;
 
 /// The number that a joint (counted from 0) has in the table.
 pub fn joint_number(robot: &Robot, joint: usize) -> String {
@@ -17,4 +18,9 @@ pub fn joint_words(joints: &[usize]) -> String {
             format!("joints {} and {last}", first.join(", "))
         }
     }
+}
+
+/// The confidence in words.
+pub fn confidence_words(confidence: f64) -> String {
+    format!("confidence {}", significant(confidence, 4))
 }

@@ -3,7 +3,7 @@
 use dynid_runtime::diagnosis::Diagnosis;
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
-use super::diagnosis::Extras;
+use super::extras::Extras;
 use dynid_runtime::simulation::replay::ClosedLoop;
 
 /// Recorded and simulated torques.

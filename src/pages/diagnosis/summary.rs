@@ -3,11 +3,13 @@
 use dynid_runtime::diagnosis::{Diagnosis, Finding};
 use dynid_runtime::report::{percent, significant};
 
-use super::diagnosis::{Extras, confidence_words, error_rows};
+use super::extras::Extras;
+use super::page::error_rows;
 use crate::errors::noise_words;
 use crate::output::table;
 use crate::recorded::{Measured, left_out_words};
-use crate::words::joint_words;
+
+use crate::words::{confidence_words, joint_words};
 
 /// The verdict, the errors and the findings for a terminal.
 pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> String {

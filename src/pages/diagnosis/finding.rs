@@ -4,8 +4,7 @@ use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueS
 use dynid_runtime::effects::{Abscissa, EffectKind, Words};
 use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
-use super::diagnosis::confidence_words;
-use crate::words::joint_words;
+use crate::words::{confidence_words, joint_words};
 
 /// A finding: what it is, where it was seen, what it changed.
 pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {

@@ -1,43 +1,14 @@
 //! The report of `diagnose`: the verdict first, then for every finding where it was seen and what it changed.
 
 use dynid_runtime::diagnosis::Diagnosis;
-use dynid_runtime::prediction::{Evaluation, Prediction};
+use dynid_runtime::prediction::Prediction;
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
-use super::diagnosis_finding::found;
-use super::diagnosis_forward::forward;
+use super::extras::Extras;
+use super::finding::found;
+use super::forward::forward;
 use crate::errors::noise_words;
 use crate::words::joint_words;
-use dynid_runtime::simulation::replay::ClosedLoop;
-
-/// A recording that took no part in the diagnosis, and both models on it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tested {
-    /// Which recording.
-    pub name: String,
-    /// The standard model, then the model with the findings.
-    pub evaluation: Evaluation,
-}
-
-/// What a report has besides the diagnosis itself.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Extras {
-    /// The standard model and the model with the findings on the recording itself; `None` where it is too short.
-    pub fitted: Option<Evaluation>,
-    /// The same on a recording that took no part.
-    pub tested: Option<Tested>,
-    /// The recording by forward simulation, or why it cannot be simulated; `None` where it was not asked for.
-    pub forward: Option<Result<ClosedLoop, String>>,
-    /// The number of each joint in the robot's table.
-    pub joints: Vec<String>,
-}
-
-impl Extras {
-    /// `joint 3`, by the table, for a joint counted from 0.
-    pub(super) fn joint(&self, j: usize) -> String {
-        format!("joint {}", self.joints.get(j).map_or_else(|| (j + 1).to_string(), String::clone))
-    }
-}
 
 /// The whole page.
 pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {
@@ -155,11 +126,6 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
             page.table(&["held out", "before", "after"], &rows);
         });
     }
-}
-
-/// The confidence in words.
-pub(crate) fn confidence_words(confidence: f64) -> String {
-    format!("confidence {}", significant(confidence, 4))
 }
 
 fn mismatch(page: &mut Page, diagnosis: &Diagnosis) {
