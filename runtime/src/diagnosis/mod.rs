@@ -25,8 +25,8 @@ mod search;
 mod settings;
 
 pub use outcome::{
-    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
-    ParameterShift, ParameterValue, TorqueSeries, Unexplained,
+    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
+    OrderSpectrum, ParameterShift, ParameterValue, TorqueSeries, Unexplained,
 };
 pub use predict::{predict_errors, term_torques};
 pub use settings::{DiagnosisError, Progress, Settings, Silent};
@@ -34,11 +34,13 @@ pub use settings::{DiagnosisError, Progress, Settings, Silent};
 use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
-use contact::search as contact_search;
-use explanation::explain;
+use contact::search::{self as contact_search, Contacts};
+use contact::standing;
+use explanation::{explain, standstill};
 use rows::context::{Context, scales, top_speeds};
 use rows::design::{Design, Plan};
 use rows::fit;
+use rows::motion::{LEAST_ROWS, Moving, left_over};
 use rows::signals::{Signals, directions};
 use search::state::Search;
 
@@ -102,6 +104,20 @@ fn examine(
     let motions = trajectories.len();
     let chunks = if motions < ENOUGH_MOTIONS { STRETCHES / motions } else { 1 };
     let nothing = vec![Vec::new(); signals.len()];
+    let all = Plan {
+        half: settings.slow_window,
+        slowest: &slowest,
+        directions: &forms,
+        chunks,
+        excluded: &nothing,
+    };
+    let moving = Moving::of(&Design::new(model, &signals, &all));
+    // What a joint without motion seems to do is noise.
+    let slowest: Vec<f64> = slowest
+        .iter()
+        .zip(&moving.fitted)
+        .map(|(v, fitted)| if *fitted { *v } else { f64::INFINITY })
+        .collect();
     // The narrower window needs less margin to a standstill.
     let fast_limits: Vec<f64> = slowest.iter().map(|v| v / 1.5).collect();
     let plan = |half: f64| Plan {
@@ -111,19 +127,37 @@ fn examine(
         chunks,
         excluded: &nothing,
     };
-    let open = Design::new(model, &signals, &plan(settings.slow_window));
-    check(model, &open)?;
+    let mut open = Design::new(model, &signals, &plan(settings.slow_window));
     let mut sigma = vec![1.0; n];
-    let first = fit::fit_weighted(&open, &mut sigma, |_| true);
+    let mut first = fit::fit_weighted(&open, &mut sigma, |_| true);
+    let left_over = check(model, &open, &first, &moving, &sigma)?;
+    if !left_over.is_empty() {
+        open.leave_out(&left_over);
+        first = fit::fit_weighted(&open, &mut sigma, |_| true);
+    }
+    let design = |signals: &[Signals], plan: &Plan<'_>| {
+        let mut design = Design::new(model, signals, plan);
+        if !left_over.is_empty() {
+            design.leave_out(&left_over);
+        }
+        design
+    };
+    check_fit(&open, &sigma)?;
     let chi: Vec<f64> = first.chi.iter().take(open.parameters).copied().collect();
-    check_fit(model, &open, &first, &sigma)?;
+    if !moving.judged.contains(&true) {
+        let context = Context::new(model, &signals, scales(model, &signals, &chi), chi)?;
+        let rest = standing::at_rest(&context, &moving.fitted, &slowest);
+        let mut diagnosis = standstill::explain(&context, &rest, &moving, &first)?;
+        standstill::name_not_judged(&mut diagnosis, model, &moving);
+        return Ok(diagnosis);
+    }
 
     // A skew of more than a sample is taken out of the signals themselves.
     for _ in 0..2 {
         let found = {
             let context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
-            let design = Design::new(model, &signals, &plan(settings.slow_window));
-            explain::delay_of(&context, design)
+            let rows = design(&signals, &plan(settings.slow_window));
+            explain::delay_of(&context, rows)
         };
         let rate = signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
         if found.abs() * rate < 0.75 {
@@ -134,15 +168,15 @@ fn examine(
     }
     progress.at(0.05, "contacts");
     let mut context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
-    let aligned = Design::new(model, &signals, &plan(settings.slow_window));
+    let aligned = design(&signals, &plan(settings.slow_window));
     let mut contacts = contact_search::find(&context, &aligned, &signals);
-    let diagnosis = loop {
+    let mut diagnosis = loop {
         let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
-        let slow = Design::new(model, &signals, &Plan { excluded, ..plan(slow_window) });
+        let slow = design(&signals, &Plan { excluded, ..plan(slow_window) });
         let fast = if short {
             slow.clone()
         } else {
-            Design::new(model, &signals, &Plan { excluded, ..plan(settings.fast_window) })
+            design(&signals, &Plan { excluded, ..plan(settings.fast_window) })
         };
         if contacts.is_some() {
             let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);
@@ -171,8 +205,11 @@ fn examine(
             continue;
         }
         progress.at(0.92, "explanations");
+        let rest = standing::at_rest(search.context, &moving.fitted, &slowest);
+        let contacts = Contacts::with_rest(contacts, &rest, &signals);
         break explain::explain(model, search, &bare, contacts.as_ref(), delay, settings)?;
     };
+    standstill::name_not_judged(&mut diagnosis, model, &moving);
     progress.at(1.0, "done");
     Ok(diagnosis)
 }
@@ -199,36 +236,34 @@ fn prepare_all(
     old.chain(trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff))).collect()
 }
 
-/// Refuses motions that leave a joint without rows.
-fn check(model: &dyn Model, design: &Design) -> Result<(), DiagnosisError> {
-    let robot = model.robot();
-    for j in 0..design.joints {
-        let rows = design.count(j, |g| design.segments[g].fresh);
-        let needed = 40;
-        if rows < needed {
-            return Err(DiagnosisError::TooLittleMotion { joint: joint_number(robot, j), rows, needed });
-        }
-    }
-    Ok(())
-}
-
-/// Refuses motions that do not determine the standard model, and recordings that it has nothing to do with.
-fn check_fit(
+/// Refuses motions that tell nothing. Returns the base parameters that are left out because the motion does not
+/// determine them, where they are so many, or joints stand still, that small ones would be made up from noise.
+fn check(
     model: &dyn Model,
     design: &Design,
     fit: &fit::Fit,
+    moving: &Moving,
     sigma: &[f64],
-) -> Result<(), DiagnosisError> {
-    let free: Vec<usize> = fit.undetermined(1e-4);
-    let parameters = design.parameters;
-    if free.len() * 4 > parameters {
-        let names: Vec<String> = free
-            .iter()
-            .filter(|&&k| k < parameters)
-            .map(|&k| model.robot().base[k].name.to_string())
-            .collect();
-        return Err(DiagnosisError::NotExciting { free: free.len(), parameters, names: names.join(", ") });
+) -> Result<Vec<usize>, DiagnosisError> {
+    if !moving.fitted.contains(&true) {
+        let most = moving.rows.iter().enumerate().max_by_key(|(_, rows)| **rows);
+        let (joint, rows) = most.map_or((0, 0), |(j, r)| (joint_number(model.robot(), j), *r));
+        return Err(DiagnosisError::NothingMoves { joint, rows, needed: LEAST_ROWS });
     }
+    let free = fit.undetermined(1e-4).into_iter().filter(|&k| k < design.parameters).count();
+    let few = 4 * free <= design.parameters && !moving.fitted.contains(&false);
+    let left_over = if few { Vec::new() } else { left_over(design, sigma) };
+    let (rows, parameters) =
+        (design.rows.len(), design.parameters - if few { free } else { left_over.len() });
+    if rows < 2 * parameters {
+        let times = (2 * parameters).div_ceil(rows.max(1));
+        return Err(DiagnosisError::TooShort { rows, parameters, times });
+    }
+    Ok(left_over)
+}
+
+/// Refuses recordings that the standard model has nothing to do with.
+fn check_fit(design: &Design, sigma: &[f64]) -> Result<(), DiagnosisError> {
     let mut left = 0.0;
     let mut all = 0.0;
     for (j, s) in sigma.iter().enumerate() {

@@ -36,7 +36,7 @@ mod torque_saturation;
 mod wrong_sample_rate;
 
 pub use compliance::{Compliance, Transmission, deflection};
-pub use contact::{Wrench, unit_force_torques};
+pub use contact::{JointTorque, Wrench, unit_force_torques};
 pub use coupled_transmission::CoupledTransmission;
 pub use joint_law::{At, JointLaw, Scale};
 pub use kind::{EffectKind, Form, Words};

@@ -1,3 +1,5 @@
 //! Contact: windows of time in which something outside pushed the robot.
 
+pub(in crate::diagnosis) mod rest;
 pub(in crate::diagnosis) mod search;
+pub(in crate::diagnosis) mod standing;

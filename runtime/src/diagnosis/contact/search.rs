@@ -1,5 +1,6 @@
 //! Contact: windows of time in which several joints are pushed together.
 
+use crate::diagnosis::contact::standing::AtRest;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
@@ -18,6 +19,31 @@ pub(in crate::diagnosis) struct Contacts {
     pub after: f64,
     /// Squares of the torque itself in the windows, same units.
     pub torque: f64,
+    /// Probability that the clearest of them is an accident.
+    pub doubt: f64,
+}
+
+impl Contacts {
+    /// Adds the pushes that were seen while the robot held still.
+    pub fn with_rest(found: Option<Self>, rest: &AtRest, signals: &[Signals]) -> Option<Self> {
+        if rest.wrenches.is_empty() {
+            return found;
+        }
+        let mut all = found.unwrap_or_else(|| Self {
+            windows: vec![Vec::new(); signals.len()],
+            wrenches: Vec::new(),
+            before: 0.0,
+            after: 0.0,
+            torque: 0.0,
+            doubt: 1.0,
+        });
+        all.wrenches.extend(rest.wrenches.iter().cloned());
+        all.before += rest.squares[0];
+        all.after += rest.squares[1];
+        all.torque += rest.squares[2];
+        all.doubt = all.doubt.min(rest.doubt);
+        Some(all)
+    }
 }
 
 /// An instant counts as pushed when its mean squared residual passes this many noise variances.
@@ -187,6 +213,7 @@ pub(in crate::diagnosis) fn find(
         before: 0.0,
         after: 0.0,
         torque: 0.0,
+        doubt: 1e-4,
     };
     for (k, windows) in windows.iter().enumerate() {
         for &w in windows {
@@ -292,11 +319,18 @@ fn explain(
         link: frame + 1,
         force: [largest[0], largest[1], largest[2]],
         mean_force: [mean[0], mean[1], mean[2]],
+        edges: None,
+        joint_torques: Vec::new(),
     };
     Some((wrench, [whole, predicted, torque]))
 }
 
-fn units(context: &Context<'_>, frame: usize, s: &Signals, t: usize) -> [Vec<f64>; 3] {
+pub(in crate::diagnosis) fn units(
+    context: &Context<'_>,
+    frame: usize,
+    s: &Signals,
+    t: usize,
+) -> [Vec<f64>; 3] {
     let q: Vec<f64> = s.q.iter().map(|x| x[t]).collect();
     let mut out = [Vec::new(), Vec::new(), Vec::new()];
     unit_force_torques(context.model.robot(), context.tables(), frame, &q, &mut out);
@@ -304,7 +338,11 @@ fn units(context: &Context<'_>, frame: usize, s: &Signals, t: usize) -> [Vec<f64
 }
 
 /// Weighted least-squares force at one instant.
-fn force(unit: &[Vec<f64>; 3], rows: &[(usize, f64, f64)], sigma: &[f64]) -> Vector3<f64> {
+pub(in crate::diagnosis) fn force(
+    unit: &[Vec<f64>; 3],
+    rows: &[(usize, f64, f64)],
+    sigma: &[f64],
+) -> Vector3<f64> {
     let mut g = Matrix3::zeros();
     let mut b = Vector3::zeros();
     for &(j, r, _) in rows {
@@ -317,7 +355,12 @@ fn force(unit: &[Vec<f64>; 3], rows: &[(usize, f64, f64)], sigma: &[f64]) -> Vec
     g.try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * b)
 }
 
-fn after(unit: &[Vec<f64>; 3], rows: &[(usize, f64, f64)], sigma: &[f64], f: &Vector3<f64>) -> f64 {
+pub(in crate::diagnosis) fn after(
+    unit: &[Vec<f64>; 3],
+    rows: &[(usize, f64, f64)],
+    sigma: &[f64],
+    f: &Vector3<f64>,
+) -> f64 {
     rows.iter()
         .map(|&(j, r, _)| {
             let left = r - unit[0][j] * f[0] - unit[1][j] * f[1] - unit[2][j] * f[2];

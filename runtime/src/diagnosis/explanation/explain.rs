@@ -160,6 +160,7 @@ pub(in crate::diagnosis) fn explain(
         series: curves::series(&search, &bare.fitted_fast, &terms),
         rows: search.slow.design.rows.len() + search.fast.design.rows.len(),
         tried: search.tried,
+        not_judged: Vec::new(),
         findings,
     };
     diagnosis.verdict = words::verdict(&diagnosis);
@@ -302,21 +303,27 @@ fn finding(model: &dyn Model, search: &mut Search<'_, '_>, terms: &[Accepted], k
     finding
 }
 
-fn contact_finding(contacts: &Contacts) -> Finding {
+pub(in crate::diagnosis) fn contact_finding(contacts: &Contacts) -> Finding {
     let largest = contacts.wrenches.iter().max_by(|a, b| norm(a.force).total_cmp(&norm(b.force)));
     let mut parameters = std::collections::BTreeMap::new();
     let value = |value: f64, unit: &str| ParameterValue { value, sigma: 0.0, unit: unit.into() };
     parameters.insert("windows".into(), value(contacts.wrenches.len() as f64, "1"));
-    if let Some(w) = largest {
+    if let Some(w) = largest.filter(|w| norm(w.force) > 0.0) {
         parameters.insert("largest_force".into(), value(norm(w.force), "N"));
         parameters.insert("link".into(), value(w.link as f64, "1"));
+    }
+    let joints = contacts.wrenches.iter().flat_map(|w| &w.joint_torques);
+    if let Some(most) = joints.max_by(|a, b| a.largest.abs().total_cmp(&b.largest.abs())) {
+        let torque = ParameterValue { value: most.largest, sigma: most.sigma, unit: "N.m".into() };
+        parameters.insert("largest_joint_torque".into(), torque);
+        parameters.insert("joint".into(), value(most.joint as f64, "1"));
     }
     let (before, after) =
         ((contacts.before / contacts.torque).sqrt(), (contacts.after / contacts.torque).sqrt());
     let mut finding = Finding {
         effect: EffectKind::Contact.id().into(),
         joints: Vec::new(),
-        confidence: 0.9999,
+        confidence: (1.0 - contacts.doubt).clamp(0.0, 0.9999),
         significance: 0.0,
         parameters,
         held_out_before: before,

@@ -3,4 +3,5 @@
 pub(in crate::diagnosis) mod context;
 pub(in crate::diagnosis) mod design;
 pub(in crate::diagnosis) mod fit;
+pub(in crate::diagnosis) mod motion;
 pub(in crate::diagnosis) mod signals;

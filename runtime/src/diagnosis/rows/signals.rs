@@ -37,7 +37,12 @@ impl Signals {
         let span = trajectory.time.last().unwrap_or(&0.0) - trajectory.time.first().unwrap_or(&0.0);
         let rate = if span > 0.0 { stamps as f64 / span } else { 1.0 };
         let settings = Preparation { cutoff: Some((rate / 5.0).min(cutoff)), ..Preparation::default() };
-        let motion = prepare(trajectory, &settings)?;
+        let mut motion = prepare(trajectory, &settings)?;
+        // What a joint that is declared to stand still seems to do is noise.
+        for &j in &motion.fixed {
+            motion.dq[j].fill(0.0);
+            motion.ddq[j].fill(0.0);
+        }
         let rate = motion.rate;
         let filter = Butterworth::low_pass(settings.order, (rate / 5.0).min(cutoff), rate)?;
         let jerk = motion
