@@ -35,7 +35,7 @@ use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
 use contact::search::{self as contact_search, Contacts};
-use contact::standing;
+use contact::{moving, standing};
 use explanation::{explain, standstill};
 use rows::context::{Context, scales, top_speeds};
 use rows::design::{Design, Plan};
@@ -111,11 +111,11 @@ fn examine(
         chunks,
         excluded: &nothing,
     };
-    let moving = Moving::of(&Design::new(model, &signals, &all));
+    let motion = Moving::of(&Design::new(model, &signals, &all));
     // What a joint without motion seems to do is noise.
     let slowest: Vec<f64> = slowest
         .iter()
-        .zip(&moving.fitted)
+        .zip(&motion.fitted)
         .map(|(v, fitted)| if *fitted { *v } else { f64::INFINITY })
         .collect();
     // The narrower window needs less margin to a standstill.
@@ -130,7 +130,7 @@ fn examine(
     let mut open = Design::new(model, &signals, &plan(settings.slow_window));
     let mut sigma = vec![1.0; n];
     let mut first = fit::fit_weighted(&open, &mut sigma, |_| true);
-    let left_over = check(model, &open, &first, &moving, &sigma)?;
+    let left_over = check(model, &open, &first, &motion, &sigma)?;
     if !left_over.is_empty() {
         open.leave_out(&left_over);
         first = fit::fit_weighted(&open, &mut sigma, |_| true);
@@ -144,11 +144,11 @@ fn examine(
     };
     check_fit(&open, &sigma)?;
     let chi: Vec<f64> = first.chi.iter().take(open.parameters).copied().collect();
-    if !moving.judged.contains(&true) {
+    if !motion.judged.contains(&true) {
         let context = Context::new(model, &signals, scales(model, &signals, &chi), chi)?;
-        let rest = standing::at_rest(&context, &moving.fitted, &slowest);
-        let mut diagnosis = standstill::explain(&context, &rest, &moving, &first)?;
-        standstill::name_not_judged(&mut diagnosis, model, &moving);
+        let rest = standing::at_rest(&context, &motion.fitted, &slowest);
+        let mut diagnosis = standstill::explain(&context, &rest, &motion, &first)?;
+        standstill::name_not_judged(&mut diagnosis, model, &motion);
         return Ok(diagnosis);
     }
 
@@ -170,15 +170,19 @@ fn examine(
     let mut context = Context::new(model, &signals, scales(model, &signals, &chi), chi.clone())?;
     let aligned = design(&signals, &plan(settings.slow_window));
     let mut contacts = contact_search::find(&context, &aligned, &signals);
+    // Pushes on single joints, looked for in what is left when the search is done.
+    let mut pushed: Option<Contacts> = None;
+    let mut scanned = false;
     let mut diagnosis = loop {
-        let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
+        let both = Contacts::joined(contacts.clone(), pushed.clone());
+        let excluded = both.as_ref().map_or(&nothing, |c| &c.windows);
         let slow = design(&signals, &Plan { excluded, ..plan(slow_window) });
         let fast = if short {
             slow.clone()
         } else {
             design(&signals, &Plan { excluded, ..plan(settings.fast_window) })
         };
-        if contacts.is_some() {
+        if both.is_some() {
             let fit = fit::fit_weighted(&slow, &mut sigma, |_| true);
             let chi: Vec<f64> = fit.chi.iter().take(slow.parameters).copied().collect();
             context.update(chi);
@@ -204,12 +208,26 @@ fn examine(
             context.update(chi.clone());
             continue;
         }
+        if !scanned || pushed.is_some() {
+            let excluded = contacts.as_ref().map_or(&nothing, |c| &c.windows);
+            let all = design(&signals, &Plan { excluded, ..plan(settings.fast_window) });
+            let found =
+                moving::in_motion(search.context, &all, &search.residual_on(&all), &search.fast.sigma);
+            if scanned {
+                pushed = pushed.and_then(|p| moving::still_there(p, found.as_ref()));
+            } else if found.is_some() {
+                // What was found with the pushes among the rows is looked for again without them.
+                (pushed, scanned) = (found, true);
+                context.update(chi.clone());
+                continue;
+            }
+        }
         progress.at(0.92, "explanations");
-        let rest = standing::at_rest(search.context, &moving.fitted, &slowest);
-        let contacts = Contacts::with_rest(contacts, &rest, &signals);
+        let rest = standing::at_rest(search.context, &motion.fitted, &slowest);
+        let contacts = Contacts::joined(Contacts::joined(contacts, pushed), rest.contacts(signals.len()));
         break explain::explain(model, search, &bare, contacts.as_ref(), delay, settings)?;
     };
-    standstill::name_not_judged(&mut diagnosis, model, &moving);
+    standstill::name_not_judged(&mut diagnosis, model, &motion);
     progress.at(1.0, "done");
     Ok(diagnosis)
 }

@@ -14,8 +14,6 @@ pub(in crate::diagnosis) struct Stroke<'a> {
     pub dq: &'a [f64],
     /// Measured torque less that of the model.
     pub residual: &'a [f64],
-    /// Samples a second.
-    pub rate: f64,
     /// Highest frequency that the residual holds, Hz.
     pub band: f64,
 }

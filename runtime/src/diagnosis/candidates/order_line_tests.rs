@@ -41,7 +41,7 @@ fn motion(rng: &mut Pcg64, speed: f64, order: f64, amplitude: f64) -> Motion {
 fn found(motions: &[Motion]) -> Vec<Line> {
     let strokes: Vec<Stroke<'_>> = motions
         .iter()
-        .map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, rate: RATE, band: 0.4 * RATE })
+        .map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE })
         .collect();
     let known: Vec<f64> = MULTIPLES.iter().map(|k| k * GEAR).collect();
     lines(&strokes, &known, &[], 0.05)
@@ -139,7 +139,7 @@ fn friction_that_was_not_fitted_has_no_line() {
 fn an_order_that_nobody_knew_is_found_among_picked_ones() {
     let mut rng = Pcg64::seed_from_u64(27);
     let m = motion(&mut rng, 0.8, 77.7, amplitude(0.05));
-    let stroke = Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, rate: RATE, band: 0.4 * RATE };
+    let stroke = Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE };
     let lines = lines(&[stroke], &[], &[30.0, 78.0, 140.0], 0.05);
     assert_eq!(lines.len(), 1);
     assert!((lines[0].order - 77.7).abs() < 1.0);
@@ -148,7 +148,7 @@ fn an_order_that_nobody_knew_is_found_among_picked_ones() {
 #[test]
 fn a_joint_that_hardly_moves_shows_nothing() {
     let still = vec![0.0; 1000];
-    let stroke = Stroke { q: &still, dq: &still, residual: &still, rate: RATE, band: 100.0 };
+    let stroke = Stroke { q: &still, dq: &still, residual: &still, band: 100.0 };
     assert!(lines(&[stroke], &[202.0], &[100.0], 0.05).is_empty());
     assert!(lines(&[], &[202.0], &[], 0.05).is_empty());
 }

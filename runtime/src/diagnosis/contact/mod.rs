@@ -1,6 +1,7 @@
 //! Contact: windows of time in which something outside pushed the robot.
 
 pub(in crate::diagnosis) mod memory;
+pub(in crate::diagnosis) mod moving;
 pub(in crate::diagnosis) mod rest;
 pub(in crate::diagnosis) mod scan;
 pub(in crate::diagnosis) mod search;

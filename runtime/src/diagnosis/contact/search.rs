@@ -1,6 +1,5 @@
 //! Contact: windows of time in which several joints are pushed together.
 
-use crate::diagnosis::contact::standing::AtRest;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
@@ -9,6 +8,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::collections::BTreeMap;
 
 /// Windows with an outside force.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct Contacts {
     /// Times per signal that no other row may use.
     pub windows: Vec<Vec<[f64; 2]>>,
@@ -24,24 +24,20 @@ pub(in crate::diagnosis) struct Contacts {
 }
 
 impl Contacts {
-    /// Adds the pushes that were seen while the robot held still.
-    pub fn with_rest(found: Option<Self>, rest: &AtRest, signals: &[Signals]) -> Option<Self> {
-        if rest.wrenches.is_empty() {
-            return found;
+    /// Both together, where there are both.
+    pub fn joined(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        let (mut all, other) = match (one, other) {
+            (Some(one), Some(other)) => (one, other),
+            (one, other) => return one.or(other),
+        };
+        for (windows, more) in all.windows.iter_mut().zip(other.windows) {
+            windows.extend(more);
         }
-        let mut all = found.unwrap_or_else(|| Self {
-            windows: vec![Vec::new(); signals.len()],
-            wrenches: Vec::new(),
-            before: 0.0,
-            after: 0.0,
-            torque: 0.0,
-            doubt: 1.0,
-        });
-        all.wrenches.extend(rest.wrenches.iter().cloned());
-        all.before += rest.squares[0];
-        all.after += rest.squares[1];
-        all.torque += rest.squares[2];
-        all.doubt = all.doubt.min(rest.doubt);
+        all.wrenches.extend(other.wrenches);
+        all.before += other.before;
+        all.after += other.after;
+        all.torque += other.torque;
+        all.doubt = all.doubt.min(other.doubt);
         Some(all)
     }
 }

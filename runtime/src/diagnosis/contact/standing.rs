@@ -1,7 +1,7 @@
 //! Pushes against a robot that holds still, from a model that its motion has told.
 
 use crate::diagnosis::contact::rest::{Load, Push, STICTION, Seen, Standing, look, stretches};
-use crate::diagnosis::contact::search::{after, force, units};
+use crate::diagnosis::contact::search::{Contacts, after, force, units};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::effects::{JointTorque, Wrench};
@@ -28,6 +28,21 @@ pub(in crate::diagnosis) struct AtRest {
     /// Squares per joint of the torque beyond gravity and static friction, of the same outside of pushes, and of the
     /// torque itself, while the robot stands.
     pub by_joint: [Vec<f64>; 3],
+}
+
+impl AtRest {
+    /// The pushes; rows that are at rest are not used for anything else anyway.
+    pub fn contacts(&self, motions: usize) -> Option<Contacts> {
+        let [before, after, torque] = self.squares;
+        (!self.wrenches.is_empty()).then(|| Contacts {
+            windows: vec![Vec::new(); motions],
+            wrenches: self.wrenches.clone(),
+            before,
+            after,
+            torque,
+            doubt: self.doubt,
+        })
+    }
 }
 
 /// Looks at all motions of the recording that is diagnosed. `fitted` are the joints whose friction the model knows;
@@ -137,6 +152,8 @@ fn resting(s: &Signals, q: Vec<Vec<f64>>, speed: f64) -> Signals {
         ddq: like(0.0),
         jerk: like(0.0),
         torque: like(0.0),
+        recorded: like(0.0),
+        recorded_band: s.recorded_band,
         spoiled: s.spoiled,
         q,
     }

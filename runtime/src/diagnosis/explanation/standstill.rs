@@ -1,6 +1,5 @@
 //! What is said of a recording in which the robot holds still, and of joints that hold still in any.
 
-use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::contact::standing::AtRest;
 use crate::diagnosis::explanation::explain::contact_finding;
 use crate::diagnosis::explanation::words;
@@ -30,7 +29,7 @@ pub(in crate::diagnosis) fn explain(
         let (joint, rows) = most.map_or((0, 0), |(j, r)| (joint_number(robot, j), *r));
         return Err(DiagnosisError::NothingMoves { joint, rows, needed: LEAST_ROWS });
     }
-    let contacts = Contacts::with_rest(None, rest, context.signals);
+    let contacts = rest.contacts(context.signals.len());
     let findings: Vec<Finding> = contacts.iter().map(contact_finding).collect();
     let before = errors(&rest.by_joint[0], &rest.by_joint[2]);
     let after = errors(&rest.by_joint[1], &rest.by_joint[2]);

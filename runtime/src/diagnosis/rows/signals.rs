@@ -17,6 +17,10 @@ pub(in crate::diagnosis) struct Signals {
     pub ddq: Vec<Vec<f64>>,
     pub jerk: Vec<Vec<f64>>,
     pub torque: Vec<Vec<f64>>,
+    /// Torques as they were recorded, and the highest frequency that they hold, Hz: what is faster than the filter
+    /// lets through still shows in them.
+    pub recorded: Vec<Vec<f64>>,
+    pub recorded_band: f64,
     /// Samples at each end that filters have spoiled.
     pub spoiled: usize,
 }
@@ -25,6 +29,9 @@ pub(in crate::diagnosis) struct Signals {
 pub(in crate::diagnosis) const CUTOFF: f64 = 60.0;
 /// Samples a second that a cut-off of [`CUTOFF`] needs.
 const ENOUGH: f64 = 500.0;
+
+/// Share of the rate up to which recorded torques are taken for what they say.
+const RECORDED: f64 = 0.4;
 
 impl Signals {
     pub fn new(
@@ -54,6 +61,7 @@ impl Signals {
                 out
             })
             .collect();
+        let as_recorded: Vec<Vec<f64>> = motion.torque.iter().map(|x| shifted(x, delay * rate)).collect();
         let torque = motion
             .torque
             .iter()
@@ -73,6 +81,9 @@ impl Signals {
             dq: thin(motion.dq),
             ddq: thin(motion.ddq),
             jerk: thin(jerk),
+            // Samples that are left out would fold what is fast into what is slow.
+            recorded: if stride == 1 { as_recorded } else { thin(torque.clone()) },
+            recorded_band: if stride == 1 { RECORDED * rate } else { (rate / 5.0).min(cutoff) },
             torque: thin(torque),
             spoiled: motion.spoiled.div_ceil(stride),
         })
@@ -99,6 +110,8 @@ impl Signals {
             ddq: motion.ddq.clone(),
             jerk,
             torque: motion.torque.clone(),
+            recorded: motion.torque.clone(),
+            recorded_band: RECORDED * motion.rate,
             spoiled: motion.spoiled,
         }
     }

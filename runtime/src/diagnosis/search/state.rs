@@ -14,6 +14,7 @@ use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::{Fit, fit_weighted};
+use crate::diagnosis::search::line::{JointLines, all_lines};
 use crate::diagnosis::search::select::Winner;
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::{EffectKind, Form, Place};
@@ -93,7 +94,9 @@ pub(in crate::diagnosis) struct Search<'c, 'a> {
     pub fast: Side,
     pub terms: Vec<Accepted>,
     /// What was taken out again.
-    rejected: Vec<Accepted>,
+    pub rejected: Vec<Accepted>,
+    /// Ripple that stands out as a line, per joint.
+    pub lines: Vec<JointLines>,
     pub spectra: Vec<OrderSpectrum>,
     pub tried: usize,
     pub change: bool,
@@ -153,6 +156,7 @@ impl<'c, 'a> Search<'c, 'a> {
             fast,
             terms: Vec::new(),
             rejected: Vec::new(),
+            lines: Vec::new(),
             spectra: Vec::new(),
             tried: 0,
             change,
@@ -167,6 +171,7 @@ impl<'c, 'a> Search<'c, 'a> {
     fn propose(&mut self, settings: &Settings, progress: &dyn Progress) {
         progress.at(0.15, "order spectra");
         self.spectra = self.order_spectra();
+        self.lines = all_lines(self.context, &self.spectra, &self.slowest, self.threads);
         let orders: Vec<Vec<f64>> = self.spectra.iter().map(|s| peaks(s, 2)).collect();
         let slow = proposals(self.context, Pace::Slow, self.change, &orders);
         let mut fast = proposals(self.context, Pace::Fast, self.change, &orders);
@@ -232,7 +237,10 @@ impl<'c, 'a> Search<'c, 'a> {
             }
             let found = match winner {
                 Some(winner) => vec![self.accept(&winner)],
-                None => self.pair(settings).map_or_else(Vec::new, Vec::from),
+                None => match self.pair(settings) {
+                    Some(pair) => pair.into(),
+                    None => self.next_line().into_iter().collect(),
+                },
             };
             if found.is_empty() {
                 break;
@@ -400,6 +408,7 @@ impl<'c, 'a> Search<'c, 'a> {
             let joint = (old.own.len() < self.slow.design.joints).then(|| old.own[0]);
             let replacement = self.best(settings, joint, 1).map(|w| self.accept(&w));
             let keep = match replacement {
+                None if self.is_line(&old) => Some(old.clone()),
                 Some(new) if new.effect == old.effect && new.place == old.place => {
                     Some(Accepted { shape: new.shape, share: new.share, rivals: new.rivals, ..old.clone() })
                 }
@@ -438,8 +447,10 @@ impl<'c, 'a> Search<'c, 'a> {
                 std::slice::from_ref(&term.shape),
                 self.change,
             );
-            let worth = judge(&side.design, &side.fit, &side.folds, &side.sigma, &candidate)
-                .is_some_and(|v| v.share >= 0.6 * settings.least_share && v.total() > 0.0);
+            let worth =
+                judge(&side.design, &side.fit, &side.folds, &side.sigma, &candidate).is_some_and(|v| {
+                    (v.share >= 0.6 * settings.least_share || self.is_line(&term)) && v.total() > 0.0
+                });
             let better = if single_motion(&side.design) {
                 holds_forward(&side.design, &side.sigma, &candidate, 0)
             } else {
