@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use dynid::models;
-use dynid_runtime::model::{Model, ParameterKind};
+use dynid_runtime::model::{Model, ParameterKind, torques_at};
 use dynid_runtime::simulation::{Plant, check_standard};
 
 /// The generated robots with their nominal standard parameters.
@@ -32,20 +32,12 @@ fn forward_dynamics_undo_inverse_dynamics_to_1e_10() {
         let n = model.robot().joints();
         let chi = model.robot().base_from_standard(&standard);
         let mut plant = Plant::new(model, &chi).unwrap();
-        let pattern = model.pattern();
         for k in 0..50 {
             let wave = |size: f64, rate: f64| -> Vec<f64> {
                 (0..n).map(|j| size * (rate * k as f64 + 1.3 * j as f64 + 0.2).sin()).collect()
             };
             let (q, dq, ddq) = (wave(2.0, 0.7), wave(3.0, 1.1), wave(20.0, 1.7));
-            let mut entries = vec![0.0; pattern.columns.len()];
-            model.idm(&q, &dq, &ddq, &mut entries);
-            let torque: Vec<f64> = (0..n)
-                .map(|i| {
-                    let row = pattern.rows[i]..pattern.rows[i + 1];
-                    row.map(|e| entries[e] * chi[pattern.columns[e]]).sum()
-                })
-                .collect();
+            let torque = torques_at(model, &chi, &q, &dq, &ddq);
             let mut back = vec![0.0; n];
             plant.acceleration(&mut plant.state(&q, &dq), &torque, &mut back).unwrap();
             for (a, b) in back.iter().zip(&ddq) {

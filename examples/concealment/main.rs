@@ -297,7 +297,8 @@ fn score(case: &Case) -> Result<Score, Failure> {
     let model = models::find(&case.robot).ok_or("no such robot")?;
     let whole = Instant::now();
     let recordings = recordings(model, case, false)?;
-    let settings = Settings { threads: 1, ..Settings::default() };
+    let mut settings = Settings::default();
+    settings.threads = 1;
     let start = Instant::now();
     let found = diagnose(model, &recordings.motions, &recordings.baseline, &settings, &Silent);
     let mut score = Score { seconds: start.elapsed().as_secs_f64(), ..Score::default() };

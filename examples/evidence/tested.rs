@@ -5,9 +5,9 @@ use dynid_runtime::diagnosis::{
 };
 use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::estimation::choose_bandwidth;
-use dynid_runtime::model::Model;
+use dynid_runtime::model::{Model, torques};
 use dynid_runtime::recording::Trajectory;
-use dynid_runtime::signal::{Butterworth, Motion, Preparation, prepare};
+use dynid_runtime::signal::{Butterworth, Preparation, prepare};
 
 use crate::Failure;
 
@@ -44,7 +44,8 @@ pub fn errors(
     let mut counted = Vec::new();
     for band in bands {
         // A Hann window of half-width T lets half of the amplitude through at 1 / (2 T).
-        let settings = Settings { fast_window: 0.5 / band, ..settings.clone() };
+        let mut settings = settings.clone();
+        settings.fast_window = 0.5 / band;
         for (rows, slowest) in [("rows where the joint moves", &slowest), ("all rows", &none)] {
             let of = |parameters: &Estimated, terms: &[EffectTerm]| {
                 predict_errors(model, parameters, terms, found.delay, test, slowest, &settings)
@@ -96,7 +97,7 @@ pub fn seen(model: &dyn Model, found: &Diagnosis, motion: &Trajectory) -> Result
             })
             .collect()
     };
-    let mut after = predicted(model, &found.model.chi, &prepared);
+    let mut after = torques(model, &found.model.chi, prepared.state_slices().states());
     let effects = term_torques(model, &found.model.chi, &found.terms(), &prepared)?;
     for (torque, effect) in after.iter_mut().flatten().zip(effects.iter().flatten()) {
         *torque += effect;
@@ -105,24 +106,7 @@ pub fn seen(model: &dyn Model, found: &Diagnosis, motion: &Trajectory) -> Result
         motion: motion.name.clone(),
         time: rows.iter().map(|&t| prepared.start + t as f64 / prepared.rate).collect(),
         measured: thin(&prepared.torque)?,
-        before: thin(&predicted(model, &found.standard.chi, &prepared))?,
+        before: thin(&torques(model, &found.standard.chi, prepared.state_slices().states()))?,
         after: thin(&after)?,
     })
-}
-
-/// Torques of base parameters on a motion.
-fn predicted(model: &dyn Model, chi: &[f64], motion: &Motion) -> Vec<Vec<f64>> {
-    let pattern = model.pattern();
-    let n = motion.q.len();
-    let mut torque = vec![Vec::with_capacity(motion.q[0].len()); n];
-    let mut entries = vec![0.0; pattern.columns.len()];
-    for t in 0..motion.q[0].len() {
-        let at = |signal: &[Vec<f64>]| signal.iter().map(|x| x[t]).collect::<Vec<f64>>();
-        model.idm(&at(&motion.q), &at(&motion.dq), &at(&motion.ddq), &mut entries);
-        for (j, torque) in torque.iter_mut().enumerate() {
-            let row = pattern.rows[j]..pattern.rows[j + 1];
-            torque.push(row.map(|e| entries[e] * chi[pattern.columns[e]]).sum::<f64>());
-        }
-    }
-    torque
 }

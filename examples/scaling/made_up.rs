@@ -1,6 +1,6 @@
 //! Recordings that are made up as they are needed, of any length.
 
-use dynid_runtime::model::{Model, States};
+use dynid_runtime::model::{Model, StateSlices, torques};
 use dynid_runtime::recording::Trajectory;
 
 /// Samples a second, Hz.
@@ -26,23 +26,13 @@ pub fn trajectory(model: &dyn Model, chi: &[f64], first: usize, count: usize) ->
             }
         }
     }
-    let pattern = model.pattern();
-    let (block, stride) = (64, 72);
-    let mut out = vec![0.0; pattern.columns.len() * stride];
+    let exact = torques(model, chi, StateSlices::new(&signals[0], &signals[1], &signals[2]).states());
     let mut torque = vec![Vec::with_capacity(count); n];
     let mut random = first as u64 ^ 0x9e37_79b9_7f4a_7c15;
-    for from in (0..count).step_by(block) {
-        let to = (from + block).min(count);
-        let slices = signals.each_ref().map(|s| s.iter().map(|x| &x[from..to]).collect::<Vec<_>>());
-        model.idm_block(States { q: &slices[0], dq: &slices[1], ddq: &slices[2] }, stride, &mut out);
-        for t in 0..to - from {
-            for (j, torque) in torque.iter_mut().enumerate() {
-                let entries = pattern.rows[j]..pattern.rows[j + 1];
-                let exact: f64 = entries.map(|e| out[e * stride + t] * chi[pattern.columns[e]]).sum();
-                random =
-                    random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                torque.push(exact + NOISE * ((random >> 11) as f64 / (1u64 << 53) as f64 - 0.5));
-            }
+    for t in 0..count {
+        for (torque, exact) in torque.iter_mut().zip(&exact) {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            torque.push(exact[t] + NOISE * ((random >> 11) as f64 / (1u64 << 53) as f64 - 0.5));
         }
     }
     let [position, ..] = signals;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose, term_torques};
 use dynid_runtime::estimation::{Identified, NamedParameter};
-use dynid_runtime::model::{Model, Robot};
+use dynid_runtime::model::{Model, Robot, torques};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::report::{percent, significant};
 use dynid_runtime::signal::Motion;
@@ -109,21 +109,11 @@ fn as_the_reference(path: &Path, options: &RecordingOptions) -> Result<Vec<Traje
 
 /// A motion with the torques of chi added to `torque`.
 fn predicted(model: &dyn Model, chi: &[f64], motion: &Motion, mut torque: Vec<Vec<f64>>) -> Trajectory {
-    let pattern = model.pattern();
-    let n = motion.q.len();
-    let samples = motion.q.first().map_or(0, Vec::len);
-    let mut entries = vec![0.0; pattern.columns.len()];
-    let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    for t in 0..samples {
-        for j in 0..n {
-            (q[j], dq[j], ddq[j]) = (motion.q[j][t], motion.dq[j][t], motion.ddq[j][t]);
-        }
-        model.idm(&q, &dq, &ddq, &mut entries);
-        for (j, torque) in torque.iter_mut().enumerate() {
-            let row = pattern.rows[j]..pattern.rows[j + 1];
-            torque[t] += row.map(|e| entries[e] * chi[pattern.columns[e]]).sum::<f64>();
-        }
+    let modelled = torques(model, chi, motion.state_slices().states());
+    for (torque, modelled) in torque.iter_mut().flatten().zip(modelled.iter().flatten()) {
+        *torque += modelled;
     }
+    let samples = motion.q.first().map_or(0, Vec::len);
     Trajectory {
         name: format!("{} as the reference model has it", motion.name),
         time: (0..samples).map(|t| motion.start + t as f64 / motion.rate).collect(),

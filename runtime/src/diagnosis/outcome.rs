@@ -12,10 +12,10 @@ pub struct Errors {
     pub per_joint: Vec<f64>,
 }
 
-/// Relative errors on motion that was held back.
+/// Relative errors on motion that was held out.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct HeldOut {
-    /// How motion was held back.
+    /// How motion was held out.
     pub how: String,
     /// Standard model.
     pub before: f64,
@@ -25,7 +25,7 @@ pub struct HeldOut {
     pub per_joint_before: Vec<f64>,
     /// With the findings, joint by joint.
     pub per_joint_after: Vec<f64>,
-    /// The same for each motion or stretch that was held back: its name, before, after.
+    /// The same for each motion or stretch that was held out: its name, before, after.
     pub by_motion: Vec<(String, f64, f64)>,
 }
 
@@ -120,6 +120,7 @@ pub struct ParameterShift {
 
 /// An effect that was found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Finding {
     /// Effect.
     pub effect: String,
@@ -149,6 +150,27 @@ pub struct Finding {
     /// Where it is a contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<Wrench>,
+}
+
+impl Finding {
+    /// A term of a model, with everything else still unknown: no confidence, no errors, no words.
+    pub fn of(term: EffectTerm) -> Self {
+        Self {
+            effect: term.effect.id().into(),
+            joints: term.joints.clone(),
+            confidence: 0.0,
+            significance: 0.0,
+            parameters: std::collections::BTreeMap::new(),
+            held_out_before: 0.0,
+            held_out_after: 0.0,
+            share: 0.0,
+            alternatives: Vec::new(),
+            sentence: String::new(),
+            curve: None,
+            term,
+            contacts: Vec::new(),
+        }
+    }
 }
 
 /// A value in the JSON.
@@ -199,8 +221,63 @@ pub struct Estimated {
     pub sigma: Vec<f64>,
 }
 
+/// Which part of the signals was looked at: band, windows, rows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Sampling {
+    /// Highest frequency of the fast rows, Hz: half of the amplitude passes there. Errors are those of the fast rows.
+    pub band: f64,
+    /// The same of the slow rows, on which effects that are as slow as the motion are looked for.
+    pub slow_band: f64,
+    /// Cut-off of the filter of positions and torques, Hz (at most a fifth of the sampling rate of each motion).
+    pub cutoff: f64,
+    /// Half-width of the smoothing of the fast rows, s; rows are as far apart.
+    pub fast_window: f64,
+    /// Half-width of the smoothing of the slow rows, s.
+    pub slow_window: f64,
+    /// Speeds below which the joints count as standing still, rad/s or m/s; rows near a standstill are left out.
+    pub standstill_speeds: Vec<f64>,
+    /// Fast rows, all joints.
+    pub fast_rows: usize,
+    /// Slow rows, all joints.
+    pub slow_rows: usize,
+}
+
+/// Why no more effects were added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum StopReason {
+    /// No candidate was left that holds.
+    NoneAccepted,
+    /// As many effects as the settings allow: there may be more.
+    EffectLimit(usize),
+    /// The effects were given.
+    Given,
+}
+
+/// An effect that was accepted first and did not hold beside the others.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Removed {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of its joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+}
+
+/// How the search for effects ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SearchOutcome {
+    /// Why it stopped.
+    pub stop: StopReason,
+    /// What was taken out of the model again.
+    pub removed: Vec<Removed>,
+}
+
 /// The outcome of a diagnosis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Diagnosis {
     /// Robot.
     pub robot: String,
@@ -208,7 +285,7 @@ pub struct Diagnosis {
     pub before: Errors,
     /// With the findings, in sample.
     pub after: Errors,
-    /// On motion that was held back.
+    /// On motion that was held out.
     pub held_out: HeldOut,
     /// Joint by joint, largest share first.
     pub mismatch: Vec<Mismatch>,
@@ -236,13 +313,17 @@ pub struct Diagnosis {
     pub rows: usize,
     /// Things tried: effects at places, with all of their shapes.
     pub tried: usize,
+    /// Band, windows and rows that all of this rests on.
+    pub sampling: Sampling,
+    /// How the search ended.
+    pub search: SearchOutcome,
     /// Joints about which the recording says nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_judged: Vec<NotJudged>,
 }
 
 /// A joint on which nothing could be looked for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NotJudged {
     /// Number j of the joint.
     pub joint: usize,

@@ -3,7 +3,8 @@
 use super::DiagnosisError;
 use super::outcome::{Errors, Estimated};
 use super::rows::context::{Context, scales};
-use super::rows::design::{Design, Plan};
+use super::rows::design::Design;
+use super::rows::selection::RowSelection;
 use super::rows::signals::{ModelTorques, Signals, directions};
 use super::settings::Settings;
 use crate::effects::{EffectTerm, Form, Place, Transmission};
@@ -83,9 +84,9 @@ pub fn predict_errors(
         trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff)).collect::<Result<_, _>>()?;
     let forms = directions(model.robot());
     let nothing = vec![Vec::new(); signals.len()];
-    let plan =
-        Plan { half: settings.fast_window, slowest, directions: &forms, chunks: 1, excluded: &nothing };
-    let design = Design::new(model, &signals, &plan);
+    let selection =
+        RowSelection { half: settings.fast_window, slowest, directions: &forms, segments: 1, excluded: &nothing };
+    let design = Design::new(model, &signals, &selection);
     let added = torques_on(model, &parameters.chi, terms, &signals)?;
     let n = design.joints;
     let (mut left, mut whole) = (vec![0.0; n], vec![0.0; n]);

@@ -1,11 +1,23 @@
 //! What a diagnosis can be told, and what it tells while it works.
 
-use super::rows::signals::CUTOFF;
+use super::rows::fit::SingularDesign;
+use super::rules;
 use crate::estimation::choose_bandwidth;
 use crate::recording::Trajectory;
 
-/// Settings of a diagnosis. None of them knows a robot: speeds and travels count relative to the joint's own.
+/// Settings of a diagnosis. None of them knows a robot: speeds and travels count relative to the joint's own, unless
+/// absolute speeds are given.
+///
+/// ```
+/// use dynid_runtime::diagnosis::Settings;
+///
+/// let mut settings = Settings::default();
+/// settings.threads = 1;
+/// settings.band = Some(15.0);
+/// assert_eq!(settings.cutoff, None);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// Half-width of the smoothing for effects that are as slow as the motion, s.
     pub slow_window: f64,
@@ -19,7 +31,18 @@ pub struct Settings {
     pub least_confidence: f64,
     /// Most effects that are named.
     pub most_effects: usize,
-    /// Threads.
+    /// Highest frequency of the rows, Hz: the smoothing lets half of the amplitude through there. `None`: chosen from
+    /// the recording's own noise ([`choose_bandwidth`]), and never above what the two windows let through.
+    ///
+    /// A given band replaces the fast window by 0.5 / band and widens the slow one where it would let more through.
+    /// The rows are half a window apart, so that their number a second follows from the band: there is no rate to set.
+    pub band: Option<f64>,
+    /// Cut-off of the filter of positions and torques, Hz. `None`: that of the band, at most 60 Hz.
+    pub cutoff: Option<f64>,
+    /// Speeds below which the joints count as standing still, one per joint, rad/s or m/s; used for all rows instead of
+    /// `standstill`. Speed 0 keeps every row where a joint's speed does not change its sign within the window.
+    pub standstill_speeds: Option<Vec<f64>>,
+    /// Threads; 0: as many as the machine has. The outcome does not depend on them.
     pub threads: usize,
 }
 
@@ -28,24 +51,54 @@ pub(super) fn fitted_to(
     settings: &Settings,
     trajectories: &[Trajectory],
 ) -> Result<(f64, Settings), DiagnosisError> {
-    let band = choose_bandwidth(trajectories)?;
-    // A Hann window of half-width T lets half of the amplitude through at 1 / (2 T).
-    let least = 0.5 / band.band.max(1e-6);
     let mut fitted = settings.clone();
-    fitted.slow_window = fitted.slow_window.max(least);
-    fitted.fast_window = fitted.fast_window.max(least);
-    Ok((band.cutoff.min(CUTOFF), fitted))
+    // A Hann window of half-width T lets half of the amplitude through at 1 / (2 T).
+    let cutoff = match settings.band {
+        Some(band) if band > 0.0 && band.is_finite() => {
+            fitted.fast_window = 0.5 / band;
+            fitted.slow_window = fitted.slow_window.max(fitted.fast_window);
+            2.0 * band
+        }
+        Some(band) => return Err(DiagnosisError::Setting { option: "band", value: band }),
+        None => {
+            let chosen = choose_bandwidth(trajectories)?;
+            let least = 0.5 / chosen.band.max(1e-6);
+            fitted.slow_window = fitted.slow_window.max(least);
+            fitted.fast_window = fitted.fast_window.max(least);
+            chosen.cutoff
+        }
+    };
+    match settings.cutoff {
+        Some(cutoff) if cutoff > 0.0 && cutoff.is_finite() => Ok((cutoff, fitted)),
+        Some(cutoff) => Err(DiagnosisError::Setting { option: "cutoff", value: cutoff }),
+        None => Ok((cutoff.min(rules::HIGHEST_CUTOFF), fitted)),
+    }
+}
+
+/// Speeds of standstill that were given, checked.
+pub(super) fn given_speeds(settings: &Settings, joints: usize) -> Result<Option<Vec<f64>>, DiagnosisError> {
+    let Some(speeds) = &settings.standstill_speeds else { return Ok(None) };
+    if speeds.len() != joints {
+        return Err(DiagnosisError::StandstillSpeeds { given: speeds.len(), joints });
+    }
+    match speeds.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+        Some(&value) => Err(DiagnosisError::Setting { option: "standstill", value }),
+        None => Ok(Some(speeds.clone())),
+    }
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            slow_window: 0.045,
-            fast_window: 0.020,
-            standstill: 0.015,
-            least_share: 0.12,
-            least_confidence: 0.99,
-            most_effects: 12,
+            slow_window: rules::SLOW_WINDOW,
+            fast_window: rules::FAST_WINDOW,
+            standstill: rules::STANDSTILL,
+            least_share: rules::LEAST_EXPLAINED_FRACTION,
+            least_confidence: rules::LEAST_CONFIDENCE,
+            most_effects: rules::MOST_EFFECTS,
+            band: None,
+            cutoff: None,
+            standstill_speeds: None,
             threads: 2,
         }
     }
@@ -67,6 +120,7 @@ impl Progress for Silent {
 
 /// Why the data cannot support a diagnosis.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DiagnosisError {
     /// A signal could not be prepared.
     #[error(transparent)]
@@ -74,6 +128,25 @@ pub enum DiagnosisError {
     /// The recursive model could not be built.
     #[error(transparent)]
     Model(#[from] crate::model::RecursiveModelError),
+    /// A fit of the standard model or of a model with effects failed.
+    #[error(transparent)]
+    Singular(#[from] SingularDesign),
+    /// A setting that cannot be.
+    #[error("{option} {value}: it must be a positive, finite number")]
+    Setting {
+        /// Which.
+        option: &'static str,
+        /// What it was set to.
+        value: f64,
+    },
+    /// Speeds of standstill for another number of joints.
+    #[error("{given} speeds of standstill are given for a robot of {joints} joints")]
+    StandstillSpeeds {
+        /// Speeds given.
+        given: usize,
+        /// Joints of the robot.
+        joints: usize,
+    },
     /// No motion at all.
     #[error("the recording has no motion")]
     NoMotion,

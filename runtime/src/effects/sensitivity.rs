@@ -249,7 +249,9 @@ fn wide_row(row: &Row<Dual>) -> Row<Wide> {
 mod tests {
     use super::super::{EffectKind, Form};
     use super::*;
-    use crate::model::{BaseParameter, Drive, Frame, JointKind, Limits, Robot, standard_parameters};
+    use crate::model::{
+        BaseParameter, Drive, Frame, JointKind, Limits, Robot, standard_parameters, torques_at,
+    };
     use std::borrow::Cow;
 
     fn arm() -> Robot {
@@ -297,15 +299,7 @@ mod tests {
     }
 
     fn torque(robot: &Robot, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<f64> {
-        let model = RecursiveModel::new(robot.clone()).unwrap();
-        let pattern = model.pattern().clone();
-        let mut entries = vec![0.0; pattern.columns.len()];
-        model.idm(q, dq, ddq, &mut entries);
-        (0..3)
-            .map(|j| {
-                (pattern.rows[j]..pattern.rows[j + 1]).map(|e| entries[e] * chi[pattern.columns[e]]).sum()
-            })
-            .collect()
+        torques_at(&RecursiveModel::new(robot.clone()).unwrap(), chi, q, dq, ddq)
     }
 
     #[test]

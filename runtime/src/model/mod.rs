@@ -5,22 +5,22 @@ mod dual;
 mod lanes;
 mod number;
 mod recursive;
-mod robot;
-mod standard;
+mod torques;
 
 pub use block::{
     InLines, LINE, Line, LineStates, array, array_mut, evaluate_block, evaluate_line, evaluate_lines,
 };
 pub use dual::Dual;
+pub use dynid_description::{
+    BaseParameter, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Nominal, ParameterKind, Robot,
+    StandardParameter, standard_parameters,
+};
 pub use lanes::{LANES, Lanes};
 pub use number::Number;
 pub use recursive::{
     Link, MAX_FRAMES, RecursiveModel, RecursiveModelError, Row, standard_energy, standard_idm, standard_power,
 };
-pub use robot::{
-    BaseParameter, Drive, Frame, JointKind, Limits, Nominal, ParameterKind, Robot, StandardParameter,
-};
-pub use standard::{standard_parameters, unit};
+pub use torques::{StateSlices, torques, torques_at};
 
 /// Where the inverse dynamic regressor can be non-zero: the block-triangular form (5), entry by entry.
 #[derive(Debug, Clone, PartialEq, Eq)]

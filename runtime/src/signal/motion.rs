@@ -1,5 +1,7 @@
 //! One motion ready for a model: filtered and differentiated on a uniform grid.
 
+use crate::model::StateSlices;
+
 /// Filtered positions, their derivatives and the torques of one motion at the full rate. `q[j][t]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
@@ -21,4 +23,11 @@ pub struct Motion {
     pub fixed: Vec<usize>,
     /// Samples at each end that the position filter has spoiled and that no row may use.
     pub spoiled: usize,
+}
+
+impl Motion {
+    /// Positions, velocities and accelerations as a model takes them.
+    pub fn state_slices(&self) -> StateSlices<'_> {
+        StateSlices::new(&self.q, &self.dq, &self.ddq)
+    }
 }

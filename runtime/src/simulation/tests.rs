@@ -4,7 +4,7 @@
 use super::excitation::{ExcitationSettings, FourierJoint, FourierMotion, MotionKind, excite};
 use super::testing::{arm, pendulum, random_state, tx40, wrist};
 use super::*;
-use crate::model::{Model, ParameterKind, RecursiveModel};
+use crate::model::{Model, ParameterKind, RecursiveModel, torques_at};
 use rand::{RngExt, SeedableRng};
 
 fn without_friction(model: &RecursiveModel, chi: &[f64]) -> Vec<f64> {
@@ -43,19 +43,11 @@ fn energy_is_kept_over_ten_seconds_without_friction() {
 fn forward_dynamics_undo_inverse_dynamics() {
     let (model, chi) = arm();
     let n = model.robot().joints();
-    let pattern = model.pattern();
     let mut plant = Plant::new(&model, &chi).unwrap();
     let mut random = rand_pcg::Pcg64::seed_from_u64(3);
     for _ in 0..200 {
         let [q, dq, ddq] = random_state(n, &mut random);
-        let mut entries = vec![0.0; pattern.columns.len()];
-        model.idm(&q, &dq, &ddq, &mut entries);
-        let torque: Vec<f64> = (0..n)
-            .map(|i| {
-                let row = pattern.rows[i]..pattern.rows[i + 1];
-                row.map(|e| entries[e] * chi[pattern.columns[e]]).sum()
-            })
-            .collect();
+        let torque = torques_at(&model, &chi, &q, &dq, &ddq);
         let mut state = plant.state(&q, &dq);
         let mut back = vec![0.0; n];
         plant.acceleration(&mut state, &torque, &mut back).unwrap();
@@ -255,18 +247,9 @@ fn loop_settings(model: &RecursiveModel, chi: &[f64], q: &[f64]) -> LoopSettings
 }
 
 fn residual(model: &RecursiveModel, chi: &[f64], run: &Simulation, t: usize) -> Vec<f64> {
-    let n = model.robot().joints();
     let at = |signal: &[Vec<f64>]| signal.iter().map(|x| x[t]).collect::<Vec<f64>>();
-    let (q, dq, ddq) = (at(&run.truth.q), at(&run.truth.dq), at(&run.truth.ddq));
-    let pattern = model.pattern();
-    let mut entries = vec![0.0; pattern.columns.len()];
-    model.idm(&q, &dq, &ddq, &mut entries);
-    (0..n)
-        .map(|i| {
-            let row = pattern.rows[i]..pattern.rows[i + 1];
-            run.truth.torque[i][t] - row.map(|e| entries[e] * chi[pattern.columns[e]]).sum::<f64>()
-        })
-        .collect()
+    let modelled = torques_at(model, chi, &at(&run.truth.q), &at(&run.truth.dq), &at(&run.truth.ddq));
+    run.truth.torque.iter().zip(modelled).map(|(torque, modelled)| torque[t] - modelled).collect()
 }
 
 #[test]

@@ -23,25 +23,25 @@ pub(in crate::diagnosis) struct Candidate {
 
 /// Which effects are looked for, and on which rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::diagnosis) enum Pace {
+pub(in crate::diagnosis) enum SmoothingWindow {
     /// As slow as the motion.
     Slow,
     /// Faster than the motion.
     Fast,
 }
 
-/// The pace that shows an effect best.
-pub(in crate::diagnosis) fn pace(effect: EffectKind) -> Pace {
+/// The smoothing window that shows an effect best.
+pub(in crate::diagnosis) fn smoothing_window(effect: EffectKind) -> SmoothingWindow {
     match effect {
-        EffectKind::TorqueRipple | EffectKind::JointElasticity | EffectKind::Backlash => Pace::Fast,
-        _ => Pace::Slow,
+        EffectKind::TorqueRipple | EffectKind::JointElasticity | EffectKind::Backlash => SmoothingWindow::Fast,
+        _ => SmoothingWindow::Slow,
     }
 }
 
-/// Places and shapes of every effect that this pace shows. `orders[j]` are ripple orders seen on joint j.
+/// Places and shapes of every effect that this window shows. `orders[j]` are ripple orders seen on joint j.
 pub(in crate::diagnosis) fn proposals(
     context: &Context<'_>,
-    wanted: Pace,
+    wanted: SmoothingWindow,
     change: bool,
     orders: &[Vec<f64>],
 ) -> Vec<(EffectKind, Place, Vec<Vec<f64>>)> {
@@ -49,7 +49,7 @@ pub(in crate::diagnosis) fn proposals(
     let n = robot.joints();
     let mut list = Vec::new();
     for effect in EffectKind::ALL {
-        if pace(effect) != wanted || (effect.needs_baseline() && !change) {
+        if smoothing_window(effect) != wanted || (effect.needs_baseline() && !change) {
             continue;
         }
         match effect.form() {

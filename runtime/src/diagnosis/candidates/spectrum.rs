@@ -2,40 +2,30 @@
 
 use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rows::signals::Signals;
+use crate::diagnosis::rules::{
+    ASSUMED_GEAR, HIGHEST_ORDER, LEAST_PERIODS, LEAST_SAMPLES, MOST_ORDERS, ORDER_STEP, PART_OF_NYQUIST,
+    PEAK_OVER_MEDIAN, SPECTRUM_RATE,
+};
+use crate::effects::Scale;
+use std::f64::consts::PI;
 
-/// Highest order per motor turn that is looked at.
-const HIGHEST: f64 = 7.0;
-/// Most orders of a spectrum.
-const MOST: usize = 600;
-
-/// Amplitudes at orders up to [`HIGHEST`] per motor turn, on samples where the joint moves faster than `slowest`.
-/// `residual[signal][t]` is of this joint.
+/// Amplitudes at orders up to [`HIGHEST_ORDER`] per motor turn, on samples where the joint (0-based, of this `scale`)
+/// moves faster than `slowest`. `residual[signal][t]` is of this joint.
 pub(in crate::diagnosis) fn order_spectrum(
     joint: usize,
-    number: usize,
     signals: &[Signals],
     residual: &[Vec<f64>],
-    gear: f64,
-    range: f64,
+    scale: &Scale,
     slowest: f64,
 ) -> OrderSpectrum {
-    let tau = 2.0 * std::f64::consts::PI;
-    // Four periods must fit into the travel; finer than one wave over the travel there is nothing to resolve.
-    let least = 4.0 * tau / range;
-    // A joint that is known without its gear is searched up to an order that robots' gears do not pass.
-    let top = (HIGHEST * gear.max(100.0)).max(2.0 * least);
-    let mut step = 0.4 * tau / range;
-    step = step.max((top - least) / MOST as f64);
-    let count = (((top - least) / step) as usize).max(1);
-    let mut spectrum = OrderSpectrum { joint: number, gear, ..OrderSpectrum::default() };
-    for k in 0..count {
-        let order = least + step * k as f64;
+    let mut spectrum = OrderSpectrum { gear: scale.gear, ..OrderSpectrum::default() };
+    for order in orders(scale) {
         let (mut c, mut s, mut n) = (0.0, 0.0, 0.0);
         for (signal, r) in signals.iter().zip(residual) {
-            let highest = signal.rate * std::f64::consts::PI * 0.6;
-            let stride = (signal.rate / 1000.0).max(1.0) as usize;
-            let end = signal.len().saturating_sub(signal.spoiled);
-            for t in (signal.spoiled..end).step_by(stride) {
+            let highest = signal.rate * PI * PART_OF_NYQUIST;
+            let stride = (signal.rate / SPECTRUM_RATE).max(1.0) as usize;
+            let end = signal.len().saturating_sub(signal.edge_samples);
+            for t in (signal.edge_samples..end).step_by(stride) {
                 let v = signal.dq[joint][t].abs();
                 if v > slowest && v * order < highest {
                     let (sine, cosine) = (order * signal.q[joint][t]).sin_cos();
@@ -46,21 +36,81 @@ pub(in crate::diagnosis) fn order_spectrum(
             }
         }
         spectrum.order.push(order);
-        spectrum.amplitude.push(if n > 100.0 { 2.0 * c.hypot(s) / n } else { 0.0 });
+        spectrum.amplitude.push(if n > LEAST_SAMPLES { 2.0 * c.hypot(s) / n } else { 0.0 });
     }
     spectrum
 }
 
-/// The orders that stand out: local maxima above four times the median amplitude, highest first, at most `most`.
+/// The orders of a spectrum.
+fn orders(scale: &Scale) -> impl Iterator<Item = f64> {
+    let least = LEAST_PERIODS * 2.0 * PI / scale.range;
+    let top = (HIGHEST_ORDER * scale.gear.max(ASSUMED_GEAR)).max(2.0 * least);
+    // Finer than a part of one wave over the travel there is nothing to resolve.
+    let step = (ORDER_STEP * 2.0 * PI / scale.range).max((top - least) / MOST_ORDERS as f64);
+    let count = (((top - least) / step) as usize).max(1);
+    (0..count).map(move |k| least + step * k as f64)
+}
+
+/// The orders that stand out: local maxima above some times the median amplitude, highest first, at most `most`.
 pub(in crate::diagnosis) fn peaks(spectrum: &OrderSpectrum, most: usize) -> Vec<f64> {
     let a = &spectrum.amplitude;
     let mut sorted = a.clone();
     sorted.sort_by(f64::total_cmp);
     let median = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     let mut found: Vec<usize> = (1..a.len().saturating_sub(1))
-        .filter(|&k| a[k] > a[k - 1] && a[k] >= a[k + 1] && a[k] > 4.0 * median)
+        .filter(|&k| a[k] > a[k - 1] && a[k] >= a[k + 1] && a[k] > PEAK_OVER_MEDIAN * median)
         .collect();
     found.sort_by(|&x, &y| a[y].total_cmp(&a[x]));
     found.truncate(most);
     found.into_iter().map(|k| spectrum.order[k]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A joint that swings, seen 500 times a second.
+    fn swing(seconds: f64) -> Signals {
+        let rate = 500.0;
+        let samples = (rate * seconds) as usize;
+        let at = |f: &dyn Fn(f64) -> f64| vec![(0..samples).map(|t| f(t as f64 / rate)).collect::<Vec<f64>>()];
+        let mut signals = Signals::of_motion(&crate::signal::Motion {
+            name: "swing".into(),
+            rate,
+            start: 0.0,
+            q: at(&|t| (1.3 * t).sin()),
+            dq: at(&|t| 1.3 * (1.3 * t).cos()),
+            ddq: at(&|t| -1.69 * (1.3 * t).sin()),
+            torque: vec![vec![0.0; samples]],
+            fixed: vec![],
+            spoiled: 0,
+        });
+        signals.edge_samples = 10;
+        signals
+    }
+
+    #[test]
+    fn a_ripple_is_a_peak_at_its_order_and_of_its_amplitude() {
+        let signals = [swing(40.0)];
+        let scale =
+            Scale { speed: 1.3, range: 2.0, torque: 1.0, duration: 40.0, gear: 50.0, prismatic: false };
+        for order in [50.0, 101.5] {
+            let ripple = |q: &f64| 0.3 * (order * q + 0.7).cos();
+            let residual = [signals[0].q[0].iter().map(ripple).collect::<Vec<f64>>()];
+            let spectrum = order_spectrum(0, &signals, &residual, &scale, 0.05);
+            let found = peaks(&spectrum, 2);
+            assert!((found[0] - order).abs() < 1.3, "{order}: {found:?}");
+            let highest = spectrum.amplitude.iter().fold(0.0_f64, |a, &b| a.max(b));
+            assert!((highest - 0.3).abs() < 0.06, "{order}: {highest}");
+        }
+    }
+
+    #[test]
+    fn a_residual_that_is_flat_has_no_peaks() {
+        let signals = [swing(40.0)];
+        let scale =
+            Scale { speed: 1.3, range: 2.0, torque: 1.0, duration: 40.0, gear: 50.0, prismatic: false };
+        let spectrum = order_spectrum(0, &signals, &[vec![0.0; signals[0].len()]], &scale, 0.05);
+        assert!(peaks(&spectrum, 2).is_empty());
+    }
 }

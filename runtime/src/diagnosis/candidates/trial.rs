@@ -1,7 +1,8 @@
 //! A shape of an effect at a place as columns on the rows, and their inner products with the design.
 
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rows::design::{Design, dot};
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::gram::dot;
 use crate::effects::{EffectKind, Place};
 use nalgebra::DMatrix;
 
@@ -39,7 +40,7 @@ pub(in crate::diagnosis) fn columns(
 ) -> Vec<Sparse> {
     let mut out: Vec<Sparse> = Vec::new();
     for k in 0..context.signals.len() {
-        let silent = change && !context.signals[k].fresh;
+        let silent = change && !context.signals[k].is_target;
         // A silent motion still needs to know which joints the columns act on.
         let mut series = context.series(k, effect, place, shape);
         if silent {

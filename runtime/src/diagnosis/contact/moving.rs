@@ -1,8 +1,9 @@
 //! Pushes against a robot that moves, seen joint by joint: from the rows of a model's residual to forces and windows.
 
+use crate::diagnosis::contact::force::{JointRow, UnitForces};
 use crate::diagnosis::contact::scan::{Pushed, Track, scan, together};
-use crate::diagnosis::contact::search::{Contacts, after, force, units};
-use crate::diagnosis::judging::memory::places;
+use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::judging::ar1::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::effects::{JointTorque, Wrench};
@@ -21,14 +22,17 @@ pub(in crate::diagnosis) fn in_motion(
     sigma: &[f64],
 ) -> Option<Contacts> {
     let signals = context.signals;
-    let first = signals.iter().position(|s| s.fresh)?;
+    let first = signals.iter().position(|s| s.is_target)?;
     let step = design.spacing(first) as f64 / signals[first].rate;
     let tracks: Vec<Track> = (0..design.joints)
         .map(|joint| {
-            let of_motion = |(k, rows): (usize, Vec<(usize, usize)>)| {
-                (signals[k].fresh, rows.into_iter().map(|(place, r)| (place, residual[r])).collect())
+            let of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
+                (signals[k].is_target, rows.iter().map(|&(place, r)| (place, residual[r])).collect())
             };
-            Track { joint, motions: places(design, joint).into_iter().enumerate().map(of_motion).collect() }
+            Track {
+                joint,
+                motions: Places::of(design, joint).motions().iter().enumerate().map(of_motion).collect(),
+            }
         })
         .collect();
     let groups = together(scan(&tracks, step), step);
@@ -50,7 +54,8 @@ pub(in crate::diagnosis) fn in_motion(
         for p in group {
             contacts.doubt = contacts.doubt.min(p.doubt);
             let weight = 1.0 / (sigma[p.joint] * sigma[p.joint]);
-            let rows = &places(design, p.joint)[p.motion];
+            let places = Places::of(design, p.joint);
+            let Some(rows) = places.motions().get(p.motion) else { continue };
             let inside: Vec<usize> = rows
                 .iter()
                 .filter(|(place, _)| (p.places[0]..=p.places[1]).contains(place))
@@ -128,7 +133,6 @@ fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pus
     }
     // Where the robot is in the middle of the push; joints that feel nothing say so.
     let middle = (first.places[0] + last.places[1]) / 2 * spacing;
-    let mut sigma = vec![1.0; design.joints];
     let mut rows = Vec::new();
     for track in tracks {
         let felt = group.iter().find(|p| p.joint == track.joint);
@@ -148,15 +152,15 @@ fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pus
             // Of a mean of as many rows, half of them independent.
             (squares / count.max(1) as f64 * 2.0 / inside.len() as f64).sqrt()
         };
-        sigma[track.joint] = felt.map_or_else(spread, |p| p.sigma).max(1e-12);
-        rows.push((track.joint, mean, 0.0));
+        let sigma = felt.map_or_else(spread, |p| p.sigma).max(1e-12);
+        rows.push(JointRow { joint: track.joint, residual: mean, y: 0.0, sigma });
     }
-    let whole: f64 = rows.iter().map(|(j, r, _)| (r / sigma[*j]).powi(2)).sum();
+    let whole: f64 = rows.iter().map(|row| (row.residual / row.sigma).powi(2)).sum();
     let mut best: Option<(f64, usize, [f64; 3])> = None;
     for frame in (0..robot.frames.len()).filter(|&f| joint_of_frame[f].is_some()).rev() {
-        let unit = units(context, frame, s, middle.min(s.len().saturating_sub(1)));
-        let f = force(&unit, &rows, &sigma);
-        let left = after(&unit, &rows, &sigma, &f);
+        let unit = UnitForces::at(context, frame, s, middle.min(s.len().saturating_sub(1)));
+        let f = unit.force(&rows);
+        let left = unit.left(&rows, &f);
         // A link further in must be clearly better: the same force seen from the next link is nearly as good.
         if best.as_ref().is_none_or(|b| left < 0.6 * b.0) {
             best = Some((left, frame, [f[0], f[1], f[2]]));

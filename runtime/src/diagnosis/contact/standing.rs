@@ -1,7 +1,8 @@
 //! Pushes against a robot that holds still, from a model that its motion has told.
 
+use crate::diagnosis::contact::force::{JointRow, UnitForces};
 use crate::diagnosis::contact::rest::{Load, Push, STICTION, Seen, Standing, look, stretches};
-use crate::diagnosis::contact::search::{Contacts, after, force, units};
+use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::effects::{JointTorque, Wrench};
@@ -62,8 +63,9 @@ pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, fitted: &[bool], slow
         coulomb: coulomb.clone(),
         by_joint: std::array::from_fn(|_| vec![0.0; coulomb.len()]),
     };
-    for (k, s) in context.signals.iter().enumerate().filter(|(_, s)| s.fresh) {
-        let inside = s.spoiled.min(s.len())..s.len().saturating_sub(s.spoiled).max(s.spoiled.min(s.len()));
+    for (k, s) in context.signals.iter().enumerate().filter(|(_, s)| s.is_target) {
+        let inside = s.edge_samples.min(s.len())
+            ..s.len().saturating_sub(s.edge_samples).max(s.edge_samples.min(s.len()));
         let still: Vec<bool> = inside
             .clone()
             .map(|t| s.dq.iter().zip(slowest).all(|(dq, least)| dq[t].abs() < *least))
@@ -143,20 +145,7 @@ const SLOW: f64 = 1e-9;
 /// Positions at which all joints have one speed and no acceleration.
 fn resting(s: &Signals, q: Vec<Vec<f64>>, speed: f64) -> Signals {
     let like = |value: f64| -> Vec<Vec<f64>> { q.iter().map(|x| vec![value; x.len()]).collect() };
-    Signals {
-        name: s.name.clone(),
-        fresh: s.fresh,
-        rate: s.rate,
-        start: s.start,
-        dq: like(speed),
-        ddq: like(0.0),
-        jerk: like(0.0),
-        torque: like(0.0),
-        recorded: like(0.0),
-        recorded_band: s.recorded_band,
-        spoiled: s.spoiled,
-        q,
-    }
+    Signals::without_torque(&s.name, s.rate, s.start, [q.clone(), like(speed), like(0.0)])
 }
 
 /// A push as a force on a link where at least two joints see it and one force explains them; else as joint torques.
@@ -175,12 +164,19 @@ fn wrench(
     let step = ((STEP * standing.rate) as usize).max(1);
     let instants: Vec<usize> = (from..=to).step_by(step).collect();
     let sigma: Vec<f64> = standing.coulomb.iter().map(|c| c.unwrap_or(1.0) / 3.0_f64.sqrt()).collect();
-    let rows = |t: usize| -> Vec<(usize, f64, f64)> {
+    let rows = |t: usize| -> Vec<JointRow> {
         let known = standing.coulomb.iter().enumerate().filter(|(_, c)| c.is_some());
-        known.map(|(j, _)| (j, standing.beyond[j][t], s.torque[j][t + offset])).collect()
+        known
+            .map(|(joint, _)| JointRow {
+                joint,
+                residual: standing.beyond[joint][t],
+                y: s.torque[joint][t + offset],
+                sigma: sigma[joint],
+            })
+            .collect()
     };
     for (i, &t) in instants.iter().enumerate() {
-        for (j, beyond, torque) in rows(t) {
+        for JointRow { joint: j, residual: beyond, y: torque, sigma } in rows(t) {
             let neighbours: Vec<f64> = [i.checked_sub(1), Some(i + 1)]
                 .into_iter()
                 .flatten()
@@ -189,7 +185,7 @@ fn wrench(
                 .collect();
             let mean = neighbours.iter().sum::<f64>() / neighbours.len().max(1) as f64;
             for (sum, x) in squares.iter_mut().zip([beyond, beyond - mean, torque]) {
-                *sum += (x / sigma[j]).powi(2);
+                *sum += (x / sigma).powi(2);
             }
         }
     }
@@ -217,14 +213,15 @@ fn wrench(
     if push.joints.len() < 2 {
         return wrench;
     }
-    let whole: f64 = instants.iter().flat_map(|&t| rows(t)).map(|(j, r, _)| (r / sigma[j]).powi(2)).sum();
+    let whole: f64 =
+        instants.iter().flat_map(|&t| rows(t)).map(|row| (row.residual / row.sigma).powi(2)).sum();
     let mut best: Option<(f64, usize, Vec<Vector3<f64>>)> = None;
     for frame in (0..robot.frames.len()).filter(|&f| joint_of_frame[f].is_some()).rev() {
         let (mut left, mut forces) = (0.0, Vec::new());
         for &t in &instants {
-            let (unit, rows) = (units(context, frame, s, t + offset), rows(t));
-            let f = force(&unit, &rows, &sigma);
-            left += after(&unit, &rows, &sigma, &f);
+            let (unit, rows) = (UnitForces::at(context, frame, s, t + offset), rows(t));
+            let f = unit.force(&rows);
+            left += unit.left(&rows, &f);
             forces.push(f);
         }
         // A link further in must be clearly better: the same force seen from the next link is nearly as good.

@@ -1,15 +1,16 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
-use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::candidates::trial::dense_columns;
-use crate::diagnosis::explanation::explain::Bare;
-use crate::diagnosis::joint_number;
+use crate::diagnosis::explanation::standard_model::StandardModelFit;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
 use crate::diagnosis::rows::design::{Design, RowAt};
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::signals::Signals;
-use crate::diagnosis::search::state::{Accepted, Search};
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::term::Accepted;
 use crate::effects::EffectKind;
+use crate::model::JointIndex;
 
 /// Bins of a curve.
 const BINS: usize = 40;
@@ -17,8 +18,8 @@ const BINS: usize = 40;
 /// A variable of a row: its name with the unit, and its value.
 type Variable<'a> = (&'a str, Box<dyn Fn(&RowAt) -> f64 + 'a>);
 
-fn variable<'a>(search: &'a Search<'_, '_>, joint: usize, term: &'a Accepted) -> Variable<'a> {
-    let context = &*search.context;
+fn variable<'a>(model: &'a ExtendedModel<'_>, joint: usize, term: &'a Accepted) -> Variable<'a> {
+    let context = &model.context;
     let unit = context.scales[joint].position_unit();
     let prismatic = unit == "m";
     let signals = context.signals;
@@ -73,18 +74,18 @@ fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
 }
 
 /// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
-pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k: usize) -> Option<Curve> {
+pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, k: usize) -> Option<Curve> {
     let joint = *term.own.first()?;
-    let side = search.side(pace(term.effect));
+    let side = model.regression(smoothing_window(term.effect));
     let design = &side.design;
-    let dense = dense_columns(search.context, design, term.effect, term.place, &term.shape, search.change);
+    let dense = dense_columns(&model.context, design, term.effect, term.place, &term.shape, model.change);
     let amplitude: Vec<f64> = match term.fixed {
         Some(a) => vec![a],
         None => side.term_columns[k].clone().map(|c| side.fit.chi[c]).collect(),
     };
     let residual = side.fit.residual(design);
-    let (name, value) = variable(search, joint, term);
-    let signals = search.context.signals;
+    let (name, value) = variable(model, joint, term);
+    let signals = model.context.signals;
     // Friction opposes the motion: over anything but the speed, both directions would hide each other.
     let opposes = matches!(
         term.effect,
@@ -93,7 +94,7 @@ pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k:
     let along = |r: &RowAt| if opposes { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 };
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
-        .filter(|&r| signals[design.rows[r].signal].fresh)
+        .filter(|&r| signals[design.rows[r].signal].is_target)
         .map(|r| {
             let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
             let sign = along(&design.rows[r]);
@@ -102,7 +103,7 @@ pub(in crate::diagnosis) fn of_term(search: &Search<'_, '_>, term: &Accepted, k:
         .collect();
     let mut curve = binned(rows);
     curve.variable = if opposes { format!("{name} (torques along the motion)") } else { name.into() };
-    curve.unit = search.context.scales[joint].torque_unit().into();
+    curve.unit = model.context.scales[joint].torque_unit().into();
     Some(curve)
 }
 
@@ -139,21 +140,21 @@ fn explained(values: Vec<f64>, residual: &[f64]) -> f64 {
 }
 
 /// Where the standard model fails, joint by joint.
-pub(in crate::diagnosis) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held: &[f64]) -> Vec<Mismatch> {
-    let design = &search.slow.design;
-    let context = &*search.context;
+pub(in crate::diagnosis) fn mismatch(model: &ExtendedModel<'_>, standard: &StandardModelFit) -> Vec<Mismatch> {
+    let design = &model.slow.design;
+    let context = &model.context;
     let robot = context.model.robot();
     let mut list = Vec::new();
     let mut shares = Vec::new();
     for j in 0..design.joints {
-        let floor = noise_floor(design, &search.slow.fit, j);
-        let rows = design.count(j, |g| design.segments[g].fresh);
-        shares.push((held[j] / (floor * floor).max(1e-300) - rows as f64).max(0.0));
+        let floor = noise_floor(design, &model.slow.fit, j);
+        let rows = design.count(j, |g| design.segments[g].is_target);
+        shares.push((standard.held_slow.left[j] / (floor * floor).max(1e-300) - rows as f64).max(0.0));
     }
     let all: f64 = shares.iter().sum::<f64>().max(1e-300);
     for j in 0..design.joints {
         let rows: Vec<usize> = design.of_joint(j).collect();
-        let residual: Vec<f64> = rows.iter().map(|&r| bare.residual_slow[r]).collect();
+        let residual: Vec<f64> = rows.iter().map(|&r| standard.residual_slow[r]).collect();
         let over = |f: &dyn Fn(&Signals, &RowAt) -> f64| -> f64 {
             let values =
                 rows.iter().map(|&r| f(&context.signals[design.rows[r].signal], &design.rows[r])).collect();
@@ -178,7 +179,7 @@ pub(in crate::diagnosis) fn mismatch(search: &Search<'_, '_>, bare: &Bare, held:
             _ if share > 0.02 => "while moving; no single variable orders it".into(),
             _ => "nothing beyond the noise".into(),
         };
-        list.push(Mismatch { joint: joint_number(robot, j), share, where_ });
+        list.push(Mismatch { joint: robot.joint_number(JointIndex(j)).0, share, where_ });
     }
     list.sort_by(|a, b| b.share.total_cmp(&a.share));
     list
@@ -211,13 +212,13 @@ fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
 }
 
 /// What nothing explains.
-pub(in crate::diagnosis) fn unexplained(search: &Search<'_, '_>) -> Unexplained {
-    let design = &search.slow.design;
-    let residual = search.slow.fit.residual(design);
+pub(in crate::diagnosis) fn unexplained(model: &ExtendedModel<'_>) -> Unexplained {
+    let design = &model.slow.design;
+    let residual = model.slow.fit.residual(design);
     let mut out = Unexplained::default();
     let (mut open, mut all) = (0.0, 0.0);
     for j in 0..design.joints {
-        let floor = noise_floor(design, &search.slow.fit, j);
+        let floor = noise_floor(design, &model.slow.fit, j);
         let squares: f64 = design.of_joint(j).map(|r| residual[r] * residual[r]).sum();
         let noise = floor * floor * design.of_joint(j).len() as f64;
         let share = (1.0 - noise / squares.max(1e-300)).max(0.0);
@@ -227,12 +228,12 @@ pub(in crate::diagnosis) fn unexplained(search: &Search<'_, '_>) -> Unexplained 
         let rows = design
             .of_joint(j)
             .map(|r| {
-                (search.context.signals[design.rows[r].signal].dq[j][design.rows[r].centre], residual[r], 0.0)
+                (model.context.signals[design.rows[r].signal].dq[j][design.rows[r].centre], residual[r], 0.0)
             })
             .collect();
         let mut curve = binned(rows);
-        curve.variable = format!("joint speed, {}", search.context.scales[j].speed_unit());
-        curve.unit = search.context.scales[j].torque_unit().into();
+        curve.variable = format!("joint speed, {}", model.context.scales[j].speed_unit());
+        curve.unit = model.context.scales[j].torque_unit().into();
         out.curves.push(curve);
     }
     out.share = open / f64::max(all, 1e-300);
@@ -241,26 +242,25 @@ pub(in crate::diagnosis) fn unexplained(search: &Search<'_, '_>) -> Unexplained 
 
 /// Torques of the joints that have findings, in the first new motion; the first joint where there are none.
 pub(in crate::diagnosis) fn series(
-    search: &Search<'_, '_>,
+    model: &ExtendedModel<'_>,
     before: &[f64],
-    terms: &[Accepted],
 ) -> Vec<TorqueSeries> {
-    let design = &search.fast.design;
-    let context = &*search.context;
-    let Some(signal) = context.signals.iter().position(|s| s.fresh) else { return Vec::new() };
-    let mut joints: Vec<usize> = terms.iter().flat_map(|t| t.own.iter().copied()).collect();
+    let design = &model.fast.design;
+    let context = &model.context;
+    let Some(signal) = context.signals.iter().position(|s| s.is_target) else { return Vec::new() };
+    let mut joints: Vec<usize> = model.terms.iter().flat_map(|t| t.own.iter().copied()).collect();
     joints.sort_unstable();
     joints.dedup();
     if joints.is_empty() {
         joints.push(0);
     }
-    let residual = search.fast.fit.residual(design);
+    let residual = model.fast.fit.residual(design);
     joints
         .into_iter()
         .map(|j| {
             let mut s = TorqueSeries {
                 motion: context.signals[signal].name.clone(),
-                joint: joint_number(context.model.robot(), j),
+                joint: context.model.robot().joint_number(JointIndex(j)).0,
                 ..TorqueSeries::default()
             };
             for (range, _) in design.of_signal(j, signal) {

@@ -1,7 +1,10 @@
 //! Explanation: from accepted effects to numbers, curves and sentences.
 
 pub(in crate::diagnosis) mod curves;
+pub(in crate::diagnosis) mod delay;
 pub(in crate::diagnosis) mod explain;
+pub(in crate::diagnosis) mod finding;
 pub(in crate::diagnosis) mod quantities;
+pub(in crate::diagnosis) mod standard_model;
 pub(in crate::diagnosis) mod standstill;
 pub(in crate::diagnosis) mod words;

@@ -1,25 +1,24 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
-use crate::diagnosis::candidates::candidate::pace;
+use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::candidates::trial::dense_columns;
-use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::search::state::{Accepted, Search};
+use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::term::Accepted;
 use crate::effects::{EffectKind, Form, Lump, Parameter, Place};
-use crate::model::Model;
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
 /// derivative of the columns (variable projection, Golub and Pereyra 1973).
 pub(in crate::diagnosis) fn uncertainty(
-    search: &Search<'_, '_>,
-    terms: &[Accepted],
+    model: &ExtendedModel<'_>,
     k: usize,
     amplitude: &[f64],
-) -> (Vec<f64>, Vec<f64>) {
-    let term = &terms[k];
-    let side = search.side(pace(term.effect));
+) -> Result<(Vec<f64>, Vec<f64>), SingularDesign> {
+    let term = &model.terms[k];
+    let side = model.regression(smoothing_window(term.effect));
     let mut design = side.design.clone();
     let dense = |shape: &[f64]| {
-        dense_columns(search.context, &side.design, term.effect, term.place, shape, search.change)
+        dense_columns(&model.context, &side.design, term.effect, term.place, shape, model.change)
     };
     let start = design.columns.len();
     let mut varied = Vec::new();
@@ -46,7 +45,7 @@ pub(in crate::diagnosis) fn uncertainty(
         }
     }
     design.refresh_from(start);
-    let fit = Fit::new(&design, &side.sigma, |_| true);
+    let fit = Fit::whole(&design, &side.sigma)?;
     let variances = fit.variances();
     let sd = |c: usize| variances[c].max(0.0).sqrt();
     let amplitudes = side.term_columns[k].clone().map(sd).collect();
@@ -54,20 +53,19 @@ pub(in crate::diagnosis) fn uncertainty(
     for (at, &i) in varied.iter().enumerate() {
         shapes[i] = sd(start + at).min(10.0 * term.shape[i].abs());
     }
-    (amplitudes, shapes)
+    Ok((amplitudes, shapes))
 }
 
 /// The quantities a person knows, with the uncertainty of shapes propagated to first order.
 pub(in crate::diagnosis) fn parameters(
-    search: &Search<'_, '_>,
+    model: &ExtendedModel<'_>,
     term: &Accepted,
     amplitude: &mut Vec<f64>,
     sigma: &mut Vec<f64>,
     shape_sigma: &[f64],
-    model: &dyn Model,
 ) -> Vec<Parameter> {
-    let robot = model.robot();
-    let context = &*search.context;
+    let robot = model.context.model.robot();
+    let context = &model.context;
     match (term.effect.form(), term.place) {
         (Form::Joint(law), Place::Joint(j)) => {
             let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, amplitude, sigma);

@@ -1,43 +1,33 @@
 //! What is said of a recording in which the robot holds still, and of joints that hold still in any.
 
 use crate::diagnosis::contact::standing::AtRest;
-use crate::diagnosis::explanation::explain::contact_finding;
+use crate::diagnosis::explanation::finding::of_contacts;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::*;
 use crate::diagnosis::predict::errors;
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rows::motion::{LEAST_ROWS, Moving};
-use crate::diagnosis::{DiagnosisError, joint_number};
-use crate::model::{Model, Robot};
+use crate::diagnosis::rows::motion::Moving;
+use crate::diagnosis::rules::LEAST_ROWS;
+use crate::model::{JointIndex, Model, Robot};
 
 /// The outcome for a recording in which no joint moves, beside a baseline in which they do.
-///
-/// # Errors
-///
-/// Where the robot does not stand for long enough either, or no joint's friction is known.
+/// `None` where the robot does not stand for long enough either, or no joint's friction is known.
 pub(in crate::diagnosis) fn explain(
     context: &Context<'_>,
     rest: &AtRest,
-    moving: &Moving,
-    fit: &Fit,
-) -> Result<Diagnosis, DiagnosisError> {
+    chi_sigma: &[f64],
+    sampling: Sampling,
+) -> Option<Diagnosis> {
     let robot = context.model.robot();
     let known: Vec<usize> = (0..rest.coulomb.len()).filter(|&j| rest.coulomb[j].is_some()).collect();
     if rest.time == 0.0 || known.is_empty() {
-        let most = moving.rows.iter().enumerate().max_by_key(|(_, rows)| **rows);
-        let (joint, rows) = most.map_or((0, 0), |(j, r)| (joint_number(robot, j), *r));
-        return Err(DiagnosisError::NothingMoves { joint, rows, needed: LEAST_ROWS });
+        return None;
     }
     let contacts = rest.contacts(context.signals.len());
-    let findings: Vec<Finding> = contacts.iter().map(contact_finding).collect();
+    let findings: Vec<Finding> = contacts.iter().map(of_contacts).collect();
     let before = errors(&rest.by_joint[0], &rest.by_joint[2]);
     let after = errors(&rest.by_joint[1], &rest.by_joint[2]);
-    let variances = fit.variances();
-    let estimated = Estimated {
-        chi: context.chi.clone(),
-        sigma: variances.iter().take(context.chi.len()).map(|v| v.max(0.0).sqrt()).collect(),
-    };
+    let estimated = Estimated { chi: context.chi.clone(), sigma: chi_sigma.to_vec() };
     let all: f64 = rest.by_joint[0].iter().sum();
     let mismatch = known
         .iter()
@@ -71,11 +61,13 @@ pub(in crate::diagnosis) fn explain(
         series: Vec::new(),
         rows: 0,
         tried: 0,
+        sampling,
+        search: SearchOutcome { stop: StopReason::NoneAccepted, removed: Vec::new() },
         not_judged: Vec::new(),
         findings,
     };
     diagnosis.verdict = verdict(robot, rest, &diagnosis);
-    Ok(diagnosis)
+    Some(diagnosis)
 }
 
 /// A torque that is off for as long as the robot stands may come from any of these.
@@ -123,6 +115,11 @@ fn verdict(robot: &Robot, rest: &AtRest, diagnosis: &Diagnosis) -> Vec<String> {
             .join(", ")
     ));
     lines
+}
+
+/// Number j of a joint.
+fn joint_number(robot: &Robot, joint: usize) -> usize {
+    robot.joint_number(JointIndex(joint)).0
 }
 
 /// Names the joints on which no law was looked for.

@@ -1,35 +1,32 @@
 //! How a recording is split into motion that is fitted and motion that is predicted.
 
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rules::FORWARD_CUTS;
 
-/// Motion that is fitted and motion that is predicted.
+/// A split: the fit to some segments, and the segments that it predicts.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct Fold {
-    pub train: Vec<bool>,
+    /// Segments that are held out.
     pub test: Vec<bool>,
+    /// Fit to all others.
     pub fit: Fit,
 }
 
-/// How the recording is split: every motion once held back, or, for a single motion, every stretch of it.
-pub(in crate::diagnosis) fn folds(design: &Design, sigma: &[f64]) -> Vec<Fold> {
-    let fresh: Vec<usize> = (0..design.segments.len()).filter(|&g| design.segments[g].fresh).collect();
-    fresh
-        .iter()
-        .map(|&held| {
-            let test: Vec<bool> = (0..design.segments.len()).map(|g| g == held).collect();
-            let train: Vec<bool> = test.iter().map(|t| !t).collect();
-            let fit = Fit::new(design, sigma, |g| train[g]);
-            Fold { train, test, fit }
-        })
-        .collect()
-}
-
-/// Whether all segments are stretches of one motion.
-pub(in crate::diagnosis) fn single_motion(design: &Design) -> bool {
-    design.segments.windows(2).all(|s| s[0].signal == s[1].signal)
+/// Every segment of the recording that is diagnosed held out once: a whole motion, or a stretch of one.
+///
+/// # Errors
+/// [`SingularDesign`] where a fold has no fit.
+pub(in crate::diagnosis) fn folds(design: &Design, sigma: &[f64]) -> Result<Vec<Fold>, SingularDesign> {
+    let fold = |held: usize| {
+        let test: Vec<bool> = (0..design.segments.len()).map(|g| g == held).collect();
+        let train: Vec<bool> = test.iter().map(|t| !t).collect();
+        Ok(Fold { test, fit: Fit::new(design, sigma, train)? })
+    };
+    design.target_segments().into_iter().map(fold).collect()
 }
 
 /// Where a single motion of so many segments is cut: what comes before is fitted, and predicts what comes after.
-pub(in crate::diagnosis) fn cuts(segments: usize) -> [usize; 2] {
-    [5, 6].map(|eighths| (segments * eighths / 8).max(1))
+pub(in crate::diagnosis) fn forward_cuts(segments: usize) -> [usize; 2] {
+    FORWARD_CUTS.map(|eighths| (segments * eighths / 8).max(1))
 }

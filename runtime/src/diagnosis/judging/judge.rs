@@ -1,14 +1,13 @@
 //! How good a candidate is on motion that it was not fitted to.
 
 use crate::diagnosis::candidates::candidate::Candidate;
-use crate::diagnosis::judging::folds::{Fold, cuts, single_motion};
-use crate::diagnosis::judging::partial_regression::{Own, change, own_part, rest_of_motion};
-use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::judging::folds::{Fold, forward_cuts};
+use crate::diagnosis::judging::partial_regression::Residualised;
+use crate::diagnosis::judging::prediction::Prediction;
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rules::AIC_PENALTY;
 use nalgebra::DVector;
-
-/// What one more number must gain to be worth it, in units of the noise variance (Akaike 1974).
-const NUMBER: f64 = 2.0;
 
 /// The verdict on a candidate.
 #[derive(Debug, Clone)]
@@ -19,10 +18,10 @@ pub(in crate::diagnosis) struct Verdict {
     pub gain: f64,
     /// Held out, in units of the noise variance, one value per fold.
     pub held_out: Vec<f64>,
-    /// Held-out gain as a share of the held-out squares of its own joints.
-    pub share: f64,
-    /// In-sample gain as a share of the squares of its own joints.
-    pub fitted_share: f64,
+    /// Held-out gain as a fraction of the held-out squares of its own joints.
+    pub explained_fraction: f64,
+    /// In-sample gain as a fraction of the squares of its own joints.
+    pub fitted_fraction: f64,
 }
 
 impl Verdict {
@@ -32,104 +31,113 @@ impl Verdict {
     }
 }
 
-/// Judges a candidate: the best shape is chosen anew on each fold's own training motion.
-pub(in crate::diagnosis) fn judge(
-    design: &Design,
-    whole: &Fit,
-    folds: &[Fold],
-    sigma: &[f64],
-    candidate: &Candidate,
-) -> Option<Verdict> {
-    let everything = vec![true; design.segments.len()];
-    let best = |fit: &Fit, train: &[bool]| {
-        let mut best: Option<(f64, usize, DVector<f64>, Own)> = None;
-        for (k, trial) in candidate.trials.iter().enumerate() {
-            let Some(own) = own_part(design, fit, sigma, trial, train) else { continue };
-            let Some((a, gain)) = own.solve(candidate) else { continue };
-            let worth = |gain: f64, numbers: usize| gain - NUMBER * numbers as f64;
-            if best.as_ref().is_none_or(|b| worth(gain, a.len()) > worth(b.0, b.2.len())) {
-                best = Some((gain, k, a, own));
-            }
+/// The best shape of a candidate on the segments of a fit.
+struct Best {
+    trial: usize,
+    gain: f64,
+    amplitude: DVector<f64>,
+    part: Residualised,
+}
+
+/// The shape whose gain is largest after a penalty for its numbers.
+fn best_shape(fit: &Fit, candidate: &Candidate) -> Option<Best> {
+    let worth = |gain: f64, numbers: usize| gain - AIC_PENALTY * numbers as f64;
+    let mut best: Option<Best> = None;
+    for (trial, columns) in candidate.trials.iter().enumerate() {
+        let Some(part) = fit.project_out(columns) else { continue };
+        let Some((amplitude, gain)) = part.solve(candidate) else { continue };
+        let best_yet = best.as_ref().map(|b| worth(b.gain, b.amplitude.len()));
+        if best_yet.is_none_or(|yet| worth(gain, amplitude.len()) > yet) {
+            best = Some(Best { trial, gain, amplitude, part });
         }
-        best
-    };
-    let (gain, trial, _, whole_own) = best(whole, &everything)?;
-    if gain <= 0.0 {
-        return None;
     }
-    let single = single_motion(design);
-    let mut held_out = Vec::new();
-    let (mut own_gain, mut before) = (0.0, 0.0);
-    for fold in folds {
-        // Where only one motion is there, refitting all standard parameters to a part of it would drown every
-        // candidate in their extrapolation: the candidate's own part is then taken over the whole motion, and only
-        // its amplitude is fitted to the rest.
-        // A law without free amplitudes has nothing to fit but its shape, which needs all of the motion.
-        let (k, a, x) = if candidate.fixed.is_some() && !single {
-            let own = own_part(design, &fold.fit, sigma, &candidate.trials[trial], &fold.train)?;
-            let (a, _) = own.solve(candidate)?;
-            (trial, a, own.x)
-        } else if single {
-            let own = rest_of_motion(design, whole, sigma, &candidate.trials[trial], &whole_own, &fold.train);
-            let (a, _) = own.solve(candidate)?;
-            (trial, a, whole_own.x.clone())
-        } else {
-            let (_, k, a, own) = best(&fold.fit, &fold.train)?;
-            (k, a, own.x)
-        };
-        let fit = if single { whole } else { &fold.fit };
-        let d = -(&x * &a);
-        let mut sum = 0.0;
-        for (j, &s) in sigma.iter().enumerate() {
-            let w = 1.0 / (s * s);
-            for (g, _) in fold.test.iter().enumerate().filter(|(_, t)| **t) {
-                let change = w * change(design, fit, &candidate.trials[k], &a, &d, j, g);
-                sum += change;
-                if candidate.own.contains(&j) {
-                    own_gain += change;
-                    before += w * fit.squares(design, j, g);
+    best
+}
+
+impl Regression {
+    /// Judges a candidate: the best shape is chosen anew on each fold's own training motion. `None` where the motion
+    /// does not determine it or it gains nothing.
+    pub fn judge(&self, candidate: &Candidate) -> Option<Verdict> {
+        let best = best_shape(&self.fit, candidate)?;
+        if best.gain <= 0.0 {
+            return None;
+        }
+        let mut held_out = Vec::new();
+        let (mut own_gain, mut before) = (0.0, 0.0);
+        for fold in &self.folds {
+            let prediction = self.predict(candidate, &best, fold)?;
+            let mut sum = 0.0;
+            for (j, &s) in self.sigma.iter().enumerate() {
+                let w = 1.0 / (s * s);
+                for (g, _) in fold.test.iter().enumerate().filter(|(_, t)| **t) {
+                    let gain = w * prediction.gain(&self.design, j, g);
+                    sum += gain;
+                    if candidate.own.contains(&j) {
+                        own_gain += gain;
+                        before += w * prediction.fit.squares(&self.design, j, g);
+                    }
+                }
+            }
+            held_out.push(sum);
+        }
+        let explained_fraction = held_out.iter().sum::<f64>().min(own_gain) / before.max(1e-300);
+        // More than all can only be rounding, of columns that the design nearly makes itself.
+        if explained_fraction > 1.0 {
+            return None;
+        }
+        let squares = candidate.own.iter().map(|&j| self.target_squares(j)).sum::<f64>();
+        let fitted_fraction = best.gain / squares.max(1e-300);
+        Some(Verdict { trial: best.trial, gain: best.gain, held_out, explained_fraction, fitted_fraction })
+    }
+
+    /// The candidate fitted to the segments of a fold.
+    fn predict<'a>(
+        &'a self,
+        candidate: &'a Candidate,
+        best: &Best,
+        fold: &'a Fold,
+    ) -> Option<Prediction<'a>> {
+        let trial = &candidate.trials[best.trial];
+        if self.design.is_single_motion() {
+            return self.predict_from_rest_of_motion(candidate, trial, &best.part, fold);
+        }
+        if candidate.fixed.is_some() {
+            // A law without free amplitudes has nothing to fit but its shape, which needs all of the motion.
+            return self.predict_from_others(candidate, trial, fold);
+        }
+        let own = best_shape(&fold.fit, candidate)?;
+        Some(Prediction::new(&fold.fit, &candidate.trials[own.trial], &own.part, own.amplitude))
+    }
+
+    /// Squared residual of a joint in the recording that is diagnosed, in units of its variance.
+    fn target_squares(&self, joint: usize) -> f64 {
+        let targets = self.design.target_segments().into_iter();
+        let squares = targets.map(|g| self.fit.squares(&self.design, joint, g)).sum::<f64>();
+        squares / (self.sigma[joint] * self.sigma[joint])
+    }
+
+    /// Whether a candidate improves later time of a single motion when everything, standard parameters included, is
+    /// fitted to the time before, on its own joints. (The others see it only through parameters that they share, whose
+    /// extrapolation from a part of a motion is noise.)
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where the time before has no fit.
+    pub fn holds_forward(&self, candidate: &Candidate, trial: usize) -> Result<bool, SingularDesign> {
+        let segments = self.design.segments.len();
+        let trial = &candidate.trials[trial];
+        let mut gain = 0.0;
+        for cut in forward_cuts(segments) {
+            let fit = Fit::new(&self.design, &self.sigma, (0..segments).map(|g| g < cut).collect())?;
+            let Some(part) = fit.project_out(trial) else { return Ok(false) };
+            let Some((amplitude, _)) = part.solve(candidate) else { return Ok(false) };
+            let prediction = Prediction::new(&fit, trial, &part, amplitude);
+            for &j in &candidate.own {
+                let weight = 1.0 / (self.sigma[j] * self.sigma[j]);
+                for g in cut..segments {
+                    gain += weight * prediction.gain(&self.design, j, g);
                 }
             }
         }
-        held_out.push(sum);
+        Ok(gain > 0.0)
     }
-    let share = held_out.iter().sum::<f64>().min(own_gain) / before.max(1e-300);
-    // Nobody explains more than there is: the numbers of columns that the design nearly makes itself.
-    if share > 1.0 {
-        return None;
-    }
-    let squares = |j: usize| {
-        let fresh = (0..design.segments.len()).filter(|&g| design.segments[g].fresh);
-        fresh.map(|g| whole.squares(design, j, g)).sum::<f64>() / (sigma[j] * sigma[j])
-    };
-    let fitted_share = gain / candidate.own.iter().map(|&j| squares(j)).sum::<f64>().max(1e-300);
-    Some(Verdict { trial, gain, held_out, share, fitted_share })
-}
-
-/// Whether a candidate improves later time of a single motion when everything, standard parameters included, is fitted
-/// to the time before, on its own joints. (The others see it only through parameters that they share, whose
-/// extrapolation from a part of a motion is noise.)
-pub(in crate::diagnosis) fn holds_forward(
-    design: &Design,
-    sigma: &[f64],
-    candidate: &Candidate,
-    trial: usize,
-) -> bool {
-    let segments = design.segments.len();
-    let mut gain = 0.0;
-    for cut in cuts(segments) {
-        let train: Vec<bool> = (0..segments).map(|g| g < cut).collect();
-        let fit = Fit::new(design, sigma, |g| train[g]);
-        let trial = &candidate.trials[trial];
-        let Some(part) = own_part(design, &fit, sigma, trial, &train) else { return false };
-        let Some((a, _)) = part.solve(candidate) else { return false };
-        let d = -(&part.x * &a);
-        for &j in &candidate.own {
-            let weight = 1.0 / (sigma[j] * sigma[j]);
-            for g in cut..segments {
-                gain += weight * change(design, &fit, trial, &a, &d, j, g);
-            }
-        }
-    }
-    gain > 0.0
 }

@@ -1,9 +1,11 @@
 //! Judging: what a candidate gains on motion that it was not fitted to, and how sure it is that this is no accident.
 
+pub(in crate::diagnosis) mod ar1;
 pub(in crate::diagnosis) mod evidence;
 pub(in crate::diagnosis) mod folds;
-pub(in crate::diagnosis) mod held_back;
+pub(in crate::diagnosis) mod held_out;
 pub(in crate::diagnosis) mod judge;
-pub(in crate::diagnosis) mod memory;
 pub(in crate::diagnosis) mod partial_regression;
+pub(in crate::diagnosis) mod prediction;
+pub(in crate::diagnosis) mod regression;
 pub(in crate::diagnosis) mod significance;

@@ -1,5 +1,6 @@
-//! Tests over blocks of motion: whatever depends on what within a block, and however many candidates were tried.
+//! Tests of a gain over blocks of motion, and their p-values corrected for the number of comparisons.
 
+use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, LEAST_BLOCKS, LEAST_CARRYING_BLOCKS};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// How sure it is that a gain is no accident.
@@ -7,32 +8,32 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 pub(in crate::diagnosis) struct Evidence {
     /// In standard errors.
     pub significance: f64,
-    /// Probability that an accident comes as far.
-    pub tail: f64,
-    /// Chances that an accident has at the same rows: ways of looking at them, of which this is the best.
-    pub looks: usize,
+    /// Probability that noise alone comes as far.
+    pub p_value: f64,
+    /// Number of tests made on these rows, of which this is the best; multiplies the Bonferroni count.
+    pub comparisons: usize,
 }
 
 impl Evidence {
-    pub const NONE: Self = Self { significance: 0.0, tail: 0.5, looks: 1 };
+    pub const NONE: Self = Self { significance: 0.0, p_value: 0.5, comparisons: 1 };
 
     /// Of a number that is this many standard errors above zero, these with so many degrees of freedom (Student).
     pub fn student(significance: f64, freedom: f64) -> Self {
-        let tail = StudentsT::new(0.0, 1.0, freedom.max(1.0)).map_or(1.0, |t| t.sf(significance));
-        Self { significance, tail, looks: 1 }
+        let p_value = StudentsT::new(0.0, 1.0, freedom.max(1.0)).map_or(1.0, |t| t.sf(significance));
+        Self { significance, p_value, comparisons: 1 }
     }
 
     /// Of `numbers` numbers whose squares, in units of their covariance, add up to `squares`, the covariance with so
     /// many degrees of freedom (Fisher).
     pub fn fisher(squares: f64, numbers: usize, freedom: f64) -> Self {
         let k = numbers as f64;
-        let tail = FisherSnedecor::new(k, freedom).map_or(1.0, |f| f.sf(squares.max(0.0) / k));
-        Self { significance: squares.max(0.0).sqrt(), tail, looks: 1 }
+        let p_value = FisherSnedecor::new(k, freedom).map_or(1.0, |f| f.sf(squares.max(0.0) / k));
+        Self { significance: squares.max(0.0).sqrt(), p_value, comparisons: 1 }
     }
 
     /// One minus the probability that the best of `tries` candidates comes as far by accident (Bonferroni).
     pub fn confidence(&self, tries: usize) -> f64 {
-        (1.0 - self.tail * (tries * self.looks) as f64).clamp(0.0, 0.9999)
+        (1.0 - self.p_value * (tries * self.comparisons) as f64).clamp(0.0, HIGHEST_CONFIDENCE)
     }
 }
 
@@ -58,7 +59,7 @@ pub(in crate::diagnosis) fn slope(blocks: &[Block]) -> Evidence {
     let squares: f64 = blocks.iter().map(|b| b.squares).sum();
     // Blocks that carry the change: their number if it is spread evenly, fewer if few of them hold most of it.
     let carrying = squares * squares / blocks.iter().map(|b| b.squares * b.squares).sum::<f64>().max(1e-300);
-    if carrying < 3.0 {
+    if carrying < LEAST_CARRYING_BLOCKS {
         return Evidence::NONE;
     }
     let slope = blocks.iter().map(|b| b.with_residual).sum::<f64>() / squares;
@@ -82,7 +83,7 @@ pub(in crate::diagnosis) fn mean_gain(blocks: &[Block]) -> Evidence {
 pub(in crate::diagnosis) fn mean_root(gains: &[f64]) -> Evidence {
     let roots: Vec<f64> = gains.iter().map(|g| g.signum() * g.abs().sqrt()).collect();
     let n = roots.len() as f64;
-    if n < 4.0 {
+    if n < LEAST_BLOCKS {
         return Evidence::NONE;
     }
     let mean = roots.iter().sum::<f64>() / n;
@@ -104,19 +105,19 @@ mod tests {
         // Student's tail beyond 4 standard errors with 8 degrees of freedom is 0.0019749 (scipy.stats.t.sf).
         assert!((at(4.0, 8.0).confidence(100) - (1.0 - 100.0 * 0.001_974_886)).abs() < 1e-6);
         // Fisher's tail beyond 6 with 2 and 20 degrees of freedom is 0.0091 (scipy.stats.f.sf); one number is Student's.
-        assert!((Evidence::fisher(12.0, 2, 20.0).tail - 0.009_094_947).abs() < 1e-8);
-        assert!((Evidence::fisher(9.0, 1, 20.0).tail - 2.0 * at(3.0, 20.0).tail).abs() < 1e-12);
+        assert!((Evidence::fisher(12.0, 2, 20.0).p_value - 0.009_094_947).abs() < 1e-8);
+        assert!((Evidence::fisher(9.0, 1, 20.0).p_value - 2.0 * at(3.0, 20.0).p_value).abs() < 1e-12);
         assert_eq!(at(0.0, 100.0).confidence(100), 0.0);
         assert_eq!(Evidence::NONE.confidence(1), 0.5);
     }
 
-    /// A series that remembers: each value is `memory` times the one before, and something new.
-    fn remembering(rng: &mut Pcg64, rows: usize, memory: f64) -> Vec<f64> {
+    /// AR(1) noise.
+    fn correlated(rng: &mut Pcg64, rows: usize, rho: f64) -> Vec<f64> {
         let mut x = 0.0;
         (0..rows + 50)
             .map(|_| {
                 let new: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
-                x = memory * x + new;
+                x = rho * x + new;
                 x
             })
             .skip(50)
@@ -129,27 +130,58 @@ mod tests {
         pairs.map(|(c, r)| Block { with_residual: dot(c, r), squares: dot(c, c) }).collect()
     }
 
-    /// How often a change that has nothing to do with the residual comes below each of these tails.
-    fn accidents(rows: usize, per_block: usize, levels: [f64; 2]) -> [f64; 2] {
+    /// How often a change that has nothing to do with the residual has a p-value below each of these levels.
+    fn false_positives(rows: usize, per_block: usize, levels: [f64; 2]) -> [f64; 2] {
         let mut rng = Pcg64::seed_from_u64(20);
         let runs = 50_000;
         let mut below = [0; 2];
         for _ in 0..runs {
-            let change = remembering(&mut rng, rows, 0.9);
-            let residual = remembering(&mut rng, rows, 0.5);
-            let tail = slope(&blocks_of(&change, &residual, per_block)).tail;
-            below.iter_mut().zip(levels).for_each(|(b, level)| *b += usize::from(tail < level));
+            let change = correlated(&mut rng, rows, 0.9);
+            let residual = correlated(&mut rng, rows, 0.5);
+            let p_value = slope(&blocks_of(&change, &residual, per_block)).p_value;
+            below.iter_mut().zip(levels).for_each(|(b, level)| *b += usize::from(p_value < level));
         }
         below.map(|b| b as f64 / runs as f64)
     }
 
     #[test]
-    fn an_accident_passes_the_slope_at_most_twice_as_often_as_its_tail_says_where_residuals_remember() {
-        // 0.5, 0.25, 0.125: forgotten after three rows; blocks of six.
-        let [often, seldom] = accidents(180, 6, [0.01, 0.001]);
+    fn noise_passes_the_slope_test_at_most_twice_as_often_as_its_p_value_says_where_residuals_are_correlated() {
+        // Autocorrelations 0.5, 0.25, 0.125: a decorrelation lag of three rows; blocks of six.
+        let [often, seldom] = false_positives(180, 6, [0.01, 0.001]);
         println!("{:.2} % below 1 %, {:.3} % below 0.1 %", 100.0 * often, 100.0 * seldom);
         assert!(often < 0.02, "{often}");
         assert!(seldom < 0.002, "{seldom}");
+    }
+
+    #[test]
+    fn noise_passes_the_test_of_the_mean_gain_no_more_often_than_its_p_value_says() {
+        // A change that is not there only costs: its gains are negative in the mean, so that the test is conservative.
+        let mut rng = Pcg64::seed_from_u64(22);
+        let (runs, level) = (10_000, 0.01);
+        let below = (0..runs)
+            .filter(|_| {
+                let change = correlated(&mut rng, 240, 0.9);
+                let residual = correlated(&mut rng, 240, 0.5);
+                mean_gain(&blocks_of(&change, &residual, 10)).p_value < level
+            })
+            .count() as f64;
+        let expected = level * f64::from(runs);
+        assert!(below < expected + 4.0 * expected.sqrt(), "{below} of at most {expected} expected");
+    }
+
+    #[test]
+    fn the_mean_root_of_symmetric_gains_is_as_significant_as_its_p_value_says() {
+        let mut rng = Pcg64::seed_from_u64(23);
+        let (runs, level) = (20_000, 0.05);
+        let below = (0..runs)
+            .filter(|_| {
+                let gains = correlated(&mut rng, 24, 0.0);
+                mean_root(&gains).p_value < level
+            })
+            .count() as f64;
+        let expected = level * f64::from(runs);
+        let deviation = (expected * (1.0 - level)).sqrt();
+        assert!((below - expected).abs() < 4.0 * deviation, "{below} of {expected} expected");
     }
 
     #[test]
@@ -157,11 +189,11 @@ mod tests {
         let mut rng = Pcg64::seed_from_u64(21);
         let change: Vec<f64> =
             (0..108).map(|k| if k % 18 < 6 { 3.0 } else { 0.3 } * f64::from(k % 2)).collect();
-        let noise = remembering(&mut rng, 108, 0.5);
+        let noise = correlated(&mut rng, 108, 0.5);
         let residual: Vec<f64> = change.iter().zip(&noise).map(|(c, n)| c + 0.3 * n).collect();
         let blocks = blocks_of(&change, &residual, 6);
-        assert!(slope(&blocks).tail < 1e-4, "{:?}", slope(&blocks));
-        assert!(slope(&blocks).tail < mean_gain(&blocks).tail);
+        assert!(slope(&blocks).p_value < 1e-4, "{:?}", slope(&blocks));
+        assert!(slope(&blocks).p_value < mean_gain(&blocks).p_value);
     }
 
     #[test]

@@ -4,15 +4,13 @@
 //! outside of it: rows near a standstill, where sign(v) is noise, are left out without a trace. Torque and every
 //! column go through the same window, which is the parallel decimation of the paper's IV.A.
 
+use crate::diagnosis::rows::gram::{Gram, dot};
+use crate::diagnosis::rows::selection::{RowSelection, hann};
 use crate::diagnosis::rows::signals::{Signals, each_block};
+use crate::diagnosis::rules::{ENOUGH_BLOCKS, LONGEST_BLOCK};
 use crate::model::Model;
 use std::collections::BTreeSet;
 use std::ops::Range;
-
-/// Longest block of motion, s.
-pub(in crate::diagnosis) const LONGEST_BLOCK: f64 = 0.5;
-/// From this many blocks of that length on, their gains are compared.
-const ENOUGH_BLOCKS: usize = 24;
 
 /// One row.
 #[derive(Debug, Clone, Copy)]
@@ -21,11 +19,12 @@ pub(in crate::diagnosis) struct RowAt {
     pub centre: usize,
 }
 
-/// A stretch of motion that is held back together.
+/// A stretch of motion that is held out together.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::diagnosis) struct Segment {
     pub signal: usize,
-    pub fresh: bool,
+    /// Whether it belongs to the recording that is diagnosed; otherwise to the baseline.
+    pub is_target: bool,
 }
 
 /// Rows of all joints and their columns. Rows are sorted by joint, then segment, then time.
@@ -46,81 +45,69 @@ pub(in crate::diagnosis) struct Design {
     pub step: f64,
     /// Whether there are too few blocks of motion for gains to be compared block by block.
     pub short: bool,
-    /// Inner products of the columns and, last, y: `gram[joint][segment]`, square and row-major.
-    pub gram: Vec<Vec<Vec<f64>>>,
-}
-
-/// What decides where rows are.
-pub(in crate::diagnosis) struct Plan<'a> {
-    /// Half-width of the window, s.
-    pub half: f64,
-    /// Least speed per joint.
-    pub slowest: &'a [f64],
-    /// Linear forms of dq whose sign enters each joint's row.
-    pub directions: &'a [Vec<Vec<f64>>],
-    /// Segments per motion of the recording that is diagnosed, where there are few motions to hold back.
-    pub chunks: usize,
-    /// Times that no row may use, per signal: `[from, to]`.
-    pub excluded: &'a [Vec<[f64; 2]>],
+    /// Inner products of the columns and y: `[joint][segment]`.
+    grams: Vec<Vec<Gram>>,
 }
 
 impl Design {
-    pub fn new(model: &dyn Model, signals: &[Signals], plan: &Plan<'_>) -> Self {
-        let n = model.robot().joints();
+    /// Rows of all motions as `selection` has them, with the columns of the standard model.
+    pub fn new(model: &dyn Model, signals: &[Signals], selection: &RowSelection<'_>) -> Self {
         let parameters = model.robot().base.len();
+        let kernel = |s: &Signals| hann((selection.half * s.rate).round().max(2.0) as usize);
         let mut design = Self {
-            joints: n,
+            joints: model.robot().joints(),
             parameters,
             rows: Vec::new(),
-            ranges: vec![Vec::new(); n],
+            ranges: Vec::new(),
             segments: Vec::new(),
             columns: vec![Vec::new(); parameters],
             y: Vec::new(),
-            kernels: signals.iter().map(|s| hann((plan.half * s.rate).round().max(2.0) as usize)).collect(),
-            step: plan.half,
+            kernels: signals.iter().map(kernel).collect(),
+            step: selection.half,
             short: false,
-            gram: Vec::new(),
+            grams: Vec::new(),
         };
-        let mut kept: Vec<Vec<Vec<RowAt>>> = vec![Vec::new(); n];
-        for (k, s) in signals.iter().enumerate() {
-            let half = design.kernels[k].len() / 2;
-            let first = s.spoiled.max(half);
-            let last = s.len().saturating_sub(first).max(first);
-            let chunks = if s.fresh { plan.chunks.max(1) } else { 1 };
-            let bounds: Vec<usize> = (0..=chunks).map(|c| first + (last - first) * c / chunks).collect();
-            for c in 0..chunks {
-                design.segments.push(Segment { signal: k, fresh: s.fresh });
-                for (j, kept) in kept.iter_mut().enumerate() {
-                    let centres =
-                        (bounds[c]..bounds[c + 1]).filter(|t| (t - first).is_multiple_of(half.max(1)));
-                    kept.push(
-                        centres
-                            .filter(|&t| moving(s, t, half, &plan.directions[j], plan.slowest))
-                            .filter(|&t| {
-                                let (a, b) = (s.time(t - half), s.time(t + half));
-                                !plan.excluded[k].iter().any(|w| w[0] < b && w[1] > a)
-                            })
-                            .map(|t| RowAt { signal: k, centre: t })
-                            .collect(),
-                    );
-                }
-            }
-        }
-        for (j, kept) in kept.into_iter().enumerate() {
-            for segment in kept {
-                let start = design.rows.len();
-                design.rows.extend(segment);
-                design.ranges[j].push(start..design.rows.len());
-            }
-        }
-        let fresh = design.rows.iter().filter(|r| signals[r.signal].fresh);
+        design.select(signals, selection);
+        let targets = design.rows.iter().filter(|r| signals[r.signal].is_target);
         let per_block = design.rows_within(LONGEST_BLOCK);
-        let blocks: BTreeSet<(usize, usize)> = fresh.map(|&r| design.block(r, per_block)).collect();
+        let blocks: BTreeSet<(usize, usize)> = targets.map(|&r| design.block(r, per_block)).collect();
         design.short = blocks.len() < ENOUGH_BLOCKS;
         design.fill(model, signals);
         design
     }
 
+    /// Cuts the motions into segments and keeps the instants of each that the selection accepts.
+    fn select(&mut self, signals: &[Signals], selection: &RowSelection<'_>) {
+        let mut kept: Vec<Vec<Vec<RowAt>>> = vec![Vec::new(); self.joints];
+        for (k, s) in signals.iter().enumerate() {
+            let half = self.kernels[k].len() / 2;
+            let first = s.edge_samples.max(half);
+            let last = s.len().saturating_sub(first).max(first);
+            let count = if s.is_target { selection.segments.max(1) } else { 1 };
+            let bounds: Vec<usize> = (0..=count).map(|c| first + (last - first) * c / count).collect();
+            for bound in bounds.windows(2) {
+                self.segments.push(Segment { signal: k, is_target: s.is_target });
+                for (j, kept) in kept.iter_mut().enumerate() {
+                    let rows = (bound[0]..bound[1])
+                        .filter(|t| (t - first).is_multiple_of(half.max(1)))
+                        .filter(|&t| selection.accepts(j, k, s, t, half))
+                        .map(|t| RowAt { signal: k, centre: t });
+                    kept.push(rows.collect());
+                }
+            }
+        }
+        for kept in kept {
+            let mut ranges = Vec::with_capacity(kept.len());
+            for segment in kept {
+                let start = self.rows.len();
+                self.rows.extend(segment);
+                ranges.push(start..self.rows.len());
+            }
+            self.ranges.push(ranges);
+        }
+    }
+
+    /// Torques and columns of the standard model at the rows.
     fn fill(&mut self, model: &dyn Model, signals: &[Signals]) {
         let m = self.rows.len();
         self.y = vec![0.0; m];
@@ -153,9 +140,24 @@ impl Design {
         self.refresh();
     }
 
-    /// Whether motions are held back in stretches.
+    /// Whether motions are held out in stretches.
     pub fn in_stretches(&self) -> bool {
         self.segments.windows(2).any(|s| s[0].signal == s[1].signal)
+    }
+
+    /// Whether all segments are stretches of one motion.
+    pub fn is_single_motion(&self) -> bool {
+        self.segments.windows(2).all(|s| s[0].signal == s[1].signal)
+    }
+
+    /// Segments of the recording that is diagnosed.
+    pub fn target_segments(&self) -> Vec<usize> {
+        (0..self.segments.len()).filter(|&g| self.segments[g].is_target).collect()
+    }
+
+    /// Inner products on the rows of one joint in one segment.
+    pub fn gram(&self, joint: usize, segment: usize) -> &Gram {
+        &self.grams[joint][segment]
     }
 
     /// Ranges of a joint's rows in one motion, with their segments.
@@ -222,82 +224,19 @@ impl Design {
 
     /// Recomputes the inner products of y and of the columns from `first` on; those before have not changed.
     pub fn refresh_from(&mut self, first: usize) {
-        let p = self.columns.len();
-        let all: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).chain([self.y.as_slice()]).collect();
-        let old = std::mem::take(&mut self.gram);
-        self.gram = (0..self.joints)
-            .map(|j| {
-                (0..self.segments.len())
-                    .map(|g| {
-                        let range = self.ranges[j][g].clone();
-                        let mut new = vec![0.0; (p + 1) * (p + 1)];
-                        let before = old.get(j).and_then(|segments| segments.get(g));
-                        let kept = before.map_or(0, |_| first);
-                        if let Some(before) = before {
-                            let width = before.len().isqrt();
-                            for i in 0..kept {
-                                new[i * (p + 1)..i * (p + 1) + kept]
-                                    .copy_from_slice(&before[i * width..i * width + kept]);
-                            }
-                        }
-                        let live: Vec<usize> =
-                            (0..=p).filter(|&k| all[k][range.clone()].iter().any(|&x| x != 0.0)).collect();
-                        for (a, &i) in live.iter().enumerate().filter(|(_, i)| **i >= kept) {
-                            for &k in &live[..=a] {
-                                let value = dot(&all[i][range.clone()], &all[k][range.clone()]);
-                                new[i * (p + 1) + k] = value;
-                                new[k * (p + 1) + i] = value;
-                            }
-                        }
-                        new
-                    })
-                    .collect()
-            })
-            .collect();
+        let before = std::mem::take(&mut self.grams);
+        let gram = |j: usize, g: usize| {
+            let range = self.ranges[j][g].clone();
+            let columns: Vec<&[f64]> = self.columns.iter().map(|c| &c[range.clone()]).collect();
+            let before = before.get(j).and_then(|segments| segments.get(g)).map(|gram| (gram, first));
+            Gram::new(&columns, &self.y[range], before)
+        };
+        let of_joint = |j: usize| (0..self.segments.len()).map(|g| gram(j, g)).collect();
+        self.grams = (0..self.joints).map(of_joint).collect();
     }
 
     /// Rows of a joint in all segments that `wanted` accepts.
     pub fn count(&self, joint: usize, wanted: impl Fn(usize) -> bool) -> usize {
         (0..self.segments.len()).filter(|&g| wanted(g)).map(|g| self.ranges[joint][g].len()).sum()
     }
-}
-
-/// Hann window of half-width `half`, its taps adding up to 1.
-fn hann(half: usize) -> Vec<f64> {
-    let n = 2 * half + 1;
-    let taps: Vec<f64> =
-        (0..n).map(|k| (std::f64::consts::PI * (k + 1) as f64 / (n + 1) as f64).sin().powi(2)).collect();
-    let sum: f64 = taps.iter().sum();
-    taps.iter().map(|t| t / sum).collect()
-}
-
-/// Whether every sign that enters the row is certain all over the window.
-fn moving(s: &Signals, centre: usize, half: usize, directions: &[Vec<f64>], slowest: &[f64]) -> bool {
-    directions.iter().all(|form| {
-        // A motor that turns with several joints is judged by the slowest of their limits.
-        let least = form
-            .iter()
-            .zip(slowest)
-            .filter(|(f, _)| **f != 0.0)
-            .map(|(f, v)| f.abs() * v)
-            .fold(f64::INFINITY, f64::min);
-        let speed = |t: usize| form.iter().zip(&s.dq).map(|(f, v)| f * v[t]).sum::<f64>();
-        let sign = speed(centre).signum();
-        (centre - half..=centre + half).all(|t| speed(t) * sign > least)
-    })
-}
-
-/// Inner product, in as many partial sums as keep the machine's vector units busy.
-#[inline(always)]
-pub(in crate::diagnosis) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    const SUMS: usize = 16;
-    let mut sums = [0.0; SUMS];
-    let (ca, cb) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
-    let tail: f64 = ca.remainder().iter().zip(cb.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in ca.zip(cb) {
-        for k in 0..SUMS {
-            sums[k] += x[k] * y[k];
-        }
-    }
-    sums.iter().sum::<f64>() + tail
 }

@@ -2,12 +2,7 @@
 //! the standard model it determines.
 
 use crate::diagnosis::rows::design::Design;
-
-/// Rows that a joint needs: three times the numbers that only its own rows can tell, viscous and Coulomb friction,
-/// offset, and one law.
-pub(in crate::diagnosis) const LEAST_ROWS: usize = 12;
-/// Part of a column that the other columns leave, relative to its norm, from which on it is determined.
-const OWN_PART: f64 = 1e-4;
+use crate::diagnosis::rules::{LEAST_ROWS, UNDETERMINED};
 
 /// How much each joint moves.
 pub(in crate::diagnosis) struct Moving {
@@ -23,7 +18,7 @@ impl Moving {
     /// Of all rows.
     pub fn of(design: &Design) -> Self {
         let rows: Vec<usize> =
-            (0..design.joints).map(|j| design.count(j, |g| design.segments[g].fresh)).collect();
+            (0..design.joints).map(|j| design.count(j, |g| design.segments[g].is_target)).collect();
         Self {
             judged: rows.iter().map(|&r| r >= LEAST_ROWS).collect(),
             fitted: (0..design.joints).map(|j| design.of_joint(j).len() >= LEAST_ROWS).collect(),
@@ -43,14 +38,12 @@ impl Moving {
 /// Where two columns are the same on all rows, one of them is kept: what it stands for then is their sum.
 pub(in crate::diagnosis) fn left_over(design: &Design, sigma: &[f64]) -> Vec<usize> {
     let p = design.parameters;
-    let width = design.columns.len() + 1;
     let mut gram = vec![0.0; p * p];
-    for (groups, s) in design.gram.iter().zip(sigma) {
-        for g in groups {
-            for i in 0..p {
-                for k in 0..p {
-                    gram[i * p + k] += g[i * width + k] / (s * s);
-                }
+    for (j, s) in sigma.iter().enumerate() {
+        for segment in 0..design.segments.len() {
+            for (i, sum) in gram.chunks_exact_mut(p).enumerate() {
+                let row = design.gram(j, segment).row(i);
+                sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += x / (s * s));
             }
         }
     }
@@ -67,7 +60,7 @@ fn undetermined(gram: &[f64], p: usize) -> Vec<usize> {
     let mut taken = vec![false; p];
     let mut factor: Vec<Vec<f64>> = Vec::new();
     while let Some(pivot) = (0..p)
-        .filter(|&k| !taken[k] && left[k] > OWN_PART * OWN_PART)
+        .filter(|&k| !taken[k] && left[k] > UNDETERMINED * UNDETERMINED)
         .max_by(|&a, &b| left[a].total_cmp(&left[b]).then(b.cmp(&a)))
     {
         let root = left[pivot].sqrt();

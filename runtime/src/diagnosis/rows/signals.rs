@@ -1,6 +1,7 @@
 //! Motions at the full rate, ready for laws and models.
 
 use crate::diagnosis::DiagnosisError;
+use crate::diagnosis::rules::{PART_OF_NYQUIST, RATE_PER_CUTOFF, SAMPLES_PER_SECOND};
 use crate::model::{JointKind, Model, ParameterKind, Robot, States};
 use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
@@ -9,7 +10,7 @@ use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_differenc
 pub(in crate::diagnosis) struct Signals {
     pub name: String,
     /// Whether it belongs to the recording that is diagnosed; otherwise to the baseline.
-    pub fresh: bool,
+    pub is_target: bool,
     pub rate: f64,
     pub start: f64,
     pub q: Vec<Vec<f64>>,
@@ -17,33 +18,62 @@ pub(in crate::diagnosis) struct Signals {
     pub ddq: Vec<Vec<f64>>,
     pub jerk: Vec<Vec<f64>>,
     pub torque: Vec<Vec<f64>>,
-    /// Torques as they were recorded, and the highest frequency that they hold, Hz: what is faster than the filter
-    /// lets through still shows in them.
-    pub recorded: Vec<Vec<f64>>,
-    pub recorded_band: f64,
-    /// Samples at each end that filters have spoiled.
-    pub spoiled: usize,
+    /// Samples at each end that the filters have spoiled.
+    pub edge_samples: usize,
+    /// What the torques are made from again when another skew is taken out; `None` for a motion taken as it is.
+    recorded: Option<Recorded>,
 }
 
-/// Highest cut-off of the position filter, Hz.
-pub(in crate::diagnosis) const CUTOFF: f64 = 60.0;
-/// Samples a second that a cut-off of [`CUTOFF`] needs.
-const ENOUGH: f64 = 500.0;
+/// Torques as recorded, on the uniform grid.
+struct Recorded {
+    torque: Vec<Vec<f64>>,
+    rate: f64,
+    /// Every so many samples are kept.
+    stride: usize,
+    filter: Butterworth,
+    /// Of the filter, Hz.
+    cutoff: f64,
+    /// Skew that has been taken out, s.
+    delay: f64,
+}
 
-/// Share of the rate up to which recorded torques are taken for what they say.
-const RECORDED: f64 = 0.4;
+impl Recorded {
+    /// Filtered torques, moved by `delay`.
+    fn delayed(&self, delay: f64) -> Result<Vec<Vec<f64>>, DiagnosisError> {
+        let filtered = |x: &Vec<f64>| Ok(self.filter.zero_phase(&shifted(x, delay * self.rate))?);
+        let torque = self.torque.iter().map(filtered).collect::<Result<Vec<_>, DiagnosisError>>()?;
+        Ok(thinned(torque, self.stride))
+    }
+}
+
+/// Every `stride`-th sample of each series.
+fn thinned(x: Vec<Vec<f64>>, stride: usize) -> Vec<Vec<f64>> {
+    x.into_iter().map(|v| v.into_iter().step_by(stride).collect()).collect()
+}
+
+fn differentiated(x: &[f64], rate: f64) -> Vec<f64> {
+    let mut out = vec![0.0; x.len()];
+    central_difference(x, rate, Stencil::Seven, &mut out);
+    out
+}
 
 impl Signals {
+    /// Filters and differentiates a motion. `delay`: skew of the torques behind the positions, which is taken out, s;
+    /// `cutoff`: of the filter of positions and torques, Hz.
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Signal`] where the motion is too short for the filter or its time stamps are wrong.
     pub fn new(
         trajectory: &Trajectory,
-        fresh: bool,
+        is_target: bool,
         delay: f64,
         cutoff: f64,
     ) -> Result<Self, DiagnosisError> {
         let stamps = trajectory.time.len().max(2) - 1;
         let span = trajectory.time.last().unwrap_or(&0.0) - trajectory.time.first().unwrap_or(&0.0);
         let rate = if span > 0.0 { stamps as f64 / span } else { 1.0 };
-        let settings = Preparation { cutoff: Some((rate / 5.0).min(cutoff)), ..Preparation::default() };
+        let settings =
+            Preparation { cutoff: Some((rate / RATE_PER_CUTOFF).min(cutoff)), ..Preparation::default() };
         let mut motion = prepare(trajectory, &settings)?;
         // What a joint that is declared to stand still seems to do is noise.
         for &j in &motion.fixed {
@@ -51,58 +81,45 @@ impl Signals {
             motion.ddq[j].fill(0.0);
         }
         let rate = motion.rate;
-        let filter = Butterworth::low_pass(settings.order, (rate / 5.0).min(cutoff), rate)?;
-        let jerk = motion
-            .ddq
-            .iter()
-            .map(|x| {
-                let mut out = vec![0.0; x.len()];
-                central_difference(x, rate, Stencil::Seven, &mut out);
-                out
-            })
-            .collect();
-        let as_recorded: Vec<Vec<f64>> = motion.torque.iter().map(|x| shifted(x, delay * rate)).collect();
-        let torque = motion
-            .torque
-            .iter()
-            .map(|x| Ok(filter.zero_phase(&shifted(x, delay * rate))?))
-            .collect::<Result<Vec<_>, DiagnosisError>>()?;
-        // All signals are limited to the cut-off: rows beyond ENOUGH a second say nothing more.
-        let stride = (rate / ENOUGH).floor().max(1.0) as usize;
-        let thin = |x: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
-            x.into_iter().map(|v| v.into_iter().step_by(stride).collect()).collect()
-        };
+        // All signals are limited to the cut-off: more samples a second say nothing more.
+        let stride = (rate / SAMPLES_PER_SECOND).floor().max(1.0) as usize;
+        let cutoff = (rate / RATE_PER_CUTOFF).min(cutoff);
+        let filter = Butterworth::low_pass(settings.order, cutoff, rate)?;
+        let jerk = motion.ddq.iter().map(|x| differentiated(x, rate)).collect();
+        let recorded = Recorded { torque: motion.torque, rate, stride, filter, cutoff, delay };
         Ok(Self {
             name: motion.name,
-            fresh,
+            is_target,
             rate: rate / stride as f64,
             start: motion.start,
-            q: thin(motion.q),
-            dq: thin(motion.dq),
-            ddq: thin(motion.ddq),
-            jerk: thin(jerk),
-            // Samples that are left out would fold what is fast into what is slow.
-            recorded: if stride == 1 { as_recorded } else { thin(torque.clone()) },
-            recorded_band: if stride == 1 { RECORDED * rate } else { (rate / 5.0).min(cutoff) },
-            torque: thin(torque),
-            spoiled: motion.spoiled.div_ceil(stride),
+            q: thinned(motion.q, stride),
+            dq: thinned(motion.dq, stride),
+            ddq: thinned(motion.ddq, stride),
+            jerk: thinned(jerk, stride),
+            torque: recorded.delayed(delay)?,
+            edge_samples: motion.spoiled.div_ceil(stride),
+            recorded: Some(recorded),
         })
+    }
+
+    /// Takes another skew of the torques out; nothing else changes.
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Signal`] where the motion is too short for the filter.
+    pub fn set_delay(&mut self, delay: f64) -> Result<(), DiagnosisError> {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.delay = delay;
+            self.torque = recorded.delayed(delay)?;
+        }
+        Ok(())
     }
 
     /// A motion as it is: for the torques of terms.
     pub fn of_motion(motion: &Motion) -> Self {
-        let jerk = motion
-            .ddq
-            .iter()
-            .map(|x| {
-                let mut out = vec![0.0; x.len()];
-                central_difference(x, motion.rate, Stencil::Seven, &mut out);
-                out
-            })
-            .collect();
+        let jerk = motion.ddq.iter().map(|x| differentiated(x, motion.rate)).collect();
         Self {
             name: motion.name.clone(),
-            fresh: true,
+            is_target: true,
             rate: motion.rate,
             start: motion.start,
             q: motion.q.clone(),
@@ -110,9 +127,39 @@ impl Signals {
             ddq: motion.ddq.clone(),
             jerk,
             torque: motion.torque.clone(),
-            recorded: motion.torque.clone(),
-            recorded_band: RECORDED * motion.rate,
-            spoiled: motion.spoiled,
+            edge_samples: motion.spoiled,
+            recorded: None,
+        }
+    }
+
+    /// The same instants at other positions, speeds and accelerations, without torques: what a model makes of them.
+    pub fn without_torque(name: &str, rate: f64, start: f64, [q, dq, ddq]: [Vec<Vec<f64>>; 3]) -> Self {
+        let nothing: Vec<Vec<f64>> = q.iter().map(|x| vec![0.0; x.len()]).collect();
+        Self {
+            name: name.to_owned(),
+            is_target: true,
+            rate,
+            start,
+            q,
+            dq,
+            ddq,
+            jerk: nothing.clone(),
+            torque: nothing,
+            edge_samples: 0,
+            recorded: None,
+        }
+    }
+
+    /// The torque of a joint as it was recorded, and the highest frequency that it holds, Hz: what is faster than the
+    /// filter lets through still shows in it. Where samples are left out, what is fast would be folded into what is
+    /// slow, and it is the filtered torque.
+    pub fn recorded_torque(&self, joint: usize) -> (Vec<f64>, f64) {
+        match &self.recorded {
+            Some(r) if r.stride == 1 => {
+                (shifted(&r.torque[joint], r.delay * r.rate), PART_OF_NYQUIST * 0.5 * r.rate)
+            }
+            Some(r) => (self.torque[joint].clone(), r.cutoff),
+            None => (self.torque[joint].clone(), PART_OF_NYQUIST * 0.5 * self.rate),
         }
     }
 

@@ -1,13 +1,14 @@
 //! Torque ripple that stands out as a line in the orders of a joint: accepted beside the laws that explain a share of
 //! the rows, which a line of a few per cent never does.
 
-use crate::diagnosis::candidates::candidate::{make, pace};
+use crate::diagnosis::candidates::candidate::{make, smoothing_window};
 use crate::diagnosis::candidates::order_line::{Line, MULTIPLES, Stroke, lines, resolution};
 use crate::diagnosis::candidates::spectrum::peaks;
-use crate::diagnosis::judging::judge::judge;
 use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::search::state::{Accepted, Search};
+use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
+use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::Accepted;
 use crate::effects::{EffectKind, Place};
 use crate::parallel;
 
@@ -37,23 +38,26 @@ pub(in crate::diagnosis) fn all_lines(
     threads: usize,
 ) -> Vec<JointLines> {
     parallel::map(threads, spectra.len(), |j| {
-        let residuals: Vec<Vec<f64>> = context
+        let residuals: Vec<(Vec<f64>, f64)> = context
             .signals
             .iter()
             .zip(&context.torques)
-            .map(|(s, m)| s.recorded[j].iter().zip(&m.total[j]).map(|(y, t)| y - t).collect())
+            .map(|(s, m)| {
+                let (torque, band) = s.recorded_torque(j);
+                (torque.iter().zip(&m.total[j]).map(|(y, t)| y - t).collect(), band)
+            })
             .collect();
-        let strokes = |fresh: bool| -> Vec<Stroke<'_>> {
-            let wanted = context.signals.iter().zip(&residuals).filter(|(s, _)| s.fresh == fresh);
+        let strokes = |target: bool| -> Vec<Stroke<'_>> {
+            let wanted = context.signals.iter().zip(&residuals).filter(|(s, _)| s.is_target == target);
             wanted
-                .map(|(s, r)| {
-                    let end = s.len().saturating_sub(s.spoiled);
-                    let inside = s.spoiled.min(end)..end;
+                .map(|(s, (r, band))| {
+                    let end = s.len().saturating_sub(s.edge_samples);
+                    let inside = s.edge_samples.min(end)..end.min(r.len());
                     Stroke {
                         q: &s.q[j][inside.clone()],
                         dq: &s.dq[j][inside.clone()],
                         residual: &r[inside],
-                        band: s.recorded_band,
+                        band: *band,
                     }
                 })
                 .collect()
@@ -72,7 +76,7 @@ pub(in crate::diagnosis) fn all_lines(
     })
 }
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// The strongest line that is not in the model yet and that held-out motion does not speak against.
     pub(in crate::diagnosis) fn next_line(&self) -> Option<Accepted> {
         let tried: usize = self.lines.iter().map(|l| l.tried).sum();
@@ -84,21 +88,22 @@ impl Search<'_, '_> {
                         && t.place == place
                         && (t.shape[0] - line.order).abs() <= 3.0 * found.resolution
                 };
-                if self.terms.iter().any(known) || self.rejected.iter().any(known) {
+                if self.model.terms.iter().any(known) || self.rejected.iter().any(known) {
                     continue;
                 }
-                let side = self.side(pace(EffectKind::TorqueRipple));
+                let model = &self.model;
+                let regression = model.regression(smoothing_window(EffectKind::TorqueRipple));
                 let shape = vec![line.order];
                 let candidate = make(
-                    self.context,
-                    &side.design,
+                    &model.context,
+                    &regression.design,
                     EffectKind::TorqueRipple,
                     place,
                     std::slice::from_ref(&shape),
-                    self.change,
+                    model.change,
                 );
-                let verdict = judge(&side.design, &side.fit, &side.folds, &side.sigma, &candidate);
-                let Some(verdict) = verdict.filter(|v| v.total() > 0.0) else { continue };
+                let verdict = regression.judge(&candidate).filter(|v| v.total() > 0.0);
+                let Some(verdict) = verdict else { continue };
                 // Amplitudes of noise pass their median so many times once in 2^(square) orders.
                 let doubt = tried as f64 * (-line.above * line.above).exp2();
                 return Some(Accepted {
@@ -108,8 +113,8 @@ impl Search<'_, '_> {
                     shape,
                     fixed: None,
                     significance: line.amplitude / line.sigma,
-                    confidence: (1.0 - doubt).clamp(0.0, 0.9999),
-                    share: verdict.share,
+                    confidence: (1.0 - doubt).clamp(0.0, HIGHEST_CONFIDENCE),
+                    explained_fraction: verdict.explained_fraction,
                     rivals: Vec::new(),
                 });
             }

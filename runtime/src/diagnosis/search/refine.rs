@@ -2,8 +2,8 @@
 
 use crate::diagnosis::candidates::candidate::{Candidate, make};
 use crate::diagnosis::candidates::trial::{Trial, columns};
-use crate::diagnosis::judging::partial_regression::{best_trial, whole_gain};
-use crate::diagnosis::search::state::{Search, Side};
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::search::state::Search;
 use crate::effects::{EffectKind, Form, Place};
 use crate::parallel;
 
@@ -17,46 +17,41 @@ enum Step {
     Add(f64),
 }
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
     /// refined on what nothing else explains.
     pub(in crate::diagnosis) fn polish(&mut self, threads: usize) {
-        let (this, fast) = (&*self, &self.fast);
-        let polished = parallel::map(threads, fast.candidates.len(), |k| {
-            let candidate = &fast.candidates[k];
+        let (model, regression, candidates) = (&self.model, &self.model.fast, &self.fast);
+        let polished = parallel::map(threads, candidates.len(), |k| {
+            let candidate = &candidates[k];
             candidate.fixed?;
-            let start = best_trial(&fast.design, &fast.fit, &fast.sigma, candidate)?;
-            let shape = this.refined(fast, candidate, &candidate.trials[start].shape);
-            let columns =
-                columns(this.context, &fast.design, candidate.effect, candidate.place, &shape, this.change);
-            Some(Trial::new(&fast.design, shape, columns))
+            let start = regression.best_trial(candidate)?;
+            let shape = self.refined(regression, candidate, &candidate.trials[start].shape);
+            let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);
+            let columns = columns(&model.context, design, effect, place, &shape, model.change);
+            Some(Trial::new(design, shape, columns))
         });
-        for (candidate, trial) in self.fast.candidates.iter_mut().zip(polished) {
+        for (candidate, trial) in self.fast.iter_mut().zip(polished) {
             candidate.trials.extend(trial);
         }
     }
 
     pub(in crate::diagnosis) fn refined(
         &self,
-        side: &Side,
+        regression: &Regression,
         candidate: &Candidate,
         start: &[f64],
     ) -> Vec<f64> {
+        let context = &self.model.context;
         let gain = |shape: &[f64]| -> f64 {
-            let one = make(
-                self.context,
-                &side.design,
-                candidate.effect,
-                candidate.place,
-                &[shape.to_vec()],
-                self.change,
-            );
-            whole_gain(&side.design, &side.fit, &side.sigma, &one)
+            let (effect, place, shape) = (candidate.effect, candidate.place, [shape.to_vec()]);
+            let one = make(context, &regression.design, effect, place, &shape, self.model.change);
+            regression.whole_gain(&one)
         };
         let steps: Vec<Step> = match candidate.effect.form() {
             Form::Joint(_) if candidate.effect == EffectKind::TorqueRipple => {
                 let Place::Joint(j) = candidate.place else { return start.to_vec() };
-                vec![Step::Add(std::f64::consts::PI / self.context.scales[j].range)]
+                vec![Step::Add(std::f64::consts::PI / context.scales[j].range)]
             }
             Form::Joint(law) => law.refinement().iter().map(|&f| Step::Times(f)).collect(),
             Form::Compliance(_) => {

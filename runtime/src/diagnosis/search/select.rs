@@ -1,23 +1,22 @@
 //! Which candidate of a round holds.
 
-use crate::diagnosis::candidates::candidate::{Candidate, Pace};
-use crate::diagnosis::judging::evidence::{block_evidence, doubt, waveform_evidence};
-use crate::diagnosis::judging::folds::single_motion;
-use crate::diagnosis::judging::judge::{Verdict, holds_forward, judge};
+use crate::diagnosis::candidates::candidate::{Candidate, SmoothingWindow};
+use crate::diagnosis::judging::judge::Verdict;
+use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::significance::Evidence;
-use crate::diagnosis::search::state::{Rival, Search, Side};
+use crate::diagnosis::rows::fit::SingularDesign;
+use crate::diagnosis::rules::{
+    FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, NESTED_CASE_SUFFICES, RIVALS, STRETCHES_PER_LOSS,
+};
+use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
 use crate::effects::EffectKind;
 use crate::parallel;
 
-/// A law gives way to the one that it extends where that one makes this share of its gain.
-const SIMPLER_DOES: f64 = 0.9;
-/// Most candidates of a round whose evidence is worked out.
-const MOST_CHECKED: usize = 30;
-
-/// What passed a round: the side it is on, the candidate's index, and its verdict.
+/// What passed a round: the window of its rows, the candidate's index there, and its verdict.
 pub(in crate::diagnosis) struct Winner {
-    pub pace: Pace,
+    pub window: SmoothingWindow,
     pub index: usize,
     pub verdict: Verdict,
     pub significance: f64,
@@ -25,27 +24,30 @@ pub(in crate::diagnosis) struct Winner {
     pub rivals: Vec<Rival>,
 }
 
-/// A candidate of a round: the side it is on, its index there, and its verdict.
+/// A candidate of a round: the window of its rows, its index there, and its verdict.
 pub(in crate::diagnosis) struct Ranked {
-    pub pace: Pace,
+    pub window: SmoothingWindow,
     pub index: usize,
     pub verdict: Verdict,
 }
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// The best candidate that holds, among those on `joint` where one is given; the candidates have been looked
     /// through `rounds` times.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where a part of the motion has no fit.
     pub(in crate::diagnosis) fn best(
         &self,
         settings: &Settings,
         joint: Option<usize>,
         rounds: usize,
-    ) -> Option<Winner> {
+    ) -> Result<Option<Winner>, SingularDesign> {
         let ranked = self.ranked(joint);
         let holding = self.holding(&ranked, settings);
         let tries = rounds * self.tries();
         for (h, (k, evidence)) in holding.iter().enumerate() {
-            let (side, candidate) = self.of(&ranked[*k]);
+            let (regression, candidate) = self.of(&ranked[*k]);
             let verdict = &ranked[*k].verdict;
             // Whatever explains more of a joint than something that is no accident is no accident either.
             let confidence = holding[h..]
@@ -56,55 +58,49 @@ impl Search<'_, '_> {
             if confidence < settings.least_confidence {
                 continue;
             }
-            if single_motion(&side.design)
-                && !holds_forward(&side.design, &side.sigma, candidate, verdict.trial)
-            {
+            if regression.design.is_single_motion() && !regression.holds_forward(candidate, verdict.trial)? {
                 continue;
             }
-            if self.simpler_does(&ranked, candidate, verdict) {
+            if self.nested_case_suffices(&ranked, candidate, verdict) {
                 continue;
             }
-            return Some(Winner {
-                pace: ranked[*k].pace,
+            return Ok(Some(Winner {
+                window: ranked[*k].window,
                 index: ranked[*k].index,
                 verdict: verdict.clone(),
                 significance: evidence.significance,
                 confidence,
                 rivals: self.rivals(&ranked, *k, settings),
-            });
+            }));
         }
-        None
+        Ok(None)
     }
 
-    /// Candidates, on `joint` where one is given, that are not settled: those that gain most on held-back motion first.
+    /// Candidates, on `joint` where one is given, that are not excluded: those that gain most on held-out motion first.
     pub(in crate::diagnosis) fn ranked(&self, joint: Option<usize>) -> Vec<Ranked> {
         let mut ranked = Vec::new();
-        for pace in [Pace::Slow, Pace::Fast] {
-            let side = self.side(pace);
-            let verdicts = parallel::map(self.threads, side.candidates.len(), |index| {
-                let candidate = &side.candidates[index];
-                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.settled(candidate) {
+        for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
+            let (regression, candidates) = (self.model.regression(window), self.candidates(window));
+            let verdicts = parallel::map(self.threads, candidates.len(), |index| {
+                let candidate = &candidates[index];
+                if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.is_excluded(candidate) {
                     return None;
                 }
-                judge(&side.design, &side.fit, &side.folds, &side.sigma, candidate)
+                regression.judge(candidate)
             });
             let judged = verdicts.into_iter().enumerate();
-            ranked.extend(judged.filter_map(|(index, v)| Some(Ranked { pace, index, verdict: v? })));
+            ranked.extend(judged.filter_map(|(index, v)| Some(Ranked { window, index, verdict: v? })));
         }
         ranked.sort_by(|a, b| b.verdict.total().total_cmp(&a.verdict.total()));
         ranked
     }
 
     /// The first of them that hold, by their place in the ranking, and the evidence for each.
-    pub(in crate::diagnosis) fn holding(
-        &self,
-        ranked: &[Ranked],
-        settings: &Settings,
-    ) -> Vec<(usize, Evidence)> {
+    fn holding(&self, ranked: &[Ranked], settings: &Settings) -> Vec<(usize, Evidence)> {
         let holding: Vec<usize> = (0..ranked.len())
             .filter(|&k| {
-                let (side, candidate) = self.of(&ranked[k]);
-                holds(side, candidate, &ranked[k].verdict, settings)
+                let (regression, candidate) = self.of(&ranked[k]);
+                holds(regression, candidate, &ranked[k].verdict, settings)
             })
             .take(MOST_CHECKED)
             .collect();
@@ -112,59 +108,86 @@ impl Search<'_, '_> {
         holding.into_iter().zip(evidence).collect()
     }
 
-    pub(in crate::diagnosis) fn of(&self, ranked: &Ranked) -> (&Side, &Candidate) {
-        let side = self.side(ranked.pace);
-        (side, &side.candidates[ranked.index])
+    /// The regression of a ranked candidate, and the candidate.
+    pub(in crate::diagnosis) fn of(&self, ranked: &Ranked) -> (&Regression, &Candidate) {
+        (self.model.regression(ranked.window), &self.candidates(ranked.window)[ranked.index])
     }
 
+    /// How sure it is that the gain of a ranked candidate is no accident.
     pub(in crate::diagnosis) fn evidence(&self, ranked: &Ranked) -> Evidence {
-        let (side, candidate) = self.of(ranked);
+        let (regression, candidate) = self.of(ranked);
         if candidate.fixed.is_some() {
-            waveform_evidence(&side.design, &side.fit, &side.sigma, candidate, ranked.verdict.trial)
+            regression.waveform_evidence(candidate, ranked.verdict.trial)
         } else {
-            block_evidence(&side.design, &side.fit, &side.folds, &side.sigma, candidate, &ranked.verdict)
+            regression.block_evidence(candidate, &ranked.verdict)
         }
     }
 
     /// Other explanations of the joints of a candidate.
     fn rivals(&self, ranked: &[Ranked], winner: usize, settings: &Settings) -> Vec<Rival> {
-        let (side, candidate) = self.of(&ranked[winner]);
-        ranked
-            .iter()
-            .enumerate()
-            .filter(|(k, r)| *k != winner && self.of(r).1.own.iter().any(|j| candidate.own.contains(j)))
-            .take(5)
-            .map(|(_, other)| {
+        let winner = &ranked[winner];
+        let (regression, candidate) = self.of(winner);
+        let rivals = ranked.iter().filter(|r| {
+            (r.window, r.index) != (winner.window, winner.index)
+                && self.of(r).1.own.iter().any(|j| candidate.own.contains(j))
+        });
+        rivals
+            .take(RIVALS)
+            .map(|other| {
                 let rival = self.of(other).1;
-                let comparable = other.pace == ranked[winner].pace
+                let comparable = other.window == winner.window
                     && rival.own == candidate.own
-                    && holds(side, rival, &other.verdict, settings);
-                let doubt = if comparable {
-                    let law = (candidate, ranked[winner].verdict.trial);
-                    let rival = (rival, other.verdict.trial);
-                    doubt(&side.design, &side.fit, &side.folds, &side.sigma, law, rival)
+                    && holds(regression, rival, &other.verdict, settings);
+                let difference_p_value = if comparable {
+                    let (law, rival) = ((candidate, winner.verdict.trial), (rival, other.verdict.trial));
+                    regression.difference_p_value(law, rival)
                 } else {
                     0.0
                 };
-                Rival { effect: rival.effect, place: rival.place, share: other.verdict.share, doubt }
+                let explained_fraction = other.verdict.explained_fraction;
+                Rival { effect: rival.effect, place: rival.place, explained_fraction, difference_p_value }
             })
             .collect()
     }
 
-    /// Whether the simpler law of which this one is an extension explains nearly as much at the same place.
-    fn simpler_does(&self, ranked: &[Ranked], more: &Candidate, verdict: &Verdict) -> bool {
-        let Some(simpler) = simpler_than(more.effect) else { return false };
+    /// Whether the nested special case of a law explains nearly as much at the same place.
+    fn nested_case_suffices(&self, ranked: &[Ranked], more: &Candidate, verdict: &Verdict) -> bool {
+        let Some(nested) = nested_case(more.effect) else { return false };
         ranked.iter().any(|other| {
             let candidate = self.of(other).1;
-            candidate.effect == simpler
+            candidate.effect == nested
                 && candidate.place == more.place
-                && other.verdict.total() > SIMPLER_DOES * verdict.total()
+                && other.verdict.total() > NESTED_CASE_SUFFICES * verdict.total()
         })
+    }
+
+    /// The winner as a term, its shape refined on all motion.
+    pub(in crate::diagnosis) fn accept(&self, winner: &Winner) -> Accepted {
+        let mut term = self.as_term(winner);
+        let candidate = &self.candidates(winner.window)[winner.index];
+        term.shape = self.refined(self.model.regression(winner.window), candidate, &term.shape);
+        term
+    }
+
+    /// The winner as a term, with the shape of the grid.
+    pub(in crate::diagnosis) fn as_term(&self, winner: &Winner) -> Accepted {
+        let candidate = &self.candidates(winner.window)[winner.index];
+        Accepted {
+            effect: candidate.effect,
+            place: candidate.place,
+            own: candidate.own.clone(),
+            shape: candidate.trials[winner.verdict.trial].shape.clone(),
+            fixed: candidate.fixed,
+            significance: winner.significance,
+            confidence: winner.confidence,
+            explained_fraction: winner.verdict.explained_fraction,
+            rivals: winner.rivals.clone(),
+        }
     }
 }
 
-/// The law that another one extends, and that it comes back to where its own number vanishes.
-fn simpler_than(effect: EffectKind) -> Option<EffectKind> {
+/// The nested special case of an effect: backlash with zero gap is elasticity.
+fn nested_case(effect: EffectKind) -> Option<EffectKind> {
     match effect {
         // Play is one number more than a spring.
         EffectKind::Backlash => Some(EffectKind::JointElasticity),
@@ -174,23 +197,21 @@ fn simpler_than(effect: EffectKind) -> Option<EffectKind> {
     }
 }
 
-/// Whether a candidate explains enough, nearly everywhere, of what was fitted and of what was held back.
-fn holds(side: &Side, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
+/// Whether a candidate explains enough, in nearly all folds, of what was fitted and of what was held out.
+fn holds(regression: &Regression, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
     let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
     let folds = verdict.held_out.len();
-    // Of many stretches of one motion a few may be untouched by an effect.
-    let needed = if side.design.short {
-        // Its evidence is the residual's memory, not how many stretches agree.
+    let needed = if regression.design.short {
+        // Its evidence is a test against correlated noise, not how many stretches agree.
         0
     } else if candidate.fixed.is_some() {
         folds / 2 + 1
-    } else if side.design.in_stretches() {
-        folds - folds / 4
+    } else if regression.design.in_stretches() {
+        folds - folds / STRETCHES_PER_LOSS
     } else {
-        folds - folds / 6
+        folds - folds / MOTIONS_PER_LOSS
     };
-    // A gain in prediction without one in the fit is an accident of extrapolation.
-    verdict.share >= settings.least_share
-        && verdict.fitted_share >= 0.5 * settings.least_share
+    verdict.explained_fraction >= settings.least_share
+        && verdict.fitted_fraction >= FITTED_TO_HELD_OUT * settings.least_share
         && positive >= needed
 }

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
+use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot, StateSlices, torques};
 use nalgebra::DMatrix;
 use std::borrow::Cow;
 
@@ -36,16 +36,8 @@ fn motion(seconds: f64, phase: f64) -> Motion {
             .collect()
     };
     let (q, dq, ddq) = (signal(0), signal(1), signal(2));
-    let mut torque = vec![vec![0.0; n]; 2];
-    let mut entries = vec![0.0; model.pattern().columns.len()];
-    for t in 0..n {
-        let at = |x: &[Vec<f64>]| [x[0][t], x[1][t]];
-        model.idm(&at(&q), &at(&dq), &at(&ddq), &mut entries);
-        for (j, torque) in torque.iter_mut().enumerate() {
-            let own = model.pattern().rows[j]..model.pattern().rows[j + 1];
-            torque[t] = own.map(|e| entries[e] * (1.0 + model.pattern().columns[e] as f64)).sum();
-        }
-    }
+    let chi: Vec<f64> = (1..=model.robot().base.len()).map(|k| k as f64).collect();
+    let torque = torques(&model, &chi, StateSlices::new(&q, &dq, &ddq).states());
     Motion { name: "m".into(), rate: RATE, start: 1.0, q, dq, ddq, torque, fixed: vec![], spoiled: 10 }
 }
 

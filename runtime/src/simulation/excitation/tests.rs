@@ -2,7 +2,7 @@
 //! Motions against their limits, and the search against chance.
 
 use super::*;
-use crate::model::{Limits, Model, RecursiveModel, Robot};
+use crate::model::{Limits, Model, RecursiveModel, Robot, torques_at};
 use crate::simulation::testing::{arm, with_numeric_base};
 use rand::{RngExt, SeedableRng};
 use std::borrow::Cow;
@@ -72,21 +72,16 @@ fn torque_limits_are_not_broken_between_samples_either() {
     // Limits that bind: the motion has to be slowed down to them.
     robot.limits.torque = Cow::Owned(vec![[-160.0, 160.0]; n]);
     let model = RecursiveModel::new(robot).unwrap();
-    let pattern = model.pattern();
     for kind in [FOURIER, QUINTIC, TRAPEZOIDAL] {
         let all =
             ExcitationSettings { share: 1.0, evaluations: 0, ..settings(kind, 1, Identification::Idim) };
         let plan = excite(&model, Some(&chi), &all, &|_| {}).unwrap();
         let motion = &plan.motions[0];
         let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let mut entries = vec![0.0; pattern.columns.len()];
         let mut largest = 0.0_f64;
         for k in 0..=50_021 {
             motion.at(motion.duration() * k as f64 / 50_021.0, &mut q, &mut dq, &mut ddq);
-            model.idm(&q, &dq, &ddq, &mut entries);
-            for i in 0..n {
-                let row = pattern.rows[i]..pattern.rows[i + 1];
-                let torque: f64 = row.map(|e| entries[e] * chi[pattern.columns[e]]).sum();
+            for torque in torques_at(&model, &chi, &q, &dq, &ddq) {
                 largest = largest.max(torque.abs() / 160.0);
             }
         }

@@ -1,38 +1,39 @@
-//! How long a residual remembers, and what that makes of its inner products with other columns.
+//! First-order autocorrelation of a residual, and the covariance of its inner products with other columns.
 
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::{HIGHEST_RHO, RHO_MARGIN, UNCORRELATED};
 use nalgebra::DMatrix;
 
 /// Rows of a joint, motion by motion: their place in the motion, counted in rows, and their index in the design.
-pub(in crate::diagnosis) type Places = Vec<Vec<(usize, usize)>>;
+#[derive(Debug, Clone, Default)]
+pub(in crate::diagnosis) struct Places(Vec<Vec<(usize, usize)>>);
 
-/// Autocorrelation below which a residual has forgotten.
-const FORGOTTEN: f64 = 0.2;
-/// The memory is taken for longer than it looks by this many standard errors of an autocorrelation: what a fit takes
-/// out of a residual takes its slow parts first.
-const LONGER: f64 = 2.0;
-/// Longest memory: correlation of neighbouring rows.
-const LONGEST: f64 = 0.97;
+impl Places {
+    /// Where the rows of a joint are.
+    pub fn of(design: &Design, joint: usize) -> Self {
+        let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
+        let motion = |signal: usize| {
+            let rows = design.of_signal(joint, signal).into_iter().flat_map(|(range, _)| range);
+            rows.map(|r| (design.rows[r].centre / design.spacing(signal), r)).collect()
+        };
+        Self((0..motions).map(motion).collect())
+    }
 
-/// Where the rows of a joint are.
-pub(in crate::diagnosis) fn places(design: &Design, joint: usize) -> Places {
-    let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
-    let motion = |signal: usize| {
-        let rows = design.of_signal(joint, signal).into_iter().flat_map(|(range, _)| range);
-        rows.map(|r| (design.rows[r].centre / design.spacing(signal), r)).collect()
-    };
-    (0..motions).map(motion).collect()
+    /// Motion by motion: place and row.
+    pub fn motions(&self) -> &[Vec<(usize, usize)>] {
+        &self.0
+    }
 }
 
-/// The lag, in rows, at which values have forgotten themselves; `longest` where they never do.
-pub(in crate::diagnosis) fn forgotten(places: &Places, values: &[f64], longest: usize) -> usize {
-    (1..longest).find(|&lag| autocorrelation(places, values, lag) < FORGOTTEN).unwrap_or(longest)
+/// The lag, in rows, from which on values are uncorrelated; `longest` where they never are.
+pub(in crate::diagnosis) fn decorrelation_lag(places: &Places, values: &[f64], longest: usize) -> usize {
+    (1..longest).find(|&lag| autocorrelation(places, values, lag) < UNCORRELATED).unwrap_or(longest)
 }
 
 /// Correlation of values with themselves `lag` places later, over pairs of places that are there.
 fn autocorrelation(places: &Places, values: &[f64], lag: usize) -> f64 {
     let (mut products, mut pairs, mut squares, mut rows) = (0.0, 0, 0.0, 0);
-    for motion in places {
+    for motion in &places.0 {
         let mut later = motion.iter().peekable();
         for &(place, r) in motion {
             squares += values[r] * values[r];
@@ -47,48 +48,47 @@ fn autocorrelation(places: &Places, values: &[f64], lag: usize) -> f64 {
     if pairs == 0 || squares == 0.0 { 0.0 } else { products / pairs as f64 / (squares / rows as f64) }
 }
 
-/// A memory that fades by the same factor from each place to the next, and is as long, all autocorrelations taken
-/// together, as that of the residual up to where it has forgotten.
-pub(in crate::diagnosis) struct Memory {
+/// AR(1) residual; `rho` from the sum of positive autocorrelations up to the decorrelation lag, plus a margin.
+pub(in crate::diagnosis) struct Ar1 {
     /// Correlation of neighbouring places.
-    fading: f64,
+    rho: f64,
     /// Mean square.
     variance: f64,
     rows: usize,
 }
 
-impl Memory {
+impl Ar1 {
     /// Of the residual of a joint.
     pub fn of(places: &Places, residual: &[f64], longest: usize) -> Self {
-        let rows = places.iter().map(Vec::len).sum::<usize>();
-        let squares: f64 = places.iter().flatten().map(|&(_, r)| residual[r] * residual[r]).sum();
-        let remembered: f64 = (1..=forgotten(places, residual, longest))
+        let rows = places.0.iter().map(Vec::len).sum::<usize>();
+        let squares: f64 = places.0.iter().flatten().map(|&(_, r)| residual[r] * residual[r]).sum();
+        let sum: f64 = (1..=decorrelation_lag(places, residual, longest))
             .map(|lag| autocorrelation(places, residual, lag).max(0.0))
             .sum();
-        // The autocorrelations x, x², x³ .. add up to x / (1 - x).
-        let seen = remembered / (1.0 + remembered);
+        // The autocorrelations rho, rho², rho³ .. add up to rho / (1 - rho).
+        let estimate = sum / (1.0 + sum);
         let count = rows.max(1) as f64;
-        Self { fading: (seen + LONGER / count.sqrt()).min(LONGEST), variance: squares / count, rows }
+        Self { rho: (estimate + RHO_MARGIN / count.sqrt()).min(HIGHEST_RHO), variance: squares / count, rows }
     }
 
     /// Independent rows that say as much about a variance as the rows do.
     pub fn independent_rows(&self) -> f64 {
-        let square = self.fading * self.fading;
+        let square = self.rho * self.rho;
         self.rows as f64 * (1.0 - square) / (1.0 + square)
     }
 
-    /// Covariance of the inner products of columns with a residual that remembers like this.
+    /// Covariance of the inner products of columns with such a residual.
     pub fn covariance(&self, places: &Places, columns: &[Vec<f64>]) -> DMatrix<f64> {
         let k = columns.len();
         let mut sum = DMatrix::zeros(k, k);
-        for motion in places {
-            // What the rows before are still remembered for, per column.
+        for motion in &places.0 {
+            // Per column: the rows before, each weighted by its correlation with this one.
             let mut before = vec![0.0; k];
             let mut last = 0;
             for &(place, r) in motion {
-                let faded = self.fading.powf(place.saturating_sub(last) as f64);
+                let decay = self.rho.powf(place.saturating_sub(last) as f64);
                 last = place;
-                before.iter_mut().for_each(|b| *b *= faded);
+                before.iter_mut().for_each(|b| *b *= decay);
                 for a in 0..k {
                     for b in 0..k {
                         sum[(a, b)] += columns[a][r] * columns[b][r]
@@ -114,18 +114,18 @@ mod tests {
     fn correlation_looks_at_pairs_of_rows_that_are_there() {
         // A square wave of period 4, with rows missing: 1 after four rows, -1 after two, nothing after one.
         let values: Vec<f64> = (0..400).map(|k| if k % 4 < 2 { 1.0 } else { -1.0 }).collect();
-        let there: Places = vec![(0..400).filter(|k| k % 37 != 0).map(|k| (k, k)).collect()];
+        let there = Places(vec![(0..400).filter(|k| k % 37 != 0).map(|k| (k, k)).collect()]);
         assert!((autocorrelation(&there, &values, 4) - 1.0).abs() < 1e-12);
         assert!((autocorrelation(&there, &values, 2) + 1.0).abs() < 1e-12);
         assert!(autocorrelation(&there, &values, 1).abs() < 0.02);
-        assert_eq!(autocorrelation(&vec![vec![(0, 0), (9, 1)]], &values, 1), 0.0);
+        assert_eq!(autocorrelation(&Places(vec![vec![(0, 0), (9, 1)]]), &values, 1), 0.0);
     }
 
     #[test]
     fn covariance_is_that_of_the_full_matrix_with_rows_missing_and_motions_apart() {
         let columns = [vec![1.0, -2.0, 0.5, 3.0, 1.5], vec![0.3, 0.1, -0.7, 2.0, -1.0]];
-        let there: Places = vec![vec![(0, 0), (1, 1), (4, 2)], vec![(0, 3), (2, 4)]];
-        let memory = Memory { fading: 0.6, variance: 2.0, rows: 5 };
+        let there = Places(vec![vec![(0, 0), (1, 1), (4, 2)], vec![(0, 3), (2, 4)]]);
+        let noise = Ar1 { rho: 0.6, variance: 2.0, rows: 5 };
         let at = [(0, 0), (0, 1), (0, 4), (1, 0), (1, 2)];
         let expected = DMatrix::from_fn(2, 2, |a, b| {
             let mut sum = 0.0;
@@ -137,14 +137,13 @@ mod tests {
             }
             sum
         });
-        assert!((memory.covariance(&there, &columns) - expected).norm() < 1e-12);
+        assert!((noise.covariance(&there, &columns) - expected).norm() < 1e-12);
     }
 
-    /// How often a wave that has nothing to do with a residual, each value of which is `again` times the one before
-    /// and something new, comes below each of these tails.
-    fn accidents(again: f64, levels: [f64; 2]) -> [f64; 2] {
+    /// How often a wave that has nothing to do with an AR(1) residual has a p-value below each of these levels.
+    fn false_positives(rho: f64, levels: [f64; 2]) -> [f64; 2] {
         let (rows, runs) = (180, 20_000);
-        let there: Places = vec![(0..rows).map(|k| (k, k)).collect()];
+        let there = Places(vec![(0..rows).map(|k| (k, k)).collect()]);
         let mut rng = Pcg64::seed_from_u64(30);
         let mut below = [0; 2];
         for _ in 0..runs {
@@ -152,7 +151,7 @@ mod tests {
             let mut residual: Vec<f64> = (0..rows + 50)
                 .map(|_| {
                     let new: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
-                    x = again * x + new;
+                    x = rho * x + new;
                     x
                 })
                 .skip(50)
@@ -166,33 +165,33 @@ mod tests {
             let product = dot(&wave, &residual);
             let amplitude = product / dot(&wave, &wave);
             residual.iter_mut().zip(&wave).for_each(|(r, w)| *r -= amplitude * w);
-            let memory = Memory::of(&there, &residual, 25);
-            let variance = memory.covariance(&there, &[wave])[(0, 0)];
-            let tail = Evidence::fisher(product * product / variance, 1, memory.independent_rows()).tail;
-            below.iter_mut().zip(levels).for_each(|(b, level)| *b += usize::from(tail < level));
+            let noise = Ar1::of(&there, &residual, 25);
+            let variance = noise.covariance(&there, &[wave])[(0, 0)];
+            let p_value = Evidence::fisher(product * product / variance, 1, noise.independent_rows()).p_value;
+            below.iter_mut().zip(levels).for_each(|(b, level)| *b += usize::from(p_value < level));
         }
         below.map(|b| b as f64 / runs as f64)
     }
 
     #[test]
-    fn an_accident_stands_out_no_more_often_than_its_tail_says_however_long_the_residual_remembers() {
-        for again in [0.0, 0.3, 0.5, 0.7] {
-            let [often, seldom] = accidents(again, [0.01, 0.001]);
-            println!("{again}: {:.2} % below 1 %, {:.3} % below 0.1 %", 100.0 * often, 100.0 * seldom);
-            assert!(often < 0.01, "{again}: {often}");
-            assert!(seldom < 0.001, "{again}: {seldom}");
+    fn noise_passes_no_more_often_than_its_p_value_says_however_correlated_the_residual_is() {
+        for rho in [0.0, 0.3, 0.5, 0.7] {
+            let [often, seldom] = false_positives(rho, [0.01, 0.001]);
+            println!("{rho}: {:.2} % below 1 %, {:.3} % below 0.1 %", 100.0 * often, 100.0 * seldom);
+            assert!(often < 0.01, "{rho}: {often}");
+            assert!(seldom < 0.001, "{rho}: {seldom}");
         }
     }
 
     #[test]
-    fn a_residual_that_remembers_counts_for_fewer_rows() {
-        let there: Places = vec![(0..200).map(|k| (k, k)).collect()];
+    fn a_correlated_residual_counts_for_fewer_rows() {
+        let there = Places(vec![(0..200).map(|k| (k, k)).collect()]);
         let slow: Vec<f64> = (0..200).map(|k| f64::sin(k as f64 / 10.0)).collect();
         let fast: Vec<f64> = (0..200).map(|k| f64::sin(2.5 * k as f64)).collect();
-        assert!(Memory::of(&there, &slow, 50).independent_rows() < 10.0);
-        assert!(Memory::of(&there, &fast, 50).independent_rows() > 180.0);
+        assert!(Ar1::of(&there, &slow, 50).independent_rows() < 10.0);
+        assert!(Ar1::of(&there, &fast, 50).independent_rows() > 180.0);
         // Nothing left at all is no division by zero.
-        assert!(Memory::of(&there, &[0.0; 200], 50).independent_rows() > 180.0);
-        assert_eq!(Memory::of(&vec![], &[], 50).independent_rows(), 0.0);
+        assert!(Ar1::of(&there, &[0.0; 200], 50).independent_rows() > 180.0);
+        assert_eq!(Ar1::of(&Places::default(), &[], 50).independent_rows(), 0.0);
     }
 }

@@ -1,0 +1,111 @@
+//! The standard parameters of a link and its joint.
+
+use crate::JointKind;
+use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M, MX, MY, MZ, Off, XX, XY, XZ, YY, YZ, ZZ};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// A standard parameter of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StandardParameter {
+    /// Kind and number of the frame: `ZZ1`, `Ia3`, `Fvm6`.
+    pub name: Cow<'static, str>,
+    /// What it is.
+    pub kind: ParameterKind,
+    /// Frame it belongs to, 0-based index in `Robot::frames`.
+    pub frame: usize,
+}
+
+/// What a standard parameter is, in the order of chi_st within a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum ParameterKind {
+    /// Moment of inertia about x at the origin of the frame.
+    XX,
+    /// Product of inertia.
+    XY,
+    /// Product of inertia.
+    XZ,
+    /// Moment of inertia about y.
+    YY,
+    /// Product of inertia.
+    YZ,
+    /// Moment of inertia about z.
+    ZZ,
+    /// First moment along x: mass times the x of the centre of mass.
+    MX,
+    /// First moment along y.
+    MY,
+    /// First moment along z.
+    MZ,
+    /// Mass.
+    M,
+    /// Rotor inertia, at the joint.
+    Ia,
+    /// Viscous friction.
+    Fv,
+    /// Coulomb friction.
+    Fc,
+    /// Constant torque, written `off`.
+    #[serde(rename = "off")]
+    Off,
+    /// Viscous friction at motor speed, of a motor that several joints turn.
+    Fvm,
+    /// Coulomb friction at motor speed.
+    Fcm,
+}
+
+impl ParameterKind {
+    /// The inertial parameters that every link has, in order.
+    pub const INERTIAL: [ParameterKind; 10] = [XX, XY, XZ, YY, YZ, ZZ, MX, MY, MZ, M];
+
+    /// The parameters that every joint has beside those of its link, in order.
+    pub const JOINT: [ParameterKind; 4] = [Ia, Fv, Fc, Off];
+
+    /// The parameters of a motor with friction at motor speed, in order.
+    pub const MOTOR: [ParameterKind; 2] = [Fvm, Fcm];
+
+    /// As it is written before the number of the frame.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            XX => "XX",
+            XY => "XY",
+            XZ => "XZ",
+            YY => "YY",
+            YZ => "YZ",
+            ZZ => "ZZ",
+            MX => "MX",
+            MY => "MY",
+            MZ => "MZ",
+            M => "M",
+            Ia => "Ia",
+            Fv => "Fv",
+            Fc => "Fc",
+            Off => "off",
+            Fvm => "Fvm",
+            Fcm => "Fcm",
+        }
+    }
+
+    /// SI unit, where the frame that the parameter belongs to moves like this.
+    ///
+    /// ```
+    /// use dynid_description::{JointKind, ParameterKind};
+    ///
+    /// assert_eq!(ParameterKind::Fv.unit(JointKind::Revolute), "N.m.s/rad");
+    /// assert_eq!(ParameterKind::Fv.unit(JointKind::Prismatic), "N.s/m");
+    /// ```
+    pub fn unit(self, kind: JointKind) -> &'static str {
+        let prismatic = kind == JointKind::Prismatic;
+        match self {
+            XX | XY | XZ | YY | YZ | ZZ => "kg.m2",
+            MX | MY | MZ => "kg.m",
+            M => "kg",
+            Ia if prismatic => "kg",
+            Ia => "kg.m2",
+            Fv | Fvm if prismatic => "N.s/m",
+            Fv | Fvm => "N.m.s/rad",
+            Fc | Off | Fcm if prismatic => "N",
+            Fc | Off | Fcm => "N.m",
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! A robot as numbers.
+
+use crate::{
+    BaseParameter, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Nominal, StandardParameter,
+};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// A robot as numbers: the modified-DH table evaluated, the drive, and the names and order of its parameters.
+///
+/// Generated code holds it as a `static`; for a robot that is read at run time it is built then.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Robot {
+    /// The name it is called by on the command line.
+    pub name: Cow<'static, str>,
+    /// One line for a person.
+    pub description: Cow<'static, str>,
+    /// Gravity in frame 0, m/s2.
+    pub gravity: [f64; 3],
+    /// One row per frame, base first, parents before children.
+    pub frames: Cow<'static, [Frame]>,
+    /// Transmission between motors and joints.
+    pub drive: Drive,
+    /// Limits per joint, SI.
+    pub limits: Limits,
+    /// The standard parameters in the order of chi_st: for each frame XX XY XZ YY YZ ZZ MX MY MZ M, then,
+    /// where the frame is a joint, Ia Fv Fc off, then Fvm Fcm where its motor has coupled friction.
+    pub standard: Cow<'static, [StandardParameter]>,
+    /// The base parameters in the order of chi, joint after joint in the same order.
+    pub base: Cow<'static, [BaseParameter]>,
+    /// Values for simulation, where the YAML gives them.
+    pub nominal: Option<Nominal>,
+}
+
+impl Robot {
+    /// Number of joints n (fixed frames do not count).
+    pub fn joints(&self) -> usize {
+        self.joint_frames().count()
+    }
+
+    /// How each joint moves, in the order of the joints: revolute or prismatic, never fixed.
+    pub fn joint_kinds(&self) -> Vec<JointKind> {
+        self.joint_frames().map(|frame| self.frames[frame].kind).collect()
+    }
+
+    /// Joint of each frame as a 0-based index, `None` for a fixed frame.
+    pub fn joint_of_frame(&self) -> Vec<Option<usize>> {
+        let mut joint = 0;
+        self.frames
+            .iter()
+            .map(|f| {
+                let moves = f.kind != JointKind::Fixed;
+                joint += usize::from(moves);
+                moves.then(|| joint - 1)
+            })
+            .collect()
+    }
+
+    /// The number j that a joint has in the table.
+    ///
+    /// An index past the last joint gets a number past the last frame, which no joint has.
+    ///
+    /// ```
+    /// use dynid_description::{Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Robot};
+    ///
+    /// // Revolute, fixed, revolute.
+    /// let row = |parent, kind| Frame { parent, kind, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.3, theta: 0.0, r: 0.0 };
+    /// let frames = vec![
+    ///     row(None, JointKind::Revolute),
+    ///     row(Some(0), JointKind::Fixed),
+    ///     row(Some(1), JointKind::Revolute),
+    /// ];
+    /// let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
+    /// let robot = Robot::with_standard_as_base("arm", [0.0, -9.81, 0.0], frames, drive, Limits::default());
+    ///
+    /// assert_eq!(robot.joint_number(JointIndex(1)), JointNumber(3));
+    /// assert_eq!(robot.joint_index(JointNumber(3)), Some(JointIndex(1)));
+    /// assert_eq!(robot.joint_index(JointNumber(2)), None);
+    /// ```
+    pub fn joint_number(&self, joint: JointIndex) -> JointNumber {
+        let past = || self.frames.len().saturating_add(joint.0.saturating_sub(self.joints()));
+        JointNumber(self.joint_frames().nth(joint.0).unwrap_or_else(past).saturating_add(1))
+    }
+
+    /// The joint that has the number j in the table; `None` for a fixed frame and for a number that no frame has.
+    pub fn joint_index(&self, number: JointNumber) -> Option<JointIndex> {
+        let frame = number.0.checked_sub(1)?;
+        self.joint_frames().position(|known| known == frame).map(JointIndex)
+    }
+
+    /// Standard parameters, by index, that no base parameter holds: they have no effect on any torque.
+    pub fn without_effect(&self) -> Vec<usize> {
+        let held = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
+        (0..self.standard.len()).filter(|&k| !held(k)).collect()
+    }
+
+    /// chi from chi_st: every base parameter as its combination of standard parameters.
+    pub fn base_from_standard(&self, standard: &[f64]) -> Vec<f64> {
+        self.base.iter().map(|p| p.combination.iter().map(|&(k, c)| c * standard[k]).sum()).collect()
+    }
+
+    /// Indices in `frames` of the frames that move, in order.
+    fn joint_frames(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.frames.len()).filter(|&k| self.frames[k].kind != JointKind::Fixed)
+    }
+}

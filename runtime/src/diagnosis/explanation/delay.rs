@@ -1,0 +1,88 @@
+//! The skew of the torques behind the positions: measured before anything else, and named where it explains enough.
+
+use crate::diagnosis::candidates::trial::delay_columns;
+use crate::diagnosis::explanation::finding::unit_term;
+use crate::diagnosis::explanation::words;
+use crate::diagnosis::judging::held_out::HeldOutSquares;
+use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::outcome::{Finding, ParameterValue};
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rules::{LONGEST_BLOCK, NAMED_DELAY, NAMED_DELAY_SAMPLES};
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::settings::Settings;
+use crate::effects::{EffectKind, EffectTerm, Place};
+use std::collections::BTreeSet;
+
+/// Skew of the torques behind the positions in a design, s.
+///
+/// # Errors
+/// [`SingularDesign`] where there is no fit.
+pub(in crate::diagnosis) fn skew_of(context: &Context<'_>, mut design: Design) -> Result<f64, SingularDesign> {
+    for column in delay_columns(context, &design) {
+        design.push(column);
+    }
+    design.refresh();
+    let fit = Fit::weighted(&design, &vec![1.0; design.joints])?;
+    Ok(fit.chi[design.columns.len() - 1])
+}
+
+/// The delay as a finding, where it is more than sampling and explains enough. `skew` is all of it, s.
+///
+/// # Errors
+/// [`SingularDesign`] where a split has no fit.
+pub(in crate::diagnosis) fn finding(
+    model: &ExtendedModel<'_>,
+    skew: f64,
+    settings: &Settings,
+) -> Result<Option<Finding>, SingularDesign> {
+    let rate = model.context.signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
+    if (skew * rate).abs() < NAMED_DELAY_SAMPLES || skew.abs() < NAMED_DELAY {
+        return Ok(None);
+    }
+    let slow = &model.slow;
+    let p = slow.design.parameters;
+    let with = slow.held_out(false)?;
+    let unaware = HeldOutSquares::of(&with_skew(model, skew), &slow.sigma, false)?;
+    let all: Vec<usize> = (0..slow.design.joints).collect();
+    let weigh =
+        |h: &HeldOutSquares| -> f64 { h.left.iter().zip(&slow.sigma).map(|(l, s)| l / (s * s)).sum() };
+    let share = 1.0 - weigh(&with) / weigh(&unaware);
+    if share < settings.least_share {
+        return Ok(None);
+    }
+    let sigma = slow.fit.variances()[p].max(0.0).sqrt();
+    let per_block = slow.design.rows_within(LONGEST_BLOCK);
+    let blocks: BTreeSet<_> = slow.design.rows.iter().map(|&r| slow.design.block(r, per_block)).collect();
+    let evidence = Evidence::student(skew.abs() / sigma.max(1e-300), blocks.len().saturating_sub(1) as f64);
+    let value = ParameterValue { value: skew, sigma, unit: "s".into() };
+    let mut finding = Finding {
+        confidence: evidence.confidence(1),
+        significance: evidence.significance,
+        parameters: [("delay".to_string(), value)].into_iter().collect(),
+        held_out_before: unaware.error_on(&all),
+        held_out_after: with.error_on(&all),
+        share,
+        ..Finding::of(EffectTerm {
+            amplitude: vec![skew],
+            sigma: vec![sigma],
+            ..unit_term(EffectKind::TimeDelay, Place::Variant(0), Vec::new())
+        })
+    };
+    finding.sentence = words::sentence(model.context.model.robot(), EffectKind::TimeDelay, &finding);
+    Ok(Some(finding))
+}
+
+/// The slow rows as they would be with the skew left in the torques: the torque's own rate of change, as much of it as
+/// the skew moved, and no column for it.
+fn with_skew(model: &ExtendedModel<'_>, skew: f64) -> Design {
+    let slow = &model.slow;
+    let p = slow.design.parameters;
+    let taken = skew - slow.fit.chi[p];
+    let mut design = slow.design.clone();
+    let column = design.columns.remove(p);
+    design.y = slow.design.y.iter().zip(&column).map(|(y, c)| y + taken * c).collect();
+    design.refresh();
+    design
+}

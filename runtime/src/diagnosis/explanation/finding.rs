@@ -1,0 +1,134 @@
+//! An accepted effect, or a contact, as a finding.
+
+use crate::diagnosis::DiagnosisError;
+use crate::diagnosis::candidates::candidate::smoothing_window;
+use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::explanation::curves;
+use crate::diagnosis::explanation::quantities::{parameters, uncertainty};
+use crate::diagnosis::explanation::words;
+use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue};
+use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::effects::{EffectKind, EffectTerm, Form, Place};
+use crate::model::{JointIndex, Robot};
+
+/// A term without amplitudes: what an effect at a place with a shape is.
+pub(in crate::diagnosis) fn unit_term(effect: EffectKind, place: Place, shape: Vec<f64>) -> EffectTerm {
+    EffectTerm {
+        effect,
+        place,
+        joints: Vec::new(),
+        shape,
+        amplitude: Vec::new(),
+        sigma: Vec::new(),
+        scale: None,
+        wrenches: Vec::new(),
+    }
+}
+
+/// Numbers j of the joints that an effect at a place is named on.
+pub(in crate::diagnosis) fn named_on(robot: &Robot, effect: EffectKind, place: Place) -> Vec<usize> {
+    let number = |joint: usize| robot.joint_number(JointIndex(joint)).0;
+    match (place, effect.form()) {
+        (Place::Joint(j), _) => vec![number(j)],
+        (Place::Pair(a, b), _) => vec![number(a), number(b)],
+        (Place::Variant(v), Form::Sensitivity(law)) if !law.together() => {
+            law.variants(robot).get(v).and_then(|x| x.joint).map(number).into_iter().collect()
+        }
+        (Place::Link(frame), _) if effect == EffectKind::AddedMass => vec![frame + 1],
+        _ => Vec::new(),
+    }
+}
+
+/// Term k of a model as a finding. The model stays as it is: the errors without the term are those of a copy.
+///
+/// # Errors
+/// [`DiagnosisError`] where the model without the term has no fit.
+pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Result<Finding, DiagnosisError> {
+    let robot = model.context.model.robot();
+    let accepted = &model.terms[k];
+    let window = smoothing_window(accepted.effect);
+    let regression = model.regression(window);
+    let range = regression.term_columns[k].clone();
+    let mut amplitude: Vec<f64> = range.map(|c| regression.fit.chi[c]).collect();
+    let (mut sigma, shape_sigma) = uncertainty(model, k, &amplitude)?;
+    let parameters = parameters(model, accepted, &mut amplitude, &mut sigma, &shape_sigma);
+    let scale = match accepted.place {
+        Place::Joint(j) => Some(model.context.scales[j].into()),
+        _ => None,
+    };
+    let after = regression.held_out(false)?.error_on(&accepted.own);
+    let before = model.without(k)?.regression(window).held_out(false)?.error_on(&accepted.own);
+    let mut finding = Finding {
+        confidence: accepted.confidence,
+        significance: accepted.significance,
+        parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
+        held_out_before: before,
+        held_out_after: after,
+        share: 1.0 - (after / before).powi(2),
+        alternatives: alternatives(model, k),
+        curve: curves::of_term(model, accepted, k),
+        ..Finding::of(EffectTerm {
+            joints: named_on(robot, accepted.effect, accepted.place),
+            amplitude,
+            sigma,
+            scale,
+            ..unit_term(accepted.effect, accepted.place, accepted.shape.clone())
+        })
+    };
+    finding.sentence = words::sentence(robot, accepted.effect, &finding);
+    Ok(finding)
+}
+
+/// The rivals of a term, and why they were not chosen.
+fn alternatives(model: &ExtendedModel<'_>, k: usize) -> Vec<Alternative> {
+    let accepted = &model.terms[k];
+    let percent = |fraction: f64| 100.0 * fraction.clamp(0.0, 1.0);
+    let alternative = |rival: &crate::diagnosis::search::term::Rival| Alternative {
+        effect: rival.effect.id().into(),
+        joints: named_on(model.context.model.robot(), rival.effect, rival.place),
+        why_not: format!(
+            "explains {:.0} % of what held-out motion leaves open, against {:.0} %",
+            percent(rival.explained_fraction),
+            percent(accepted.explained_fraction)
+        ),
+        share: rival.explained_fraction,
+    };
+    accepted.rivals.iter().map(alternative).collect()
+}
+
+/// The contacts as one finding.
+pub(in crate::diagnosis) fn of_contacts(contacts: &Contacts) -> Finding {
+    let largest = contacts.wrenches.iter().max_by(|a, b| norm(a.force).total_cmp(&norm(b.force)));
+    let mut parameters = std::collections::BTreeMap::new();
+    let value = |value: f64, unit: &str| ParameterValue { value, sigma: 0.0, unit: unit.into() };
+    parameters.insert("windows".into(), value(contacts.wrenches.len() as f64, "1"));
+    if let Some(w) = largest.filter(|w| norm(w.force) > 0.0) {
+        parameters.insert("largest_force".into(), value(norm(w.force), "N"));
+        parameters.insert("link".into(), value(w.link as f64, "1"));
+    }
+    let joints = contacts.wrenches.iter().flat_map(|w| &w.joint_torques);
+    if let Some(most) = joints.max_by(|a, b| a.largest.abs().total_cmp(&b.largest.abs())) {
+        let torque = ParameterValue { value: most.largest, sigma: most.sigma, unit: "N.m".into() };
+        parameters.insert("largest_joint_torque".into(), torque);
+        parameters.insert("joint".into(), value(most.joint as f64, "1"));
+    }
+    let mut finding = Finding {
+        confidence: (1.0 - contacts.doubt).clamp(0.0, HIGHEST_CONFIDENCE),
+        parameters,
+        held_out_before: (contacts.before / contacts.torque).sqrt(),
+        held_out_after: (contacts.after / contacts.torque).sqrt(),
+        share: 1.0 - contacts.after / contacts.before,
+        contacts: contacts.wrenches.clone(),
+        ..Finding::of(EffectTerm {
+            wrenches: contacts.wrenches.clone(),
+            ..unit_term(EffectKind::Contact, Place::Robot, Vec::new())
+        })
+    };
+    finding.sentence = words::contact(&finding);
+    finding
+}
+
+fn norm(f: [f64; 3]) -> f64 {
+    f.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

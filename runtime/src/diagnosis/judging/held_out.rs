@@ -1,0 +1,95 @@
+//! Errors on motion that was held out.
+
+use crate::diagnosis::judging::folds::forward_cuts;
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::outcome::Errors;
+use crate::diagnosis::predict::errors;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+
+/// Squares of the held-out residual and of the torque.
+pub(in crate::diagnosis) struct HeldOutSquares {
+    /// Residual, per joint.
+    pub left: Vec<f64>,
+    /// Torque, per joint.
+    pub whole: Vec<f64>,
+    /// Per held-out segment: its index, residual and torque of all joints.
+    pub by_segment: Vec<(usize, f64, f64)>,
+}
+
+/// Segments that are fitted, and those that the fit predicts.
+type Split = (Vec<bool>, Vec<usize>);
+
+impl HeldOutSquares {
+    /// Predicts held-out motion with the columns of a design: every motion once from the others; a single motion
+    /// forward in time, from two instants on; where `from_baseline` is set, the new motion from the baseline alone.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where a split has no fit.
+    pub fn of(design: &Design, sigma: &[f64], from_baseline: bool) -> Result<Self, SingularDesign> {
+        let n = design.joints;
+        let mut out = Self { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
+        for (train, test) in splits(design, from_baseline) {
+            let fit = Fit::new(design, sigma, train)?;
+            for g in test {
+                out.add(design, &fit, g);
+            }
+        }
+        Ok(out)
+    }
+
+    fn add(&mut self, design: &Design, fit: &Fit, segment: usize) {
+        let (mut left, mut whole) = (0.0, 0.0);
+        for j in 0..design.joints {
+            let squares = fit.squares(design, j, segment);
+            // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
+            let torque = design.gram(j, segment).y_squares();
+            self.left[j] += squares;
+            self.whole[j] += torque;
+            left += squares;
+            whole += torque;
+        }
+        self.by_segment.push((segment, left, whole));
+    }
+
+    /// Relative errors, all joints together and joint by joint.
+    pub fn errors(&self) -> Errors {
+        errors(&self.left, &self.whole)
+    }
+
+    /// Relative error of some joints together.
+    pub fn error_on(&self, joints: &[usize]) -> f64 {
+        let pick = |x: &[f64]| joints.iter().map(|&j| x[j]).sum::<f64>();
+        (pick(&self.left) / pick(&self.whole).max(1e-300)).sqrt()
+    }
+}
+
+impl Regression {
+    /// Errors on held-out motion with everything that is in the regression.
+    ///
+    /// # Errors
+    /// As [`HeldOutSquares::of`].
+    pub fn held_out(&self, from_baseline: bool) -> Result<HeldOutSquares, SingularDesign> {
+        HeldOutSquares::of(&self.design, &self.sigma, from_baseline)
+    }
+}
+
+fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {
+    let segments = 0..design.segments.len();
+    let targets = design.target_segments();
+    let without = |held: &dyn Fn(usize) -> bool| -> Split {
+        let train = segments.clone().map(|g| !held(g)).collect();
+        (train, targets.iter().copied().filter(|&g| held(g)).collect())
+    };
+    let mut motions: Vec<usize> = targets.iter().map(|&g| design.segments[g].signal).collect();
+    motions.dedup();
+    if from_baseline {
+        vec![(design.segments.iter().map(|s| !s.is_target).collect(), targets)]
+    } else if design.is_single_motion() && targets.len() > 1 {
+        forward_cuts(targets.len()).map(|cut| without(&|g| targets[cut..].contains(&g))).to_vec()
+    } else if motions.len() > 1 {
+        motions.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
+    } else {
+        targets.iter().map(|&held| without(&|g| g == held)).collect()
+    }
+}

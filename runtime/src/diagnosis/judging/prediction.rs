@@ -1,0 +1,87 @@
+//! What a candidate that was fitted to some segments changes on others.
+
+use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::candidates::trial::Trial;
+use crate::diagnosis::judging::folds::Fold;
+use crate::diagnosis::judging::partial_regression::Residualised;
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::Fit;
+use nalgebra::DVector;
+
+/// A trial with its amplitudes, and what the other parameters of a fit change by when it is added.
+pub(in crate::diagnosis) struct Prediction<'a> {
+    pub fit: &'a Fit,
+    pub trial: &'a Trial,
+    /// One per column of the trial.
+    pub amplitude: DVector<f64>,
+    /// One per column of the design.
+    pub shift: DVector<f64>,
+}
+
+impl<'a> Prediction<'a> {
+    /// Of a trial that was residualised on the columns of `fit`.
+    pub fn new(fit: &'a Fit, trial: &'a Trial, part: &Residualised, amplitude: DVector<f64>) -> Self {
+        let shift = -(&part.coefficients * &amplitude);
+        Self { fit, trial, amplitude, shift }
+    }
+
+    /// Squares of the residual that are gone on the rows of one joint in one segment, unweighted.
+    pub fn gain(&self, design: &Design, joint: usize, segment: usize) -> f64 {
+        let gram = design.gram(joint, segment);
+        let (a, d, chi) = (&self.amplitude, &self.shift, &self.fit.chi);
+        let (mut linear, mut square) = (0.0, 0.0);
+        for i in 0..gram.columns() {
+            if d[i] == 0.0 {
+                continue;
+            }
+            let mut fitted = 0.0;
+            let mut moved = 0.0;
+            for (k, product) in gram.row(i).iter().enumerate() {
+                fitted += product * chi[k];
+                moved += product * d[k];
+            }
+            linear += d[i] * (gram.with_y(i) - fitted);
+            square += d[i] * moved;
+        }
+        if let Some(product) = self.trial.products.get(joint).and_then(|s| s.get(segment)) {
+            for k in 0..a.len() {
+                let column = product.with.column(k);
+                linear += a[k] * (product.y[k] - column.dot(chi));
+                square += 2.0 * a[k] * column.dot(d);
+                for l in 0..a.len() {
+                    square += a[k] * a[l] * product.own[(k, l)];
+                }
+            }
+        }
+        2.0 * linear - square
+    }
+}
+
+impl Regression {
+    /// A trial with amplitudes from the segments of a fold, everything else refitted to them.
+    pub fn predict_from_others<'a>(
+        &self,
+        candidate: &Candidate,
+        trial: &'a Trial,
+        fold: &'a Fold,
+    ) -> Option<Prediction<'a>> {
+        let part = fold.fit.project_out(trial)?;
+        let (amplitude, _) = part.solve(candidate)?;
+        Some(Prediction::new(&fold.fit, trial, &part, amplitude))
+    }
+
+    /// The same on a single motion: refitting all standard parameters to a part of it would drown every candidate in
+    /// their extrapolation. The trial is residualised on the `whole` motion, and only its amplitude is fitted to the
+    /// segments of the fold.
+    pub fn predict_from_rest_of_motion<'a>(
+        &'a self,
+        candidate: &Candidate,
+        trial: &'a Trial,
+        whole: &Residualised,
+        fold: &Fold,
+    ) -> Option<Prediction<'a>> {
+        let (amplitude, _) = self.restricted(whole, trial, &fold.fit.train).solve(candidate)?;
+        Some(Prediction::new(&self.fit, trial, whole, amplitude))
+    }
+}

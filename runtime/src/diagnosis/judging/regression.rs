@@ -1,0 +1,89 @@
+//! The regression of the torques on the standard model's columns and those of accepted effects, on the rows of one
+//! smoothing window.
+
+use crate::diagnosis::judging::folds::{Fold, folds};
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use std::ops::Range;
+
+/// Rows and columns with their fit, their folds, and the noise of each joint. What is asked of all four is asked here:
+/// to judge a candidate, to predict held-out motion, to tell how sure a gain is (the other files of this room).
+#[derive(Clone)]
+pub(in crate::diagnosis) struct Regression {
+    pub design: Design,
+    /// Standard deviation of the residual of each joint, N.m or N.
+    pub sigma: Vec<f64>,
+    /// Fit to all segments.
+    pub fit: Fit,
+    pub folds: Vec<Fold>,
+    /// Columns of each term; empty where its amplitude is fixed.
+    pub term_columns: Vec<Range<usize>>,
+    /// y without any term of fixed amplitude.
+    measured: Vec<f64>,
+    /// Columns that are always there: base parameters and nuisances.
+    fixed_columns: usize,
+}
+
+/// The columns of a term on the rows, and its amplitude where the law leaves none free.
+pub(in crate::diagnosis) struct TermColumns {
+    pub columns: Vec<Vec<f64>>,
+    pub fixed: Option<f64>,
+}
+
+impl Regression {
+    /// Without any term; `nuisances` are columns that are always fitted along.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn new(mut design: Design, nuisances: Vec<Vec<f64>>) -> Result<Self, SingularDesign> {
+        for column in nuisances {
+            design.push(column);
+        }
+        design.refresh();
+        let fit = Fit::weighted(&design, &vec![1.0; design.joints])?;
+        let folds = folds(&design, &fit.sigma)?;
+        let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
+        let sigma = fit.sigma.clone();
+        Ok(Self { design, sigma, fit, folds, term_columns: Vec::new(), measured, fixed_columns })
+    }
+
+    /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn set_terms(
+        &mut self,
+        count: usize,
+        columns: impl Fn(&Design, usize) -> TermColumns,
+    ) -> Result<(), SingularDesign> {
+        self.design.columns.truncate(self.fixed_columns);
+        self.design.y.clone_from(&self.measured);
+        self.term_columns.clear();
+        for k in 0..count {
+            let term = columns(&self.design, k);
+            let start = self.design.columns.len();
+            for column in term.columns {
+                match term.fixed {
+                    Some(a) => self.design.y.iter_mut().zip(&column).for_each(|(y, c)| *y -= a * c),
+                    None => self.design.push(column),
+                }
+            }
+            self.term_columns.push(start..self.design.columns.len());
+        }
+        self.design.refresh_from(self.fixed_columns);
+        self.fit = Fit::weighted(&self.design, &self.sigma)?;
+        self.sigma.clone_from(&self.fit.sigma);
+        self.folds = folds(&self.design, &self.sigma)?;
+        Ok(())
+    }
+
+    /// Number of columns that are always there: base parameters and nuisances.
+    pub fn fixed_columns(&self) -> usize {
+        self.fixed_columns
+    }
+
+    /// Residual of every row, all segments fitted.
+    pub fn residual(&self) -> Vec<f64> {
+        self.fit.residual(&self.design)
+    }
+}

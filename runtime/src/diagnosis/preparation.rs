@@ -1,0 +1,301 @@
+//! What a diagnosis starts from: band, windows, filtered motions, speeds of standstill, the skew of the torques; and
+//! the recordings that it refuses.
+
+use super::explanation::delay::skew_of;
+use super::outcome::Sampling;
+use super::rows::context::{Context, scales, top_speeds};
+use super::rows::design::Design;
+use super::rows::fit::Fit;
+use super::rows::motion::{Moving, left_over};
+use super::rows::selection::RowSelection;
+use super::rows::signals::{Signals, directions};
+use super::rules;
+use super::settings::{DiagnosisError, Settings, fitted_to, given_speeds};
+use crate::model::{JointIndex, Model};
+use crate::recording::Trajectory;
+
+/// The motions with everything that decides where rows are.
+pub(super) struct Motions {
+    /// Motions of the baseline, then those of the recording that is diagnosed.
+    pub signals: Vec<Signals>,
+    /// Settings with the windows of this recording's band.
+    settings: Settings,
+    /// Cut-off of the filter of positions and torques, Hz.
+    cutoff: f64,
+    /// Speeds of standstill for slow rows, per joint.
+    pub slowest: Vec<f64>,
+    /// The same for fast rows.
+    slowest_fast: Vec<f64>,
+    /// Those that the outcome tells: also of joints that hold still.
+    standstill_speeds: Vec<f64>,
+    /// Base parameters that nothing determines, and that are left out.
+    left_over: Vec<usize>,
+    /// Linear forms of dq whose sign enters each joint's row.
+    directions: Vec<Vec<Vec<f64>>>,
+    /// Segments per motion of the recording that is diagnosed.
+    segments: usize,
+    /// Whether the recording has no rows to spare: slow effects are then smoothed no more than fast ones.
+    short: bool,
+}
+
+/// The rows of both windows.
+pub(super) struct Rows {
+    pub slow: Design,
+    pub fast: Design,
+}
+
+impl Motions {
+    /// Chooses the band, filters the motions, and finds the speeds of standstill.
+    fn new(
+        model: &dyn Model,
+        trajectories: &[Trajectory],
+        baseline: &[Trajectory],
+        settings: &Settings,
+    ) -> Result<Self, DiagnosisError> {
+        let n = model.robot().joints();
+        let (cutoff, settings) = fitted_to(settings, trajectories)?;
+        let given = given_speeds(&settings, n)?;
+        let old = baseline.iter().map(|t| Signals::new(t, false, 0.0, cutoff));
+        let new = trajectories.iter().map(|t| Signals::new(t, true, 0.0, cutoff));
+        let signals: Vec<Signals> = old.chain(new).collect::<Result<_, _>>()?;
+        let (slowest, slowest_fast) = match given {
+            Some(speeds) => (speeds.clone(), speeds),
+            None => {
+                let slow: Vec<f64> =
+                    top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
+                let fast = slow.iter().map(|v| v / rules::FAST_STANDSTILL_DIVISOR).collect();
+                (slow, fast)
+            }
+        };
+        let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
+        let count = trajectories.len();
+        let few = count < rules::ENOUGH_MOTIONS;
+        Ok(Self {
+            signals,
+            settings,
+            cutoff,
+            standstill_speeds: slowest.clone(),
+            left_over: Vec::new(),
+            slowest,
+            slowest_fast,
+            directions: directions(model.robot()),
+            segments: if few { rules::SEGMENTS_OF_FEW_MOTIONS / count } else { 1 },
+            short: duration < rules::SHORT_RECORDING,
+        })
+    }
+
+    /// Rows of a window of this half-width, s, outside of the excluded times of each motion.
+    fn design(&self, model: &dyn Model, half: f64, excluded: Option<&[Vec<[f64; 2]>]>) -> Design {
+        let nothing = vec![Vec::new(); self.signals.len()];
+        let fast = half < self.settings.slow_window;
+        let selection = RowSelection {
+            half,
+            slowest: if fast { &self.slowest_fast } else { &self.slowest },
+            directions: &self.directions,
+            segments: self.segments,
+            excluded: excluded.unwrap_or(&nothing),
+        };
+        let mut design = Design::new(model, &self.signals, &selection);
+        if !self.left_over.is_empty() {
+            design.leave_out(&self.left_over);
+        }
+        design
+    }
+
+    /// Leaves out all rows of joints that do not move: what such a joint seems to do is noise.
+    fn hold_still(&mut self, moving: &[bool]) {
+        for speeds in [&mut self.slowest, &mut self.slowest_fast] {
+            for (speed, _) in speeds.iter_mut().zip(moving).filter(|(_, moving)| !**moving) {
+                *speed = f64::INFINITY;
+            }
+        }
+    }
+
+    /// Slow rows that leave nothing out but standstills.
+    fn aligned(&self, model: &dyn Model) -> Design {
+        self.design(model, self.settings.slow_window, None)
+    }
+
+    /// The rows of both windows, outside of the excluded times of each motion.
+    pub fn rows(&self, model: &dyn Model, excluded: Option<&[Vec<[f64; 2]>]>) -> Rows {
+        let fast = self.design(model, self.settings.fast_window, excluded);
+        let slow =
+            if self.short { fast.clone() } else { self.design(model, self.settings.slow_window, excluded) };
+        Rows { slow, fast }
+    }
+
+    /// Settings with the windows of this recording's band.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What the outcome tells of band, windows and rows.
+    pub fn sampling(&self, rows: &Rows) -> Sampling {
+        let fast_window = self.settings.fast_window;
+        let slow_window = if self.short { fast_window } else { self.settings.slow_window };
+        Sampling {
+            band: 0.5 / fast_window,
+            slow_band: 0.5 / slow_window,
+            cutoff: self.cutoff,
+            fast_window,
+            slow_window,
+            standstill_speeds: self.standstill_speeds.clone(),
+            fast_rows: rows.fast.rows.len(),
+            slow_rows: rows.slow.rows.len(),
+        }
+    }
+}
+
+/// Everything that is computed once, before contacts and effects are looked for.
+pub(super) struct Prepared {
+    pub motions: Motions,
+    /// Base parameters of the standard model, fitted before the skew was taken out.
+    pub chi: Vec<f64>,
+    /// Standard deviation of its residual, per joint.
+    pub sigma: Vec<f64>,
+    /// Skew of the torques that was taken out of the motions, s.
+    pub delay: f64,
+    /// Slow rows that leave nothing out but standstills.
+    pub aligned: Design,
+    /// Standard deviations of the base parameters.
+    pub chi_sigma: Vec<f64>,
+    /// How much each joint moves.
+    pub moving: Moving,
+}
+
+impl Prepared {
+    /// Prepares the motions, refuses what cannot be diagnosed, and takes the skew of the torques out.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`] where there is no motion, or too little of it, or it does not excite the standard model, or
+    /// the standard model does not describe it.
+    pub fn new(
+        model: &dyn Model,
+        trajectories: &[Trajectory],
+        baseline: &[Trajectory],
+        settings: &Settings,
+    ) -> Result<Self, DiagnosisError> {
+        if trajectories.is_empty() {
+            return Err(DiagnosisError::NoMotion);
+        }
+        let mut motions = Motions::new(model, trajectories, baseline, settings)?;
+        let mut aligned = motions.aligned(model);
+        let moving = Moving::of(&aligned);
+        if moving.fitted.contains(&false) {
+            motions.hold_still(&moving.fitted);
+            aligned = motions.aligned(model);
+        }
+        let mut fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        motions.left_over = check_rows(model, &aligned, &fit, &moving)?;
+        if !motions.left_over.is_empty() {
+            aligned = motions.aligned(model);
+            fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        }
+        check_fit(&aligned, &fit)?;
+        let chi = fit.chi.iter().take(aligned.parameters).copied().collect();
+        let chi_sigma = fit.variances().iter().take(aligned.parameters).map(|v| v.max(0.0).sqrt()).collect();
+        let mut prepared = Self { motions, chi, sigma: fit.sigma, delay: 0.0, aligned, chi_sigma, moving };
+        // Without motion there is no skew to be seen.
+        if prepared.moving.judged.contains(&true) {
+            prepared.take_out_skew(model)?;
+        }
+        Ok(prepared)
+    }
+
+    /// The model and the motions, at the standard parameters.
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Model`] where the recursive model cannot be built.
+    pub fn context<'a>(&'a self, model: &'a dyn Model) -> Result<Context<'a>, DiagnosisError> {
+        let signals = &self.motions.signals;
+        Context::new(model, signals, scales(model, signals, &self.chi), self.chi.clone())
+    }
+
+    /// A skew of more than a part of a sample is taken out of the motions themselves.
+    fn take_out_skew(&mut self, model: &dyn Model) -> Result<(), DiagnosisError> {
+        for _ in 0..rules::DELAY_ROUNDS {
+            let found = skew_of(&self.context(model)?, self.aligned.clone())?;
+            let signals = &mut self.motions.signals;
+            let rate = signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
+            if found.abs() * rate < rules::DELAY_TAKEN_OUT {
+                break;
+            }
+            self.delay += found;
+            for motion in signals {
+                motion.set_delay(self.delay)?;
+            }
+            self.aligned = self.motions.aligned(model);
+        }
+        Ok(())
+    }
+}
+
+/// Refuses motions that tell nothing. Returns the base parameters that are left out because the motion does not
+/// determine them, where they are so many, or joints stand still, that small ones would be made up from noise.
+fn check_rows(
+    model: &dyn Model,
+    design: &Design,
+    fit: &Fit,
+    moving: &Moving,
+) -> Result<Vec<usize>, DiagnosisError> {
+    if !moving.fitted.contains(&true) {
+        return Err(nothing_moves(model, moving));
+    }
+    let parameters = design.parameters;
+    let free = fit.undetermined(rules::UNDETERMINED).into_iter().filter(|&k| k < parameters).count();
+    let few = free * rules::PARAMETERS_PER_UNDETERMINED <= parameters && !moving.fitted.contains(&false);
+    let left_over = if few { Vec::new() } else { left_over(design, &fit.sigma) };
+    let (rows, fitted) = (design.rows.len(), parameters - if few { free } else { left_over.len() });
+    let needed = rules::ROWS_PER_PARAMETER * fitted;
+    if rows < needed {
+        return Err(DiagnosisError::TooShort {
+            rows,
+            parameters: fitted,
+            times: needed.div_ceil(rows.max(1)),
+        });
+    }
+    Ok(left_over)
+}
+
+/// What is said where nothing moves.
+pub(super) fn nothing_moves(model: &dyn Model, moving: &Moving) -> DiagnosisError {
+    let most = moving.rows.iter().enumerate().max_by_key(|(_, rows)| **rows);
+    let (joint, rows) = most.map_or((0, 0), |(j, rows)| (model.robot().joint_number(JointIndex(j)).0, *rows));
+    DiagnosisError::NothingMoves { joint, rows, needed: rules::LEAST_ROWS }
+}
+
+/// Refuses recordings that the standard model has nothing to do with.
+fn check_fit(design: &Design, fit: &Fit) -> Result<(), DiagnosisError> {
+    let (mut left, mut all) = (0.0, 0.0);
+    for (j, s) in fit.sigma.iter().enumerate() {
+        let rows = design.of_joint(j);
+        left += s * s * rows.len() as f64;
+        all += design.y[rows].iter().map(|y| y * y).sum::<f64>();
+    }
+    let explained = 100.0 * (1.0 - left / all.max(1e-300));
+    if explained < rules::LEAST_EXPLAINED_BY_MODEL {
+        return Err(DiagnosisError::AnotherRobot { explained });
+    }
+    Ok(())
+}
+
+/// Speeds below which a joint counts as standing still in a recording, rad/s or m/s, one per joint.
+///
+/// # Errors
+/// [`DiagnosisError`] where a signal cannot be prepared or the settings cannot be.
+pub fn slowest_speeds(
+    model: &dyn Model,
+    trajectories: &[Trajectory],
+    settings: &Settings,
+) -> Result<Vec<f64>, DiagnosisError> {
+    let (cutoff, settings) = fitted_to(settings, trajectories)?;
+    let n = model.robot().joints();
+    if let Some(speeds) = given_speeds(&settings, n)? {
+        return Ok(speeds);
+    }
+    let motions = trajectories
+        .iter()
+        .map(|t| Signals::new(t, true, 0.0, cutoff))
+        .collect::<Result<Vec<Signals>, _>>()?;
+    Ok(top_speeds(&motions, n).iter().map(|v| settings.standstill * v).collect())
+}

@@ -1,0 +1,51 @@
+//! Which instants of a motion become rows, and the window that they are seen through.
+
+use crate::diagnosis::rows::signals::Signals;
+
+/// What decides where rows are.
+pub(in crate::diagnosis) struct RowSelection<'a> {
+    /// Half-width of the window, s; rows are as far apart.
+    pub half: f64,
+    /// Least speed per joint.
+    pub slowest: &'a [f64],
+    /// Linear forms of dq whose sign enters each joint's row.
+    pub directions: &'a [Vec<Vec<f64>>],
+    /// Segments per motion of the recording that is diagnosed, where there are few motions to hold out.
+    pub segments: usize,
+    /// Times that no row may use, per signal: `[from, to]`.
+    pub excluded: &'a [Vec<[f64; 2]>],
+}
+
+impl RowSelection<'_> {
+    /// Whether a row of a joint may lie at an instant: the joint moves, and nothing excluded lies in the window.
+    pub fn accepts(&self, joint: usize, signal: usize, s: &Signals, centre: usize, half: usize) -> bool {
+        let (from, to) = (s.time(centre - half), s.time(centre + half));
+        moves(s, centre, half, &self.directions[joint], self.slowest)
+            && !self.excluded[signal].iter().any(|w| w[0] < to && w[1] > from)
+    }
+}
+
+/// Hann window of half-width `half`, its taps adding up to 1.
+pub(in crate::diagnosis) fn hann(half: usize) -> Vec<f64> {
+    let n = 2 * half + 1;
+    let taps: Vec<f64> =
+        (0..n).map(|k| (std::f64::consts::PI * (k + 1) as f64 / (n + 1) as f64).sin().powi(2)).collect();
+    let sum: f64 = taps.iter().sum();
+    taps.iter().map(|t| t / sum).collect()
+}
+
+/// Whether every sign that enters the row is certain all over the window.
+fn moves(s: &Signals, centre: usize, half: usize, directions: &[Vec<f64>], slowest: &[f64]) -> bool {
+    directions.iter().all(|form| {
+        // A motor that turns with several joints is judged by the slowest of their limits.
+        let least = form
+            .iter()
+            .zip(slowest)
+            .filter(|(f, _)| **f != 0.0)
+            .map(|(f, v)| f.abs() * v)
+            .fold(f64::INFINITY, f64::min);
+        let speed = |t: usize| form.iter().zip(&s.dq).map(|(f, v)| f * v[t]).sum::<f64>();
+        let sign = speed(centre).signum();
+        (centre - half..=centre + half).all(|t| speed(t) * sign > least)
+    })
+}

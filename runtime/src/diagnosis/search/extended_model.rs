@@ -1,0 +1,134 @@
+//! The standard model with accepted effects, fitted on the rows of both smoothing windows.
+
+use crate::diagnosis::DiagnosisError;
+use crate::diagnosis::candidates::candidate::SmoothingWindow;
+use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
+use crate::diagnosis::judging::regression::{Regression, TermColumns};
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::SingularDesign;
+use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
+use crate::diagnosis::search::term::Accepted;
+use crate::effects::Form;
+
+/// The standard model, the effects that were accepted, and both regressions with them.
+pub(in crate::diagnosis) struct ExtendedModel<'a> {
+    pub context: Context<'a>,
+    pub slow: Regression,
+    pub fast: Regression,
+    pub terms: Vec<Accepted>,
+    /// Whether only what changed since a baseline is looked for.
+    pub change: bool,
+}
+
+impl<'a> ExtendedModel<'a> {
+    /// Without any effect; the skew of the torques is always fitted along.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn new(
+        context: Context<'a>,
+        slow: Design,
+        fast: Design,
+        change: bool,
+    ) -> Result<Self, SingularDesign> {
+        let regression = |design: Design| {
+            let delay = delay_columns(&context, &design);
+            Regression::new(design, delay)
+        };
+        let (slow, fast) = (regression(slow)?, regression(fast)?);
+        Ok(Self { context, slow, fast, terms: Vec::new(), change })
+    }
+
+    /// The regression on the rows of a window.
+    pub fn regression(&self, window: SmoothingWindow) -> &Regression {
+        match window {
+            SmoothingWindow::Slow => &self.slow,
+            SmoothingWindow::Fast => &self.fast,
+        }
+    }
+
+    /// Puts the terms into both regressions, and lets loads follow the standard parameters.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn refit(&mut self) -> Result<(), SingularDesign> {
+        let bent = self.terms.iter().any(|t| matches!(t.effect.form(), Form::Sensitivity(_)));
+        for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
+            put_terms(&mut self.slow, &self.context, &self.terms, self.change)?;
+            let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
+            self.context.update(chi);
+            // An error that is not small bends its own column: derivatives are taken along the way to it.
+            for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
+                if matches!(term.effect.form(), Form::Sensitivity(_)) {
+                    term.shape = columns
+                        .clone()
+                        .map(|c| self.slow.fit.chi[c].clamp(-LARGEST_ERROR, LARGEST_ERROR))
+                        .collect();
+                }
+            }
+        }
+        put_terms(&mut self.slow, &self.context, &self.terms, self.change)?;
+        put_terms(&mut self.fast, &self.context, &self.terms, self.change)
+    }
+
+    /// A copy without one of the terms, everything else refitted.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit without it, or the model could not be built once more.
+    pub fn without(&self, term: usize) -> Result<Self, DiagnosisError> {
+        let context = &self.context;
+        let mut copy = Self {
+            context: Context::new(
+                context.model,
+                context.signals,
+                context.scales.clone(),
+                context.chi.clone(),
+            )?,
+            slow: self.slow.clone(),
+            fast: self.fast.clone(),
+            terms: self.terms.clone(),
+            change: self.change,
+        };
+        copy.terms.remove(term);
+        copy.refit()?;
+        Ok(copy)
+    }
+
+    /// What the model with all terms leaves of the torques on the rows of another design of the same motions.
+    pub fn residual_on(&self, design: &Design) -> Vec<f64> {
+        let mut residual = design.y.clone();
+        let mut subtract = |column: &[f64], x: f64| {
+            residual.iter_mut().zip(column).for_each(|(r, c)| *r -= c * x);
+        };
+        let chi = &self.slow.fit.chi;
+        for (column, &x) in design.columns.iter().zip(chi.iter()) {
+            subtract(column, x);
+        }
+        for column in delay_columns(&self.context, design) {
+            subtract(&column, chi[design.parameters]);
+        }
+        for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
+            let columns =
+                dense_columns(&self.context, design, term.effect, term.place, &term.shape, self.change);
+            for (k, column) in columns.iter().enumerate() {
+                subtract(column, term.fixed.unwrap_or_else(|| chi[range.start + k]));
+            }
+        }
+        residual
+    }
+}
+
+/// Puts exactly these terms into a regression.
+fn put_terms(
+    regression: &mut Regression,
+    context: &Context<'_>,
+    terms: &[Accepted],
+    change: bool,
+) -> Result<(), SingularDesign> {
+    regression.set_terms(terms.len(), |design, k| {
+        let term = &terms[k];
+        let columns = dense_columns(context, design, term.effect, term.place, &term.shape, change);
+        TermColumns { columns, fixed: term.fixed }
+    })
+}

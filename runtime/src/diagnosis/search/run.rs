@@ -1,0 +1,179 @@
+//! Forward selection of effects with refinement of their shapes, and backward pruning.
+//!
+//! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held out.
+
+use crate::diagnosis::candidates::candidate::{make, smoothing_window};
+use crate::diagnosis::outcome::StopReason;
+use crate::diagnosis::rows::fit::SingularDesign;
+use crate::diagnosis::rules::KEPT_FRACTION;
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::report::SearchReport;
+use crate::diagnosis::search::select::Winner;
+use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::settings::{Progress, Settings};
+use crate::effects::{EffectKind, Form};
+
+impl Search<'_> {
+    /// Adds effects as long as one improves held-out motion; takes out what does not hold beside the others.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where a model on the way has no fit.
+    pub fn run(
+        &mut self,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<SearchReport, SingularDesign> {
+        loop {
+            // 1. Forward: the best candidate that holds joins the model, until none does.
+            let stop = self.extend(settings, progress)?;
+            // 2. Backward: what does not hold beside the others is taken out, for good.
+            progress.at(0.87, "pruning");
+            let rejected = self.prune(settings)?;
+            if rejected.is_empty() {
+                return Ok(SearchReport { stop, removed: self.rejected.clone() });
+            }
+            // 3. What is left may now be explained by something else.
+            self.rejected.extend(rejected);
+            self.refit_and_update()?;
+        }
+    }
+
+    fn extend(&mut self, settings: &Settings, progress: &dyn Progress) -> Result<StopReason, SingularDesign> {
+        while self.model.terms.len() < settings.most_effects {
+            let done = self.model.terms.len() as f64 / settings.most_effects as f64;
+            progress.at(0.6 + 0.25 * done, "held-out tests");
+            let mut winner = self.best(settings, None, 1)?;
+            // Compliant transmissions of neighbours ring alike: which one it is shows when both are tuned.
+            if winner.as_ref().is_none_or(|w| self.candidates(w.window)[w.index].fixed.is_some()) {
+                self.polish(settings.threads);
+                winner = self.best(settings, None, 1)?;
+            }
+            let found = match winner {
+                Some(winner) => vec![self.accept(&winner)],
+                None => match self.pair(settings)? {
+                    Some(pair) => pair.into(),
+                    None => self.next_line().into_iter().collect(),
+                },
+            };
+            if found.is_empty() {
+                return Ok(StopReason::NoneAccepted);
+            }
+            self.model.terms.extend(found);
+            self.refit_and_update()?;
+            self.reconsider(settings)?;
+        }
+        Ok(StopReason::EffectLimit(settings.most_effects))
+    }
+
+    /// Takes the given effects as known, on a joint where one is given: only shapes and amplitudes are fitted.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) -> Result<SearchReport, SingularDesign> {
+        for &(effect, joint) in known {
+            if matches!(effect.form(), Form::Compliance(_)) {
+                self.polish(self.threads);
+            }
+            let window = smoothing_window(effect);
+            let regression = self.model.regression(window);
+            let best = self
+                .candidates(window)
+                .iter()
+                .enumerate()
+                .filter(|(_, c)| c.effect == effect && joint.is_none_or(|j| c.own.contains(&j)))
+                .filter_map(|(index, c)| Some((index, regression.judge(c)?)))
+                .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+            if let Some((index, verdict)) = best {
+                let winner =
+                    Winner { window, index, verdict, significance: 0.0, confidence: 0.5, rivals: vec![] };
+                let term = self.accept(&winner);
+                self.model.terms.push(term);
+                self.refit_and_update()?;
+            }
+        }
+        Ok(SearchReport { stop: StopReason::Given, removed: Vec::new() })
+    }
+
+    /// With a new effect in the model an earlier one may turn out to have been its imitator: each is taken out, and
+    /// the best explanation of its joints is put in its place.
+    fn reconsider(&mut self, settings: &Settings) -> Result<(), SingularDesign> {
+        let mut k = 0;
+        while self.model.terms.len() > 1 && k < self.model.terms.len() - 1 {
+            let old = self.model.terms.remove(k);
+            self.refit_and_update()?;
+            let joint = (old.own.len() < self.model.slow.design.joints).then(|| old.own[0]);
+            let replacement = self.best(settings, joint, 1)?.map(|w| self.accept(&w));
+            let keep = match replacement {
+                None if self.is_line(&old) => Some(old.clone()),
+                Some(new) if new.effect == old.effect && new.place == old.place => Some(Accepted {
+                    shape: new.shape,
+                    explained_fraction: new.explained_fraction,
+                    rivals: new.rivals,
+                    ..old.clone()
+                }),
+                other => other,
+            };
+            if let Some(term) = keep {
+                self.model.terms.insert(k, term);
+                self.refit_and_update()?;
+                k += 1;
+            } else {
+                // What no longer holds is left out for good, or it might come and go for ever; those after it move up,
+                // and all are considered anew.
+                self.rejected.push(old);
+                k = 0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes out what no longer earns its place beside the others, and returns it.
+    fn prune(&mut self, settings: &Settings) -> Result<Vec<Accepted>, SingularDesign> {
+        let mut rejected = Vec::new();
+        let mut k = 0;
+        while k < self.model.terms.len() {
+            let with = held_out_error(&self.model, &self.model.terms[k])?;
+            let term = self.model.terms.remove(k);
+            self.model.refit()?;
+            if self.earns_its_place(&term, with, settings)? {
+                self.model.terms.insert(k, term);
+                k += 1;
+            } else {
+                rejected.push(term);
+            }
+            self.model.refit()?;
+        }
+        Ok(rejected)
+    }
+
+    /// Whether a term that is not in the model improves it; `with` is the held-out error with it.
+    fn earns_its_place(
+        &self,
+        term: &Accepted,
+        with: f64,
+        settings: &Settings,
+    ) -> Result<bool, SingularDesign> {
+        let model = &self.model;
+        let without = held_out_error(model, term)?;
+        let regression = model.regression(smoothing_window(term.effect));
+        let shape = std::slice::from_ref(&term.shape);
+        let candidate =
+            make(&model.context, &regression.design, term.effect, term.place, shape, model.change);
+        let worth = regression.judge(&candidate).is_some_and(|v| {
+            let enough = v.explained_fraction >= KEPT_FRACTION * settings.least_share;
+            (enough || self.is_line(term)) && v.total() > 0.0
+        });
+        let better = if regression.design.is_single_motion() {
+            regression.holds_forward(&candidate, 0)?
+        } else {
+            with < without
+        };
+        Ok(worth && better)
+    }
+}
+
+/// Held-out error of the joints of a term.
+fn held_out_error(model: &ExtendedModel<'_>, term: &Accepted) -> Result<f64, SingularDesign> {
+    Ok(model.regression(smoothing_window(term.effect)).held_out(false)?.error_on(&term.own))
+}

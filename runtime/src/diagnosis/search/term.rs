@@ -1,0 +1,31 @@
+//! An effect that became part of the model.
+
+use crate::effects::{EffectKind, Place};
+
+/// An accepted effect.
+#[derive(Debug, Clone)]
+pub(in crate::diagnosis) struct Accepted {
+    pub effect: EffectKind,
+    pub place: Place,
+    /// Joints (0-based) whose residual it explains.
+    pub own: Vec<usize>,
+    pub shape: Vec<f64>,
+    /// The amplitude, where the effect's law leaves none free.
+    pub fixed: Option<f64>,
+    pub significance: f64,
+    pub confidence: f64,
+    /// Fraction of what held-out motion left open when it was accepted: what its rivals' fractions compare with.
+    pub explained_fraction: f64,
+    pub rivals: Vec<Rival>,
+}
+
+/// Another explanation of what an accepted effect explains.
+#[derive(Debug, Clone)]
+pub(in crate::diagnosis) struct Rival {
+    pub effect: EffectKind,
+    pub place: Place,
+    pub explained_fraction: f64,
+    /// Probability that it is only by accident that it explains less, where it holds at all and acts on the same
+    /// joints; else 0.
+    pub difference_p_value: f64,
+}
