@@ -11,6 +11,55 @@
 //! 4. What was accepted is reconsidered, pruned and explained.
 //!
 //! Every threshold is in `rules.rs`, with the reason for its value.
+//!
+//! A pendulum of two links whose second joint has a spring that the model does not know:
+//!
+//! ```
+//! use dynid_runtime::diagnosis::{Settings, Silent, StopReason, diagnose};
+//! use dynid_runtime::model::{Drive, Frame, JointKind, Limits, Model, RecursiveModel, Robot, StateSlices, torques};
+//! use dynid_runtime::recording::Trajectory;
+//!
+//! // Its table and its base parameters: of the standard parameters those that a planar arm's torques depend on.
+//! let row = |parent, d| Frame { parent, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d, theta: 0.0, r: 0.0 };
+//! let frames = vec![row(None, 0.0), row(Some(0), 0.5)];
+//! let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
+//! let mut robot = Robot::with_standard_as_base("pendulum", [0.0, -9.81, 0.0], frames, drive, Limits::default());
+//! let known = [
+//!     ("ZZ1", 0.9), ("MX1", 2.0), ("MY1", 0.1), ("Fv1", 1.0), ("Fc1", 0.8), ("off1", 0.1),
+//!     ("ZZ2", 0.3), ("MX2", 0.8), ("MY2", 0.05), ("Fv2", 0.6), ("Fc2", 0.5), ("off2", -0.2),
+//! ];
+//! robot.base = robot.base.iter().filter(|b| known.iter().any(|k| k.0 == b.name)).cloned().collect();
+//! let chi: Vec<f64> = robot.base.iter().filter_map(|b| known.iter().find(|k| k.0 == b.name)).map(|k| k.1).collect();
+//! let model = RecursiveModel::new(robot)?;
+//!
+//! // Three motions of ten seconds, their torques with the spring of 4 N.m/rad and a little noise.
+//! let mut noise = 1_u32;
+//! let mut recorded = |name: &str, phase: f64| {
+//!     let time: Vec<f64> = (0..2000).map(|t| t as f64 / 200.0).collect();
+//!     let series = |j: f64, order: i32| -> Vec<f64> {
+//!         let wave = |t: f64, w: f64, p: f64| w.powi(order) * (w * t + p + order as f64 * 1.570_796_326_8).sin();
+//!         time.iter().map(|&t| 0.9 * wave(t, 1.3 + 0.4 * j, phase * (1.0 + j)) + 0.4 * wave(t, 3.1 - 0.5 * j, 2.0 * phase)).collect()
+//!     };
+//!     let [q, dq, ddq] = [0, 1, 2].map(|order| vec![series(0.0, order), series(1.0, order)]);
+//!     let mut torque = torques(&model, &chi, StateSlices::new(&q, &dq, &ddq).states());
+//!     torque[1].iter_mut().zip(&q[1]).for_each(|(torque, q)| *torque += 4.0 * q);
+//!     for x in torque.iter_mut().flatten() {
+//!         noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+//!         *x += 0.1 * (f64::from(noise) / f64::from(u32::MAX) - 0.5);
+//!     }
+//!     Trajectory { name: name.into(), time, position: q, velocity: None, torque, fixed: vec![] }
+//! };
+//! let recording = [recorded("one", 0.3), recorded("two", 1.1), recorded("three", 2.4)];
+//!
+//! let found = diagnose(&model, &recording, &[], &Settings::default(), &Silent)?;
+//! assert_eq!(found.findings.len(), 1, "{:?}", found.verdict);
+//! let spring = &found.findings[0];
+//! assert_eq!((spring.effect.as_str(), spring.joints.as_slice()), ("spring", [2].as_slice()));
+//! assert!((spring.parameters["k"].value - 4.0).abs() < 0.1);
+//! assert!(found.held_out.after < 0.2 * found.held_out.before);
+//! assert_eq!(found.search.stop, StopReason::NoneAccepted);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![allow(
     clippy::needless_range_loop,

@@ -84,8 +84,13 @@ pub fn predict_errors(
         trajectories.iter().map(|t| Signals::new(t, true, delay, cutoff)).collect::<Result<_, _>>()?;
     let forms = directions(model.robot());
     let nothing = vec![Vec::new(); signals.len()];
-    let selection =
-        RowSelection { half: settings.fast_window, slowest, directions: &forms, segments: 1, excluded: &nothing };
+    let selection = RowSelection {
+        half: settings.fast_window,
+        slowest,
+        directions: &forms,
+        segments: 1,
+        excluded: &nothing,
+    };
     let design = Design::new(model, &signals, &selection);
     let added = torques_on(model, &parameters.chi, terms, &signals)?;
     let n = design.joints;

@@ -23,18 +23,18 @@ pub(super) const STANDSTILL: f64 = 0.015;
 pub(super) const LEAST_EXPLAINED_FRACTION: f64 = 0.12;
 /// Least confidence. Statistics: one false naming in a hundred rounds; false namings in both concealment pages.
 pub(super) const LEAST_CONFIDENCE: f64 = 0.99;
-/// Most effects that are named. Judgement: three times as many as any recording of the evidence has; stops a search
-/// that would fit what no law describes.
+/// Most effects that are named. Judgement: more than any recording of the evidence has; stops a search that
+/// would fit what no law describes.
 pub(super) const MOST_EFFECTS: usize = 12;
 
 // ---- Preparation --------------------------------------------------------------------------------------------------
 
-/// Highest cut-off of the filter of positions and torques, Hz. Mechanics: twice the band of the fast window, where the
-/// filter changes 0.4 % of the amplitude. All figures.
+/// Highest cut-off of the filter of positions and torques, Hz. Mechanics: more than twice the band of the fast
+/// window, so that the filter leaves that band alone. All figures.
 pub(super) const HIGHEST_CUTOFF: f64 = 60.0;
 /// The cut-off is at most the sampling rate over this: a filter closer to half of the rate warps. Mechanics.
 pub(super) const RATE_PER_CUTOFF: f64 = 5.0;
-/// Samples a second that are kept: eight times the highest cut-off, so that nothing is lost. Mechanics; times only.
+/// Samples a second that are kept: eight times the highest cut-off, so that nothing is lost. Mechanics.
 pub(super) const SAMPLES_PER_SECOND: f64 = 500.0;
 /// The fast rows' limit of standstill is the slow rows' over this: the narrower window reaches less far into a
 /// standstill. Judgement; ripple and backlash in `docs/concealment.md`.
@@ -42,8 +42,8 @@ pub(super) const FAST_STANDSTILL_DIVISOR: f64 = 1.5;
 /// A recording shorter than this, s, has no rows to spare: slow effects are smoothed no more than fast ones.
 /// Judgement; `docs/concealment_short.md`.
 pub(super) const SHORT_RECORDING: f64 = 12.0;
-/// Segments that few motions are split into, all together: eight held-out stretches are the fewest of which a quarter
-/// may disagree. Judgement; `docs/concealment_short.md`.
+/// Segments that few motions are split into, all together: enough that two may disagree.
+/// Judgement; `docs/concealment_short.md`.
 pub(super) const SEGMENTS_OF_FEW_MOTIONS: usize = 8;
 /// From this many motions on, whole motions are held out: two remain to fit. Statistics.
 pub(super) const ENOUGH_MOTIONS: usize = 3;
@@ -53,17 +53,17 @@ pub(super) const LEAST_ROWS: usize = 12;
 /// Least rows of all joints for each parameter that they determine. Statistics: as many degrees of freedom as
 /// parameters.
 pub(super) const ROWS_PER_PARAMETER: usize = 2;
-/// A column of which less than this fraction of its norm is its own counts as not determined. Mechanics: the condition
-/// number 1e4 beyond which torque noise of 1 % passes into parameters a hundredfold.
+/// A column of which less than this fraction of its norm is its own counts as not determined. Judgement: its
+/// standard deviation is then 1e4 times that of a column by itself.
 pub(super) const UNDETERMINED: f64 = 1e-4;
 /// Where more than one parameter out of this many is not determined, or a joint holds still, columns that nothing
 /// determines are left out instead of being kept small. Judgement: with a few that are not, effects are still found
 /// (`docs/evidence.md`, UR10e).
 pub(super) const PARAMETERS_PER_UNDETERMINED: usize = 4;
-/// The recording is refused where the standard model explains less of the torque's squares, per cent. Judgement: a
-/// wrong joint order explains 10 to 20 %, the worst right model 80 %.
+/// The recording is refused where the standard model explains less of the torque's squares, per cent. Judgement: far
+/// below any right model, above what wrong units or a wrong joint order leave; not measured.
 pub(super) const LEAST_EXPLAINED_BY_MODEL: f64 = 40.0;
-/// Rounds in which a skew is taken out of the signals: the second takes what linearisation left of the first.
+/// Rounds in which a skew is taken out: the second takes what linearisation left of the first. Mechanics.
 pub(super) const DELAY_ROUNDS: usize = 2;
 /// A skew of fewer samples is left to its column. Mechanics: within one sample, linear interpolation is exact enough.
 pub(super) const DELAY_TAKEN_OUT: f64 = 0.75;
@@ -75,26 +75,26 @@ pub(super) const NAMED_DELAY: f64 = 1e-3;
 
 // ---- Rows and fits ------------------------------------------------------------------------------------------------
 
-/// Longest block of motion, s: beyond it no residual of a robot in motion is correlated. Judgement; both concealment
+/// Longest block of motion, s, longer than residuals of a robot in motion are correlated. Judgement; both concealment
 /// pages.
 pub(super) const LONGEST_BLOCK: f64 = 0.5;
-/// From this many blocks of that length on, gains are compared block by block. Statistics: Student's tail at 23
-/// degrees of freedom is twice that of a normal at 99 % after a hundred comparisons, not ten times.
+/// From this many blocks of that length on, gains are compared block by block. Judgement: with fewer,
+/// Student's tail is so long that hundreds of comparisons leave nothing certain; `docs/concealment_short.md`.
 pub(super) const ENOUGH_BLOCKS: usize = 24;
-/// Relative ridge of a fit: what is not determined stays small. Mechanics: far below any part that counts as own, far
-/// above rounding.
+/// Relative ridge of a fit: what is not determined stays small. Mechanics: far below any part that counts
+/// as own, far above rounding.
 pub(super) const FIT_RIDGE: f64 = 1e-10;
-/// Rounds of weights from the residuals' own standard deviations: they change by less than 1e-3 after three.
+/// Rounds of weights from the residuals' own standard deviations. Judgement: they have converged; not measured.
 pub(super) const WEIGHT_ROUNDS: usize = 6;
-/// Least standard deviation of a joint relative to its largest torque: noise-free simulations stay finite.
+/// Least standard deviation of a joint relative to its largest torque: noise-free recordings stay finite. Mechanics.
 pub(super) const LEAST_RELATIVE_SIGMA: f64 = 1e-9;
-/// Least standard deviation of a joint, N.m or N.
+/// Least standard deviation of a joint, N.m or N: the same for a joint without torque. Mechanics.
 pub(super) const LEAST_SIGMA: f64 = 1e-12;
 
 // ---- Partial regression and judgement -----------------------------------------------------------------------------
 
 /// Least fraction of a trial column's squares that the design does not make: below it, the column is the design's.
-/// Judgement between rounding and an effect of 1.4 % of its column; geometry_error in `docs/concealment.md`.
+/// Judgement, above rounding and the ridge; geometry_error in `docs/concealment.md`.
 pub(super) const OWN_FRACTION: f64 = 2e-4;
 /// Relative ridge of a candidate's amplitudes. Mechanics, as [`FIT_RIDGE`], for columns that nearly agree.
 pub(super) const AMPLITUDE_RIDGE: f64 = 1e-7;
@@ -103,8 +103,8 @@ pub(super) const AIC_PENALTY: f64 = 2.0;
 /// The fitted fraction must be this part of the held-out one that is asked for: a gain in prediction without one in
 /// the fit is an accident of extrapolation. Judgement; false namings.
 pub(super) const FITTED_TO_HELD_OUT: f64 = 0.5;
-/// A single motion is cut at these eighths: what comes before is fitted and predicts what comes after. Judgement: five
-/// eighths determine the standard parameters of most motions.
+/// A single motion is cut at these eighths: what comes before is fitted and predicts what comes after. Judgement: most
+/// of a motion is needed to determine the standard parameters; `docs/concealment_short.md`.
 pub(super) const FORWARD_CUTS: [usize; 2] = [5, 6];
 /// Of the stretches of few motions, one in so many may lose: an effect may leave some of them untouched. Judgement.
 pub(super) const STRETCHES_PER_LOSS: usize = 4;
@@ -113,33 +113,34 @@ pub(super) const MOTIONS_PER_LOSS: usize = 6;
 
 // ---- Evidence -----------------------------------------------------------------------------------------------------
 
-/// Shifts in time that a waveform is compared with: as many as fit between neighbours that are still independent.
-/// Statistics.
+/// Shifts in time that a waveform is compared with. Statistics: enough for the standard deviation of a correlation to
+/// 7 %.
 pub(super) const SHIFTS: usize = 100;
 /// Shifts next to zero that count as the waveform itself. Statistics.
 pub(super) const SHIFTS_LEFT_OUT: usize = 2;
 /// Shortest block, s: two rows of the slow window. Mechanics.
 pub(super) const SHORTEST_BLOCK: f64 = 0.1;
-/// Blocks are this many times as long as the residual's decorrelation lag. Statistics (tests of `significance`).
+/// Blocks are this many times as long as the residual's decorrelation lag. Judgement, as the tests of `significance`
+/// have it.
 pub(super) const LAGS_PER_BLOCK: usize = 2;
 /// Chance gains come this many times as often as Student's tail says where neighbouring blocks are still correlated.
-/// Statistics: measured in the tests of `significance` (1.6 times at 1 %).
+/// Statistics: bounded by a test of `significance`.
 pub(super) const BLOCK_CORRELATION_INFLATION: usize = 2;
 /// The same for the AR(1) test, whose correlation is estimated from few rows. Judgement on top of the tests of `ar1`;
 /// false namings in `docs/concealment_short.md`.
 pub(super) const AUTOCORRELATION_INFLATION: usize = 4;
-/// Autocorrelation below which residuals count as uncorrelated: 0.04 of the variance in common. Statistics.
+/// Autocorrelation below which residuals count as uncorrelated: 4 % of the variance in common. Judgement.
 pub(super) const UNCORRELATED: f64 = 0.2;
 /// The AR(1) coefficient is taken this many standard errors (1 / sqrt of the rows) higher than estimated: fits take the
 /// slow parts out of a residual first. Statistics: tests of `ar1`.
 pub(super) const RHO_MARGIN: f64 = 2.0;
-/// Largest AR(1) coefficient. Statistics: beyond it a short recording has no independent rows left.
+/// Largest AR(1) coefficient. Judgement: beyond it a short recording has hardly an independent row left.
 pub(super) const HIGHEST_RHO: f64 = 0.97;
 /// Fewest blocks that a slope may rest on, weighted by what they carry. Statistics: two degrees of freedom.
 pub(super) const LEAST_CARRYING_BLOCKS: f64 = 3.0;
 /// Fewest blocks for a mean gain. Statistics: three degrees of freedom.
 pub(super) const LEAST_BLOCKS: f64 = 4.0;
-/// Highest confidence that is told: no model of noise is right beyond it.
+/// Highest confidence that is told. Judgement: no model of noise is right beyond it.
 pub(super) const HIGHEST_CONFIDENCE: f64 = 0.9999;
 /// Two laws are told apart where the better one is so by accident with less than this probability. Statistics: the
 /// usual 5 %; `cannot_tell` in `docs/evidence.md`.
@@ -152,7 +153,7 @@ pub(super) const TOLD_APART: f64 = 0.05;
 pub(super) const NESTED_CASE_SUFFICES: f64 = 0.9;
 /// Most candidates of a round whose evidence is worked out. Times only: those further down explain too little.
 pub(super) const MOST_CHECKED: usize = 30;
-/// Rivals that are told.
+/// Rivals that are told. Words only.
 pub(super) const RIVALS: usize = 5;
 /// A law is tried as the first of a pair where its p-value is below this. Judgement: lets one in a hundred accidents
 /// be tried, each second law is then tested with all comparisons counted; `docs/concealment_short.md`.
@@ -161,18 +162,18 @@ pub(super) const FIRST_OF_PAIR: f64 = 0.01;
 /// came later explain some of it too.
 pub(super) const KEPT_FRACTION: f64 = 0.6;
 /// Largest error, in units of its number, along the way to which derivatives are taken: an exponential factor of two.
-/// Mechanics.
+/// Judgement.
 pub(super) const LARGEST_ERROR: f64 = 0.7;
-/// Refits until columns that follow the standard parameters settle: they move by less than 1e-3 of a sigma after two.
+/// Refits after which columns that follow the standard parameters have settled. Judgement; not measured.
 pub(super) const REFITS: usize = 2;
-/// The same where a term changes the number that its own column is the derivative by.
+/// The same where a term changes the number that its own column is the derivative by. Judgement; not measured.
 pub(super) const REFITS_OF_BENT_COLUMNS: usize = 4;
 
 // ---- Order spectra ------------------------------------------------------------------------------------------------
 
-/// Highest order per motor turn: the sixth harmonic of a motor's torque and one more. Mechanics; torque_ripple.
+/// Highest order per motor turn: beyond the sixth harmonic of a motor's torque. Mechanics; torque_ripple.
 pub(super) const HIGHEST_ORDER: f64 = 7.0;
-/// Gear that is assumed where a smaller one or none is known: what robots' gears do not pass. Mechanics.
+/// Gear that is assumed where a smaller one or none is known: few robots have a larger one. Mechanics.
 pub(super) const ASSUMED_GEAR: f64 = 100.0;
 /// Most orders of a spectrum. Times only.
 pub(super) const MOST_ORDERS: usize = 600;
@@ -190,7 +191,7 @@ pub(super) const LEAST_SAMPLES: f64 = 100.0;
 pub(super) const SPECTRUM_STANDSTILL_FACTOR: f64 = 3.0;
 /// A peak stands out above this many medians. Statistics: of Rayleigh's amplitudes one in 6e4 does.
 pub(super) const PEAK_OVER_MEDIAN: f64 = 4.0;
-/// Peaks of a joint that are tried as ripple beside the orders of the catalogue.
+/// Peaks of a joint that are tried as ripple beside the orders of the catalogue. Judgement.
 pub(super) const PEAKS: usize = 2;
 
 // ---- Contact ------------------------------------------------------------------------------------------------------
@@ -210,7 +211,7 @@ pub(super) const LARGEST_PUSHED_FRACTION: f64 = 0.35;
 pub(super) const FORCE_EXPLAINS: f64 = 0.7;
 /// The force of the neighbouring instants must explain this fraction: a push is smooth. Judgement; false contacts.
 pub(super) const FORCE_PREDICTS: f64 = 0.75;
-/// Fewest instants of a window: one needs a neighbour to each side.
+/// Fewest instants of a window: one needs a neighbour to each side. Mechanics.
 pub(super) const LEAST_INSTANTS: usize = 3;
 /// A link further in must leave this fraction of what the next link out leaves: the same force seen from there is
 /// nearly as good. Judgement; the link in `docs/concealment.md`.
@@ -219,20 +220,20 @@ pub(super) const INNER_LINK_BETTER: f64 = 0.6;
 pub(super) const CONTACT_MARGIN: f64 = 0.05;
 /// A contact remains while its instants pass this part of [`PUSHED`] with the effects in the model. Judgement.
 pub(super) const REMAINING_FRACTION: f64 = 0.5;
-/// Rounds of the robust fit; its weights change by less than 1e-3 after ten.
+/// Rounds of the robust fit. Judgement: its weights have converged; not measured.
 pub(super) const ROBUST_ROUNDS: usize = 20;
-/// Mean squared residual, in noise variances, at which the robust weight (Cauchy's) is one half. Statistics: 2.385²
-/// of the usual tuning would be 5.7 for one joint; 3 as all joints of an instant share a weight.
+/// Mean squared residual, in noise variances, at which the robust weight (Cauchy's) is one half. Judgement:
+/// Cauchy's usual 2.385² for one row, less as all joints of an instant share a weight.
 pub(super) const ROBUST_SCALE: f64 = 3.0;
 /// Standard deviation of a normal per median absolute deviation. Statistics.
 pub(super) const SIGMA_PER_MAD: f64 = 1.4826;
-/// Least robust standard deviation relative to the joint's largest torque.
+/// Least robust standard deviation relative to the joint's largest torque: noise-free recordings. Mechanics.
 pub(super) const LEAST_ROBUST_SIGMA: f64 = 1e-6;
-/// Relative ridge of the robust fit.
+/// Relative ridge of the robust fit. Mechanics.
 pub(super) const ROBUST_RIDGE: f64 = 1e-11;
-/// Relative ridge of a force at one instant: directions that no joint feels stay zero.
+/// Relative ridge of a force at one instant: directions that no joint feels stay zero. Mechanics.
 pub(super) const FORCE_RIDGE: f64 = 1e-6;
-/// Absolute ridge of the same, for a pose in which no joint feels anything.
+/// Absolute ridge of the same, for a pose in which no joint feels anything. Mechanics.
 pub(super) const FORCE_RIDGE_ABSOLUTE: f64 = 1e-12;
 
 // ---- Explanation --------------------------------------------------------------------------------------------------

@@ -33,7 +33,9 @@ pub(in crate::diagnosis) enum SmoothingWindow {
 /// The smoothing window that shows an effect best.
 pub(in crate::diagnosis) fn smoothing_window(effect: EffectKind) -> SmoothingWindow {
     match effect {
-        EffectKind::TorqueRipple | EffectKind::JointElasticity | EffectKind::Backlash => SmoothingWindow::Fast,
+        EffectKind::TorqueRipple | EffectKind::JointElasticity | EffectKind::Backlash => {
+            SmoothingWindow::Fast
+        }
         _ => SmoothingWindow::Slow,
     }
 }

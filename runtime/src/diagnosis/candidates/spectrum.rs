@@ -73,7 +73,8 @@ mod tests {
     fn swing(seconds: f64) -> Signals {
         let rate = 500.0;
         let samples = (rate * seconds) as usize;
-        let at = |f: &dyn Fn(f64) -> f64| vec![(0..samples).map(|t| f(t as f64 / rate)).collect::<Vec<f64>>()];
+        let at =
+            |f: &dyn Fn(f64) -> f64| vec![(0..samples).map(|t| f(t as f64 / rate)).collect::<Vec<f64>>()];
         let mut signals = Signals::of_motion(&crate::signal::Motion {
             name: "swing".into(),
             rate,

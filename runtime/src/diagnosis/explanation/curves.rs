@@ -140,7 +140,10 @@ fn explained(values: Vec<f64>, residual: &[f64]) -> f64 {
 }
 
 /// Where the standard model fails, joint by joint.
-pub(in crate::diagnosis) fn mismatch(model: &ExtendedModel<'_>, standard: &StandardModelFit) -> Vec<Mismatch> {
+pub(in crate::diagnosis) fn mismatch(
+    model: &ExtendedModel<'_>,
+    standard: &StandardModelFit,
+) -> Vec<Mismatch> {
     let design = &model.slow.design;
     let context = &model.context;
     let robot = context.model.robot();
@@ -241,10 +244,7 @@ pub(in crate::diagnosis) fn unexplained(model: &ExtendedModel<'_>) -> Unexplaine
 }
 
 /// Torques of the joints that have findings, in the first new motion; the first joint where there are none.
-pub(in crate::diagnosis) fn series(
-    model: &ExtendedModel<'_>,
-    before: &[f64],
-) -> Vec<TorqueSeries> {
+pub(in crate::diagnosis) fn series(model: &ExtendedModel<'_>, before: &[f64]) -> Vec<TorqueSeries> {
     let design = &model.fast.design;
     let context = &model.context;
     let Some(signal) = context.signals.iter().position(|s| s.is_target) else { return Vec::new() };

@@ -19,7 +19,10 @@ use std::collections::BTreeSet;
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit.
-pub(in crate::diagnosis) fn skew_of(context: &Context<'_>, mut design: Design) -> Result<f64, SingularDesign> {
+pub(in crate::diagnosis) fn skew_of(
+    context: &Context<'_>,
+    mut design: Design,
+) -> Result<f64, SingularDesign> {
     for column in delay_columns(context, &design) {
         design.push(column);
     }

@@ -93,3 +93,65 @@ fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {
         targets.iter().map(|&held| without(&|g| g == held)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::judging::folds::folds;
+
+    /// One joint, one column that is the torque but for a little.
+    fn design(segments: &[(usize, bool)]) -> Design {
+        let rows = 10 * segments.len();
+        let column: Vec<f64> = (0..rows).map(|r| (0.7 * r as f64).sin()).collect();
+        let y = (0..rows).map(|r| 2.0 * column[r] + 0.01 * (3.1 * r as f64).cos()).collect();
+        Design::made_up(1, segments, 10, vec![column], y)
+    }
+
+    #[test]
+    fn every_segment_of_the_recording_is_held_out_once_and_none_of_the_baseline() {
+        let design = design(&[(0, false), (1, true), (1, true), (2, true)]);
+        let folds = folds(&design, &[1.0]).unwrap();
+        assert_eq!(folds.len(), 3);
+        for g in 0..4 {
+            let times = folds.iter().filter(|fold| fold.test[g]).count();
+            assert_eq!(times, usize::from(design.segments[g].is_target), "segment {g}");
+        }
+        for fold in &folds {
+            assert!(fold.test.iter().zip(&fold.fit.train).all(|(test, train)| test != train));
+        }
+    }
+
+    #[test]
+    fn a_single_motion_is_cut_at_five_and_six_eighths() {
+        assert_eq!(forward_cuts(8), [5, 6]);
+        assert_eq!(forward_cuts(4), [2, 3]);
+        assert_eq!(forward_cuts(1), [1, 1]);
+        // Three stretches come after the first cut, two of them after the second.
+        let held = HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false).unwrap();
+        let segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
+        assert_eq!(segments, [5, 6, 7, 6, 7]);
+    }
+
+    #[test]
+    fn of_several_motions_each_is_predicted_from_the_others() {
+        let held = HeldOutSquares::of(&design(&[(0, true), (0, true), (1, true)]), &[1.0], false).unwrap();
+        let mut segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
+        segments.sort_unstable();
+        assert_eq!(segments, [0, 1, 2]);
+        assert!(held.errors().relative_error < 0.02);
+    }
+
+    #[test]
+    fn from_a_baseline_alone_all_of_the_recording_is_predicted() {
+        let held = HeldOutSquares::of(&design(&[(0, false), (1, true), (2, true)]), &[1.0], true).unwrap();
+        assert_eq!(held.by_segment.iter().map(|s| s.0).collect::<Vec<_>>(), [1, 2]);
+    }
+
+    #[test]
+    fn a_design_that_is_not_finite_has_no_folds() {
+        let mut design = design(&[(0, true), (1, true)]);
+        design.columns[0][3] = f64::NAN;
+        design.refresh();
+        assert_eq!(folds(&design, &[1.0]).err(), Some(SingularDesign { columns: 1 }));
+    }
+}

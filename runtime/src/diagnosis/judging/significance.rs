@@ -145,7 +145,8 @@ mod tests {
     }
 
     #[test]
-    fn noise_passes_the_slope_test_at_most_twice_as_often_as_its_p_value_says_where_residuals_are_correlated() {
+    fn noise_passes_the_slope_test_at_most_twice_as_often_as_its_p_value_says_where_residuals_are_correlated()
+    {
         // Autocorrelations 0.5, 0.25, 0.125: a decorrelation lag of three rows; blocks of six.
         let [often, seldom] = false_positives(180, 6, [0.01, 0.001]);
         println!("{:.2} % below 1 %, {:.3} % below 0.1 %", 100.0 * often, 100.0 * seldom);

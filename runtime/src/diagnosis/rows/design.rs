@@ -240,3 +240,44 @@ impl Design {
         (0..self.segments.len()).filter(|&g| wanted(g)).map(|g| self.ranges[joint][g].len()).sum()
     }
 }
+
+#[cfg(test)]
+impl Design {
+    /// A design without a robot: every joint has `rows` rows in each segment (signal, is_target); columns and y are
+    /// given over all rows, sorted by joint, then segment.
+    pub fn made_up(
+        joints: usize,
+        segments: &[(usize, bool)],
+        rows: usize,
+        columns: Vec<Vec<f64>>,
+        y: Vec<f64>,
+    ) -> Self {
+        let signals = segments.iter().map(|s| s.0 + 1).max().unwrap_or(0);
+        let mut design = Self {
+            joints,
+            parameters: columns.len(),
+            rows: Vec::new(),
+            ranges: vec![Vec::new(); joints],
+            segments: segments.iter().map(|&(signal, is_target)| Segment { signal, is_target }).collect(),
+            columns,
+            y,
+            kernels: vec![hann(1); signals],
+            step: 0.02,
+            short: false,
+            grams: Vec::new(),
+        };
+        for j in 0..joints {
+            let mut next = vec![0; signals];
+            for &(signal, _) in segments {
+                let start = design.rows.len();
+                design
+                    .rows
+                    .extend((next[signal]..next[signal] + rows).map(|centre| RowAt { signal, centre }));
+                next[signal] += rows;
+                design.ranges[j].push(start..start + rows);
+            }
+        }
+        design.refresh();
+        design
+    }
+}

@@ -7,7 +7,9 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// The normal equations of a design have no solution, ridge and all: a column or a torque is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the normal equations of {columns} columns cannot be solved: a column or a torque is not a finite number")]
+#[error(
+    "the normal equations of {columns} columns cannot be solved: a column or a torque is not a finite number"
+)]
 pub struct SingularDesign {
     /// Columns of the design.
     pub columns: usize,
@@ -47,7 +49,8 @@ impl Fit {
         let factor = Cholesky::new(scaled).ok_or(SingularDesign { columns: p })?;
         let mut fit = Self { chi: DVector::zeros(p), sigma: sigma.to_vec(), train, scale, factor };
         fit.chi = fit.solve(&v);
-        Ok(fit)
+        // A column that is not finite has no norm, and would pass as one that is zero.
+        if fit.chi.iter().all(|x| x.is_finite()) { Ok(fit) } else { Err(SingularDesign { columns: p }) }
     }
 
     /// Fits on all segments.

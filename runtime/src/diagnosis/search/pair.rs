@@ -40,9 +40,8 @@ impl Search<'_> {
     /// Laws of one joint that are no likely accident, as first laws of a pair.
     fn first_laws(&self, settings: &Settings) -> Vec<Accepted> {
         let mut ranked = self.ranked(None);
-        ranked.retain(|r| {
-            self.of(r).1.own.len() == 1 && r.verdict.explained_fraction >= settings.least_share
-        });
+        ranked
+            .retain(|r| self.of(r).1.own.len() == 1 && r.verdict.explained_fraction >= settings.least_share);
         let evidence = parallel::map(self.threads, ranked.len(), |k| self.evidence(&ranked[k]));
         ranked
             .iter()
