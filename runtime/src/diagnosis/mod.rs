@@ -262,7 +262,12 @@ fn begin<'a>(
         context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
     }
     let extended = ExtendedModel::new(context, rows.slow, rows.fast, change)?;
-    let search = Search::new(extended, &motions.slowest, motions.settings(), progress);
+    let mut search = Search::new(extended, &motions.slowest, motions.settings(), progress);
+    // No law is tried where only joints that hardly move would show it.
+    let judged = &prepared.moving.judged;
+    for candidates in [&mut search.slow, &mut search.fast] {
+        candidates.retain(|c| c.own.iter().any(|&j| judged[j]));
+    }
     let standard = StandardModelFit::new(&search.model, &prepared.aligned)?;
     Ok((search, standard, sampling))
 }

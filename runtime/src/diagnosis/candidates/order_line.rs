@@ -6,6 +6,10 @@
 //! reaches far. Both are asked for, motion by motion, at the full rate, of the residual without what is slower than a few
 //! waves.
 
+use crate::diagnosis::rules::{
+    LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
+    LINE_PICKED_ABOVE, LINE_SLOWER,
+};
 use std::f64::consts::TAU;
 
 /// A joint in one motion, at the full rate.
@@ -32,25 +36,6 @@ pub(in crate::diagnosis) struct Line {
     pub share: f64,
 }
 
-/// Multiples of a motor turn that cogging, current offsets, gear teeth and wave generators have.
-pub(in crate::diagnosis) const MULTIPLES: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0];
-/// How far a known order must stand above the orders around it: noise does once in 2^16 orders.
-const ABOVE: f64 = 4.0;
-/// The same for an order that was picked from a spectrum: once in 2^25.
-const PICKED_ABOVE: f64 = 5.0;
-/// Least share that one half of a motion predicts for the other.
-const LEAST_SHARE: f64 = 0.02;
-/// What is slower than so many waves is not the line.
-const SLOWER: f64 = 4.0;
-/// Waves that each half of a motion must pass.
-const LEAST_WAVES: f64 = 8.0;
-/// Samples that each half must have.
-const LEAST_SAMPLES: usize = 100;
-/// Orders on each side that a line is compared with, and how many of the nearest it covers itself, in steps of what the
-/// travel resolves.
-const AROUND: usize = 12;
-const COVERED: usize = 3;
-
 /// The lines of a joint among `known` orders and those that were `picked` from a spectrum, strongest first.
 ///
 /// `slowest` is the speed below which the joint stands. A line must show in more than half of the motions that could
@@ -61,12 +46,13 @@ pub(in crate::diagnosis) fn lines(
     picked: &[f64],
     slowest: f64,
 ) -> Vec<Line> {
-    let known = known.iter().map(|&o| (o, ABOVE));
-    let picked = picked.iter().map(|&o| (o, PICKED_ABOVE));
+    let known = known.iter().map(|&o| (o, LINE_ABOVE));
+    let picked = picked.iter().map(|&o| (o, LINE_PICKED_ABOVE));
     let mut found: Vec<Line> = Vec::new();
     for (order, above) in known.chain(picked) {
         let seen: Vec<Line> = strokes.iter().filter_map(|s| line(s, order, slowest)).collect();
-        let shown: Vec<&Line> = seen.iter().filter(|l| l.above >= above && l.share >= LEAST_SHARE).collect();
+        let shown: Vec<&Line> =
+            seen.iter().filter(|l| l.above >= above && l.share >= LINE_LEAST_FRACTION).collect();
         if shown.is_empty() || 2 * shown.len() <= seen.len() {
             continue;
         }
@@ -88,7 +74,7 @@ pub(in crate::diagnosis) fn lines(
     let resolved = resolution(strokes);
     let mut apart: Vec<Line> = Vec::new();
     for line in found {
-        if apart.iter().all(|a| (a.order - line.order).abs() > COVERED as f64 * resolved) {
+        if apart.iter().all(|a| (a.order - line.order).abs() > LINE_COVERED as f64 * resolved) {
             apart.push(line);
         }
     }
@@ -120,7 +106,7 @@ fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
         part.windows(2).map(|w| (w[1].q - w[0].q).abs()).filter(|d| d * order < 3.0).sum::<f64>() * order
             / TAU
     };
-    if half < LEAST_SAMPLES || waves(first) < LEAST_WAVES || waves(second) < LEAST_WAVES {
+    if half < LINE_LEAST_SAMPLES || waves(first) < LINE_LEAST_WAVES || waves(second) < LINE_LEAST_WAVES {
         return None;
     }
     let step = TAU / travel(stroke.q).max(1e-9);
@@ -129,12 +115,12 @@ fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
         .map(|k| order + 0.125 * step * f64::from(k))
         .max_by(|a, b| wave(&samples, *a).norm().total_cmp(&wave(&samples, *b).norm()))?;
     let fitted = wave(&samples, order);
-    let mut around: Vec<f64> = (COVERED..COVERED + AROUND)
+    let mut around: Vec<f64> = (LINE_COVERED..LINE_COVERED + LINE_AROUND)
         .flat_map(|k| [order - k as f64 * step, order + k as f64 * step])
         .filter(|o| *o > step)
         .map(|o| wave(&samples, o).norm())
         .collect();
-    if around.len() < AROUND {
+    if around.len() < LINE_AROUND {
         return None;
     }
     around.sort_by(f64::total_cmp);
@@ -163,7 +149,7 @@ fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
 fn samples(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Vec<Sample> {
     let fastest = 0.9 * stroke.band * TAU / order;
     let usable = |t: usize| stroke.dq[t].abs() > slowest && stroke.dq[t].abs() < fastest;
-    let reach = 0.5 * SLOWER * TAU / order;
+    let reach = 0.5 * LINE_SLOWER * TAU / order;
     let mut out = Vec::new();
     let mut t = 0;
     while t < stroke.q.len() {
@@ -192,7 +178,7 @@ fn samples(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Vec<Sample> {
             // As far to both sides, and at least two waves, or the mean holds the wave itself.
             let side = (k - a).min(b - 1 - k);
             let (low, high) = (k - side, k + side + 1);
-            if (q[high - 1] - q[low]).abs() * order / TAU > 0.5 * SLOWER {
+            if (q[high - 1] - q[low]).abs() * order / TAU > 0.5 * LINE_SLOWER {
                 out.push(Sample { q: q[k], r: r[k] - (sums[high] - sums[low]) / (high - low) as f64 });
             }
         }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::diagnosis::rules::LINE_MULTIPLES;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -43,7 +44,7 @@ fn found(motions: &[Motion]) -> Vec<Line> {
         .iter()
         .map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE })
         .collect();
-    let known: Vec<f64> = MULTIPLES.iter().map(|k| k * GEAR).collect();
+    let known: Vec<f64> = LINE_MULTIPLES.iter().map(|k| k * GEAR).collect();
     lines(&strokes, &known, &[], 0.05)
 }
 

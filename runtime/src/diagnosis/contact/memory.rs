@@ -1,9 +1,6 @@
 //! How far means of a residual that remembers wander, whatever a few pushes do to it.
 
-/// Values beyond so many standard deviations count as no more.
-const CLIPPED: f64 = 2.5;
-/// Most coefficients of the autoregression.
-const MOST_ORDER: usize = 12;
+use crate::diagnosis::rules::{SCAN_CLIPPED, SCAN_MOST_ORDER, SIGMA_PER_MAD};
 
 /// Standard deviation of means over so many rows.
 pub(in crate::diagnosis) struct Spread {
@@ -22,7 +19,7 @@ impl Spread {
         let mut values: Vec<f64> = motions.iter().flat_map(|m| m.iter().map(|r| r.1)).collect();
         let level = median(&mut values);
         let mut absolute: Vec<f64> = values.iter().map(|x| (x - level).abs()).collect();
-        let sigma = 1.4826 * median(&mut absolute);
+        let sigma = SIGMA_PER_MAD * median(&mut absolute);
         if !(sigma.is_finite() && sigma > 0.0) {
             return None;
         }
@@ -42,7 +39,7 @@ impl Spread {
                 continue;
             }
             means.iter_mut().for_each(|m| *m = (*m - level).abs());
-            let seen = 1.4826 * median(&mut means);
+            let seen = SIGMA_PER_MAD * median(&mut means);
             // So many means know their spread no better than this.
             let surely = seen * (1.0 - 1.2 / independent.sqrt());
             *wider = (surely / of_mean[n - 1]).max(1.0);
@@ -81,16 +78,16 @@ fn means(motions: &[&[(usize, f64)]], n: usize) -> Vec<f64> {
     out
 }
 
-/// Autocorrelation of clipped values over pairs of places that are there, lags 0 to [`MOST_ORDER`].
+/// Autocorrelation of clipped values over pairs of places that are there, lags 0 to [`SCAN_MOST_ORDER`].
 fn autocorrelation(motions: &[&[(usize, f64)]], level: f64, sigma: f64) -> Vec<f64> {
-    let clip = |x: f64| ((x - level) / sigma).clamp(-CLIPPED, CLIPPED);
-    let mut products = [0.0; MOST_ORDER + 1];
-    let mut pairs = [0usize; MOST_ORDER + 1];
+    let clip = |x: f64| ((x - level) / sigma).clamp(-SCAN_CLIPPED, SCAN_CLIPPED);
+    let mut products = [0.0; SCAN_MOST_ORDER + 1];
+    let mut pairs = [0usize; SCAN_MOST_ORDER + 1];
     for motion in motions {
         for (i, &(place, x)) in motion.iter().enumerate() {
-            for &(later, y) in motion[i..].iter().take(MOST_ORDER + 1) {
+            for &(later, y) in motion[i..].iter().take(SCAN_MOST_ORDER + 1) {
                 let lag = later - place;
-                if lag <= MOST_ORDER {
+                if lag <= SCAN_MOST_ORDER {
                     products[lag] += clip(x) * clip(y);
                     pairs[lag] += 1;
                 }
@@ -98,7 +95,7 @@ fn autocorrelation(motions: &[&[(usize, f64)]], level: f64, sigma: f64) -> Vec<f
         }
     }
     let mean = |k: usize| if pairs[k] > 0 { products[k] / pairs[k] as f64 } else { 0.0 };
-    (0..=MOST_ORDER).map(|k| mean(k) / mean(0).max(1e-300)).collect()
+    (0..=SCAN_MOST_ORDER).map(|k| mean(k) / mean(0).max(1e-300)).collect()
 }
 
 /// Coefficients of the autoregression by Levinson's recursion, of the order with the least Schwarz criterion.

@@ -6,12 +6,8 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::judging::ar1::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS, INNER_LINK_BETTER};
 use crate::effects::{JointTorque, Wrench};
-
-/// Rows this far around a push are not used for anything else, s.
-const MARGIN: f64 = 0.05;
-/// One force on one link must explain this share of the squares of what joints feel.
-const EXPLAINED: f64 = 0.7;
 
 /// Looks for pushes in what a model leaves of the torques on the rows of a design; `sigma` is the residual's level on
 /// each joint.
@@ -49,7 +45,7 @@ pub(in crate::diagnosis) fn in_motion(
     };
     for group in &groups {
         let wrench = wrench(context, design, &tracks, group);
-        let (from, to) = (wrench.window[0] - MARGIN, wrench.window[1] + MARGIN);
+        let (from, to) = (wrench.window[0] - CONTACT_MARGIN, wrench.window[1] + CONTACT_MARGIN);
         contacts.windows[group[0].motion].push([from, to]);
         for p in group {
             contacts.doubt = contacts.doubt.min(p.doubt);
@@ -162,11 +158,11 @@ fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pus
         let f = unit.force(&rows);
         let left = unit.left(&rows, &f);
         // A link further in must be clearly better: the same force seen from the next link is nearly as good.
-        if best.as_ref().is_none_or(|b| left < 0.6 * b.0) {
+        if best.as_ref().is_none_or(|b| left < INNER_LINK_BETTER * b.0) {
             best = Some((left, frame, [f[0], f[1], f[2]]));
         }
     }
-    if let Some((_, frame, mean)) = best.filter(|b| 1.0 - b.0 / whole >= EXPLAINED) {
+    if let Some((_, frame, mean)) = best.filter(|b| 1.0 - b.0 / whole >= FORCE_EXPLAINS) {
         // The largest torques against the means tell how much more the push was at its height.
         let ratio = wrench
             .joint_torques

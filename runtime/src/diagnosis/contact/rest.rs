@@ -4,22 +4,11 @@
 //! passes gravity by more than that band says something. What begins and ends while the robot stands is a push; what
 //! is there when it comes to rest or still there when it leaves cannot be told from another load.
 
-use statrs::function::erf::erfc;
+use crate::diagnosis::rules::{
+    AVERAGED_AT_REST, GAP_AT_REST, ONE_IN_A_HUNDRED, SETTLING, SHORTEST_PUSH_AT_REST, SHORTEST_REST, STICTION,
+};
 
-/// Static friction is at most this many times the Coulomb friction of the moving joint, but for one joint in a hundred.
-pub(in crate::diagnosis) const STICTION: f64 = 1.25;
-/// Standard normal deviate that is passed once in a hundred times: what ties [`STICTION`] to a spread.
-const ONE_IN_A_HUNDRED: f64 = 2.326_347_874;
-/// Shortest push, s: what is shorter is an impact.
-const SHORTEST: f64 = 0.2;
-/// Torques are averaged over this long, s.
-const AVERAGED: f64 = 0.1;
-/// Pauses of a push shorter than this belong to it, s.
-const PAUSE: f64 = 0.1;
-/// Shortest time of standing still that is looked at, s.
-const SHORTEST_REST: f64 = 0.5;
-/// After a motion the robot has come to rest by this time, s.
-const SETTLING: f64 = 0.3;
+use statrs::function::erf::erfc;
 
 /// A joint that a push is seen on.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,7 +100,7 @@ pub(in crate::diagnosis) fn look(standing: &Standing<'_>) -> Seen {
             }
         }
         runs.sort_by_key(|r| r.inside[0]);
-        let pause = (PAUSE * standing.rate) as usize;
+        let pause = (GAP_AT_REST * standing.rate) as usize;
         let mut together: Vec<Vec<Run>> = Vec::new();
         for run in runs {
             let until = |runs: &Vec<Run>| runs.iter().map(|r| r.inside[1]).max().unwrap_or(0);
@@ -151,9 +140,9 @@ pub(in crate::diagnosis) fn stretches(standing: &Standing<'_>) -> Vec<[usize; 2]
     found
 }
 
-/// Means over [`AVERAGED`] around each sample, over less at the ends.
+/// Means over [`AVERAGED_AT_REST`] around each sample, over less at the ends.
 fn averaged(x: &[f64], rate: f64) -> Vec<f64> {
-    let half = ((0.5 * AVERAGED * rate) as usize).max(1);
+    let half = ((0.5 * AVERAGED_AT_REST * rate) as usize).max(1);
     let mut sums = vec![0.0];
     for v in x {
         sums.push(sums[sums.len() - 1] + v);
@@ -166,9 +155,9 @@ fn averaged(x: &[f64], rate: f64) -> Vec<f64> {
         .collect()
 }
 
-/// First and last samples of all times, [`SHORTEST`] or longer, in which a level is out of its band on one side.
+/// First and last samples of all times, [`SHORTEST_PUSH_AT_REST`] or longer, in which a level is out of its band on one side.
 fn out_of_band(level: &[f64], band: f64, rate: f64) -> Vec<[usize; 2]> {
-    let pause = (PAUSE * rate) as usize;
+    let pause = (GAP_AT_REST * rate) as usize;
     let mut runs: Vec<([usize; 2], f64)> = Vec::new();
     for (t, x) in level.iter().enumerate().filter(|(_, x)| x.abs() > band) {
         match runs.last_mut().filter(|(run, sign)| t <= run[1] + 1 + pause && x * *sign > 0.0) {
@@ -176,14 +165,14 @@ fn out_of_band(level: &[f64], band: f64, rate: f64) -> Vec<[usize; 2]> {
             None => runs.push(([t, t], x.signum())),
         }
     }
-    let long = |run: &[usize; 2]| (run[1] + 1 - run[0]) as f64 / rate >= SHORTEST;
+    let long = |run: &[usize; 2]| (run[1] + 1 - run[0]) as f64 / rate >= SHORTEST_PUSH_AT_REST;
     runs.into_iter().map(|(run, _)| run).filter(long).collect()
 }
 
 /// Where a level begins to rise towards a run, and where it has fallen behind it: as far as it rises and falls
-/// steadily, seen in steps of [`AVERAGED`].
+/// steadily, seen in steps of [`AVERAGED_AT_REST`].
 fn edges(level: &[f64], run: [usize; 2], rate: f64) -> [usize; 2] {
-    let step = ((AVERAGED * rate) as usize).max(1);
+    let step = ((AVERAGED_AT_REST * rate) as usize).max(1);
     let sign = level[run[0]].signum();
     // A steady rise gains at least a tenth of what it has at the band in a step.
     let least = 0.1 * level[run[0]].abs().min(level[run[1]].abs());
@@ -206,7 +195,7 @@ fn push(standing: &Standing<'_>, runs: &[Run]) -> Push {
         runs.iter().map(|r| r.inside[1]).max().unwrap_or(last),
     ];
     // Somewhere between the first rise and the band, all instants alike; no better than the averaging.
-    let spread = |samples: usize| (samples as f64 / standing.rate).max(AVERAGED) / 12.0_f64.sqrt();
+    let spread = |samples: usize| (samples as f64 / standing.rate).max(AVERAGED_AT_REST) / 12.0_f64.sqrt();
     let mut joints: Vec<Pressed> = Vec::new();
     let mut doubt: f64 = 1.0;
     for run in runs {

@@ -6,26 +6,10 @@
 //! have the exponential tail that this law belongs to, and a heavier tail shows as a larger scale.
 
 use crate::diagnosis::contact::memory::Spread;
-
-/// Window lengths, s.
-const LENGTHS: [f64; 9] = [0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.6, 2.4];
-/// Length of the stretches whose largest means the law is fitted to, s.
-const STRETCH: f64 = 2.0;
-/// Least share of a window's rows that must be there: a joint that reverses has none.
-const PRESENT: f64 = 0.7;
-/// Accidents per recording.
-pub(in crate::diagnosis) const LEVEL: f64 = 0.01;
-/// Rows that a joint needs to be scanned.
-const LEAST_ROWS: usize = 150;
-/// Stretches that count as much as all joints together for the law of one joint.
-const OWN_STRETCHES: f64 = 40.0;
-/// Least scale of the largest squares: that of normal deviates, whose squares fall as exp(-x/2) / sqrt(x), around
-/// x = 10, where the largest of a stretch are.
-const NORMAL: f64 = 2.0 / 1.1;
-/// A push is an exception: on a joint, all together at most this share of the recording.
-const MOST: f64 = 0.35;
-/// Joints whose windows are this close together see the same push, s.
-const TOGETHER: f64 = 0.2;
+use crate::diagnosis::rules::{
+    LARGEST_PUSHED_FRACTION, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES, SCAN_LENGTHS, SCAN_LEVEL,
+    SCAN_NORMAL_SCALE, SCAN_OWN_STRETCHES, SCAN_PRESENT, SCAN_STRETCH, SCAN_TOGETHER,
+};
 
 /// Rows of one joint: for each motion their places on the grid of rows, increasing, and their residual.
 pub(in crate::diagnosis) struct Track {
@@ -62,7 +46,7 @@ struct Law {
 impl Law {
     /// From the quartiles, which a few pushed stretches hardly move.
     fn of(largest: &mut [f64]) -> Option<Self> {
-        if largest.len() < 8 {
+        if largest.len() < SCAN_LEAST_STRETCHES {
             return None;
         }
         largest.sort_by(f64::total_cmp);
@@ -73,7 +57,7 @@ impl Law {
             largest[low] + (x - low as f64) * (largest[high] - largest[low])
         };
         let place = |share: f64| -(-share.ln()).ln();
-        let scale = ((at(0.75) - at(0.25)) / (place(0.75) - place(0.25))).max(NORMAL);
+        let scale = ((at(0.75) - at(0.25)) / (place(0.75) - place(0.25))).max(SCAN_NORMAL_SCALE);
         Some(Self { location: at(0.5) - scale * place(0.5), scale })
     }
 
@@ -119,7 +103,7 @@ impl Sums {
     fn deviation(&self, from: usize, length: usize, spread: &Spread) -> Option<f64> {
         let to = (from + length).min(self.places());
         let count = self.count[to] - self.count[from];
-        if (count as f64) < PRESENT * length as f64 {
+        if (count as f64) < SCAN_PRESENT * length as f64 {
             return None;
         }
         Some((self.sum[to] - self.sum[from]) / count as f64 / spread.of_mean(count))
@@ -140,13 +124,13 @@ struct Scanned {
 /// `step` is the time from one place to the next, s. With a baseline of at least as many stretches as the recording,
 /// the law comes from the baseline.
 pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> Vec<Pushed> {
-    let lengths: Vec<usize> = LENGTHS.iter().map(|l| ((l / step).round() as usize).max(3)).collect();
+    let lengths: Vec<usize> = SCAN_LENGTHS.iter().map(|l| ((l / step).round() as usize).max(3)).collect();
     let mut joints = Vec::new();
     let mut all = Vec::new();
     let mut stretches = 0;
     for track in tracks {
         let rows: usize = track.motions.iter().map(|m| m.1.len()).sum();
-        if rows < LEAST_ROWS {
+        if rows < SCAN_LEAST_ROWS {
             continue;
         }
         let motions: Vec<&[(usize, f64)]> = track.motions.iter().map(|m| m.1.as_slice()).collect();
@@ -163,7 +147,7 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> Vec<Pushed> {
         };
         let (before, now) = (largest(&old), largest(&fresh));
         stretches += now.len();
-        let from = if before.len() >= now.len().max(8) { before } else { now };
+        let from = if before.len() >= now.len().max(SCAN_LEAST_STRETCHES) { before } else { now };
         all.extend_from_slice(&from);
         joints.push((track.joint, spread, fresh, from));
     }
@@ -172,7 +156,7 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> Vec<Pushed> {
         .into_iter()
         .map(|(joint, spread, fresh, mut from)| {
             let count = from.len() as f64;
-            let law = Law::of(&mut from).map_or(common, |own| own.mean(count, common, OWN_STRETCHES));
+            let law = Law::of(&mut from).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
             Scanned { joint, spread, fresh, law }
         })
         .collect();
@@ -181,7 +165,7 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> Vec<Pushed> {
         let mut of_joint = pushes(scanned, &lengths, stretches, step);
         let pushed: usize = of_joint.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
         let places: usize = scanned.fresh.iter().map(Sums::places).sum();
-        if pushed as f64 <= MOST * places as f64 {
+        if pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64 {
             found.append(&mut of_joint);
         }
     }
@@ -191,7 +175,7 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> Vec<Pushed> {
 
 /// Windows of several joints that are one push, in the order of time.
 pub(in crate::diagnosis) fn together(mut pushed: Vec<Pushed>, step: f64) -> Vec<Vec<Pushed>> {
-    let gap = (TOGETHER / step) as usize;
+    let gap = (SCAN_TOGETHER / step) as usize;
     pushed.sort_by_key(|p| (p.motion, p.places[0]));
     let mut groups: Vec<Vec<Pushed>> = Vec::new();
     for p in pushed {
@@ -210,7 +194,7 @@ pub(in crate::diagnosis) fn together(mut pushed: Vec<Pushed>, step: f64) -> Vec<
 
 /// Largest squared deviation in each stretch of a motion that has enough rows.
 fn largest(sums: &Sums, spread: &Spread, lengths: &[usize], step: f64) -> Vec<f64> {
-    let stretch = ((STRETCH / step).round() as usize).max(1);
+    let stretch = ((SCAN_STRETCH / step).round() as usize).max(1);
     let count = sums.places() / stretch;
     let mut out = vec![None::<f64>; count];
     for &length in lengths {
@@ -233,14 +217,14 @@ fn pushes(scanned: &Scanned, lengths: &[usize], stretches: usize, step: f64) -> 
         for &length in lengths {
             for from in 0..sums.places().saturating_sub(length) {
                 let Some(z) = sums.deviation(from, length, &scanned.spread) else { continue };
-                if scanned.law.tail(z * z, stretches) <= LEVEL {
+                if scanned.law.tail(z * z, stretches) <= SCAN_LEVEL {
                     beyond.push((z * z, from, length));
                 }
             }
         }
         beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, from, length) in beyond {
-            let gap = (TOGETHER / step) as usize;
+            let gap = (SCAN_TOGETHER / step) as usize;
             let taken = found.iter().any(|p| {
                 p.motion == sums.motion && from <= p.places[1] + gap && p.places[0] <= from + length + gap
             });

@@ -1,17 +1,13 @@
 //! Pushes against a robot that holds still, from a model that its motion has told.
 
 use crate::diagnosis::contact::force::{JointRow, UnitForces};
-use crate::diagnosis::contact::rest::{Load, Push, STICTION, Seen, Standing, look, stretches};
+use crate::diagnosis::contact::rest::{Load, Push, Seen, Standing, look, stretches};
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
+use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, INNER_LINK_BETTER, STICTION};
 use crate::effects::{JointTorque, Wrench};
 use nalgebra::Vector3;
-
-/// Time from one instant of a push to the next at which a force is looked for, s.
-const STEP: f64 = 0.02;
-/// One force on one link must explain this share of the squares of a push.
-const EXPLAINED: f64 = 0.7;
 
 /// What is seen of the outside while the robot holds still.
 pub(in crate::diagnosis) struct AtRest {
@@ -161,7 +157,7 @@ fn wrench(
     let sample = |time: f64| (((time - standing.start) * standing.rate).round().max(0.0)) as usize;
     let last = standing.still.len().saturating_sub(1);
     let (from, to) = (sample(push.window[0]).min(last), sample(push.window[1]).min(last));
-    let step = ((STEP * standing.rate) as usize).max(1);
+    let step = ((FORCE_STEP_AT_REST * standing.rate) as usize).max(1);
     let instants: Vec<usize> = (from..=to).step_by(step).collect();
     let sigma: Vec<f64> = standing.coulomb.iter().map(|c| c.unwrap_or(1.0) / 3.0_f64.sqrt()).collect();
     let rows = |t: usize| -> Vec<JointRow> {
@@ -225,11 +221,11 @@ fn wrench(
             forces.push(f);
         }
         // A link further in must be clearly better: the same force seen from the next link is nearly as good.
-        if best.as_ref().is_none_or(|b| left < 0.6 * b.0) {
+        if best.as_ref().is_none_or(|b| left < INNER_LINK_BETTER * b.0) {
             best = Some((left, frame, forces));
         }
     }
-    if let Some((_, frame, forces)) = best.filter(|b| 1.0 - b.0 / whole >= EXPLAINED) {
+    if let Some((_, frame, forces)) = best.filter(|b| 1.0 - b.0 / whole >= FORCE_EXPLAINS) {
         let mean = forces.iter().sum::<Vector3<f64>>() / forces.len().max(1) as f64;
         let largest = forces.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied().unwrap_or(mean);
         wrench.link = frame + 1;

@@ -2,18 +2,15 @@
 //! the rows, which a line of a few per cent never does.
 
 use crate::diagnosis::candidates::candidate::{make, smoothing_window};
-use crate::diagnosis::candidates::order_line::{Line, MULTIPLES, Stroke, lines, resolution};
+use crate::diagnosis::candidates::order_line::{Line, Stroke, lines, resolution};
 use crate::diagnosis::candidates::spectrum::peaks;
 use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
+use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, LINE_MULTIPLES, LINE_PICKED};
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{EffectKind, Place};
 use crate::parallel;
-
-/// Orders of a spectrum that are looked at where no multiple of the motor is asked for.
-const PICKED: usize = 4;
 
 /// The lines of one joint, and how close two orders are one.
 #[derive(Debug, Clone, Default)]
@@ -66,8 +63,8 @@ pub(in crate::diagnosis) fn all_lines(
         let gear = spectra[j].gear;
         // Of a joint whose gear is not known there are no multiples to ask for.
         let known: Vec<f64> =
-            if gear > 1.0 { MULTIPLES.iter().map(|k| k * gear).collect() } else { Vec::new() };
-        let picked = peaks(&spectra[j], PICKED);
+            if gear > 1.0 { LINE_MULTIPLES.iter().map(|k| k * gear).collect() } else { Vec::new() };
+        let picked = peaks(&spectra[j], LINE_PICKED);
         let old = lines(&before, &known, &picked, slowest[j]);
         let resolution = resolution(&now);
         let mut new = lines(&now, &known, &picked, slowest[j]);
