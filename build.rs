@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::{env, fs, io};
 
-use dynid_codegen::robot::Robot;
+use dynid_codegen::robot::RobotTable;
 
 fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=robots");
@@ -41,26 +41,21 @@ fn run() -> io::Result<Vec<String>> {
     collection.doubts.iter().for_each(|doubt| println!("cargo::warning={doubt}"));
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("OUT_DIR is not set"))?);
     let generator = generator()?;
-    let mut registry = String::new();
-    let (mut models, mut operations) = (Vec::new(), Vec::new());
+    let mut modules = Vec::new();
     for robot in &collection.robots {
-        let name = &robot.name;
-        let path = out.join(format!("{name}.rs"));
+        let path = out.join(format!("{}.rs", robot.name));
         if let Err(error) = generate(robot, &path, generator)? {
-            return Ok(vec![format!("robots/: {name}: {error}")]);
+            return Ok(vec![format!("robots/: {}: {error}", robot.name)]);
         }
-        registry.push_str(&format!("#[path = {path:?}]\npub mod {name};\n"));
-        models.push(format!("&{name}::Dynamics"));
-        operations.push(format!("&{name}::OPERATIONS"));
+        modules.push((robot.name.as_str(), path));
     }
-    registry.push_str(&format!("static MODELS: &[&dyn Model] = &[{}];\n", models.join(", ")));
-    registry.push_str(&format!("static OPERATIONS: &[&[Operations]] = &[{}];\n", operations.join(", ")));
-    write_if_changed(&out.join("registry.rs"), &registry)?;
+    let modules: Vec<_> = modules.iter().map(|(name, path)| (*name, path.as_path())).collect();
+    write_if_changed(&out.join("registry.rs"), &dynid_codegen::registry(&modules))?;
     Ok(Vec::new())
 }
 
 /// Writes the module of a robot, unless the one that is there was made from the same robot by the same generator.
-fn generate(robot: &Robot, path: &Path, generator: u64) -> io::Result<Result<(), String>> {
+fn generate(robot: &RobotTable, path: &Path, generator: u64) -> io::Result<Result<(), String>> {
     let mut hasher = DefaultHasher::new();
     (generator, format!("{robot:?}")).hash(&mut hasher);
     let key = format!("{:016x}", hasher.finish());

@@ -4,7 +4,6 @@
 //! by name or by path; identification, simulation and diagnosis live in [`dynid_runtime`].
 #![deny(missing_docs)]
 
-pub mod closed_loop;
 pub mod commands;
 pub mod failure;
 pub mod models;

@@ -2,12 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use dynid_codegen::base::{BaseSet, ParameterKind as SymbolicKind, base_set};
-use dynid_codegen::robot as symbolic;
-use dynid_runtime::model::{
-    BaseParameter, Drive, Frame, JointKind, Limits, Model, Nominal, ParameterKind, RecursiveModel, Robot,
-    StandardParameter,
-};
+use dynid_codegen::base::base_set;
+use dynid_codegen::numeric_robot;
+use dynid_codegen::robot::parse_with_doubts;
+use dynid_runtime::model::{Model, RecursiveModel, Robot};
 
 use crate::failure::{Failure, file_failure};
 use crate::models;
@@ -67,13 +65,11 @@ pub fn path_of(name: &str, beside: Option<&Path>) -> PathBuf {
 /// [`Failure::Input`] with every mistake, one a line.
 pub fn read(path: &Path) -> Result<Robot, Failure> {
     let text = std::fs::read(path).map_err(|error| file_failure("read the robot", path, &error))?;
-    let (parsed, doubts) =
-        symbolic::parse_with_doubts(&path.display().to_string(), &text).map_err(|mistakes| {
-            Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
-        })?;
+    let (table, doubts) = parse_with_doubts(&path.display().to_string(), &text).map_err(|mistakes| {
+        Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+    })?;
     doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
-    let base = base_set(&parsed);
-    Ok(numeric(&parsed, &base))
+    Ok(numeric_robot(&table, &base_set(&table)))
 }
 
 fn unknown(name: &str) -> Failure {
@@ -82,93 +78,4 @@ fn unknown(name: &str) -> Failure {
         "there is no robot '{name}': known are {}; or give the path of a robot YAML",
         known.join(", ")
     ))
-}
-
-/// Evaluates the symbolic robot.
-fn numeric(robot: &symbolic::Robot, set: &BaseSet) -> Robot {
-    let frames: Vec<Frame> = robot
-        .frames
-        .iter()
-        .map(|f| Frame {
-            parent: f.parent.checked_sub(1),
-            kind: match f.kind {
-                symbolic::JointKind::Revolute => JointKind::Revolute,
-                symbolic::JointKind::Prismatic => JointKind::Prismatic,
-                symbolic::JointKind::Fixed => JointKind::Fixed,
-            },
-            gamma: f.gamma.value(),
-            b: f.b.value(),
-            alpha: f.alpha.value(),
-            d: f.d.value(),
-            theta: f.theta.value(),
-            r: f.r.value(),
-        })
-        .collect();
-    let standard: Vec<StandardParameter> = set
-        .standard
-        .iter()
-        .map(|p| StandardParameter { name: p.name.clone().into(), kind: kind(p.kind), frame: p.frame })
-        .collect();
-    let base: Vec<BaseParameter> = set
-        .base
-        .iter()
-        .map(|p| BaseParameter {
-            name: p.name.clone().into(),
-            standard: p.standard,
-            combination: p.combination.clone().into(),
-            relation: p.relation.clone().into(),
-            unit: p.unit.clone().into(),
-        })
-        .collect();
-    let nominal = robot.nominal.as_ref().map(|n| {
-        let value = |name: &str| n.standard.iter().find(|(known, _)| known == name).map_or(0.0, |p| p.1);
-        Nominal {
-            standard: standard.iter().map(|p| value(&p.name)).collect(),
-            kp: n.kp.clone().into(),
-            kd: n.kd.clone().into(),
-            ki: n.ki.clone().into(),
-            position_noise: n.position_noise.clone().into(),
-            torque_noise: n.torque_noise.clone().into(),
-        }
-    });
-    Robot {
-        name: robot.name.clone().into(),
-        description: robot.description.clone().into(),
-        gravity: robot.gravity,
-        frames: frames.into(),
-        drive: Drive {
-            gear: robot.drive.gear.concat().into(),
-            coupled_friction: robot.drive.coupled_friction.clone().into(),
-        },
-        limits: Limits {
-            position: robot.limits.position.clone().into(),
-            velocity: robot.limits.velocity.clone().into(),
-            acceleration: robot.limits.acceleration.clone().into(),
-            torque: robot.limits.torque.clone().into(),
-        },
-        standard: standard.into(),
-        base: base.into(),
-        nominal,
-    }
-}
-
-fn kind(kind: SymbolicKind) -> ParameterKind {
-    match kind {
-        SymbolicKind::XX => ParameterKind::XX,
-        SymbolicKind::XY => ParameterKind::XY,
-        SymbolicKind::XZ => ParameterKind::XZ,
-        SymbolicKind::YY => ParameterKind::YY,
-        SymbolicKind::YZ => ParameterKind::YZ,
-        SymbolicKind::ZZ => ParameterKind::ZZ,
-        SymbolicKind::MX => ParameterKind::MX,
-        SymbolicKind::MY => ParameterKind::MY,
-        SymbolicKind::MZ => ParameterKind::MZ,
-        SymbolicKind::M => ParameterKind::M,
-        SymbolicKind::Ia => ParameterKind::Ia,
-        SymbolicKind::Fv => ParameterKind::Fv,
-        SymbolicKind::Fc => ParameterKind::Fc,
-        SymbolicKind::Off => ParameterKind::Off,
-        SymbolicKind::Fvm => ParameterKind::Fvm,
-        SymbolicKind::Fcm => ParameterKind::Fcm,
-    }
 }

@@ -3,24 +3,31 @@
 use crate::base::BaseSet;
 use crate::emit;
 use crate::mechanics::{Equations, ModelCounts, ModelError};
-use crate::robot::{Diagnostic, Robot, parse_with_doubts};
+use crate::robot::{Diagnostic, RobotTable, at_name, parse_with_doubts};
+use std::fmt::Write;
+use std::path::Path;
 
 /// Why no module came out.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GenerateError {
     /// The robot has no model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The text that was written is not Rust; a bug of the generator.
     #[error("the generated code does not parse: {0}")]
-    Syntax(#[from] syn::Error),
+    Syntax(String),
 }
 
 /// The module of a robot: its data, its equations and its `Model`, as formatted Rust.
 ///
+/// The text is the same bytes for the same table. It is a file of its own (`mod arm;`), and what compiles it depends on
+/// dynid-runtime.
+///
 /// # Errors
-/// A drive without a model. A robot from [`crate::robot::parse`] always has one.
-pub fn generate(robot: &Robot) -> Result<String, GenerateError> {
+/// [`GenerateError::Model`] for a drive without a model; a robot from [`crate::robot::parse`] always has one.
+/// [`GenerateError::Syntax`] is a bug of the generator.
+pub fn generate(robot: &RobotTable) -> Result<String, GenerateError> {
     generate_with(robot, &crate::base::base_set(robot))
 }
 
@@ -28,24 +35,45 @@ pub fn generate(robot: &Robot) -> Result<String, GenerateError> {
 ///
 /// # Errors
 /// As [`generate`].
-pub fn generate_with(robot: &Robot, set: &BaseSet) -> Result<String, GenerateError> {
+pub fn generate_with(robot: &RobotTable, set: &BaseSet) -> Result<String, GenerateError> {
     let equations = Equations::derive(robot, set)?;
-    Ok(emit::module(robot, set, &equations)?)
+    emit::module(robot, set, &equations).map_err(|error| GenerateError::Syntax(error.to_string()))
 }
 
 /// What evaluating the functions of a robot's module costs.
 ///
 /// # Errors
-/// As [`generate`].
-pub fn operation_counts(robot: &Robot) -> Result<ModelCounts, ModelError> {
+/// [`ModelError`] for a drive without a model.
+pub fn operation_counts(robot: &RobotTable) -> Result<ModelCounts, ModelError> {
     Ok(Equations::derive(robot, &crate::base::base_set(robot))?.counts())
+}
+
+/// The source of a registry of modules that were written to files, each given by the name of its robot and its path.
+///
+/// It declares a module for each robot and two lists in the same order, `MODELS` (`&dyn Model`) and `OPERATIONS`. It is
+/// made for `include!(concat!(env!("OUT_DIR"), "/registry.rs"))`, where a path cannot be known beforehand.
+pub fn registry(modules: &[(&str, &Path)]) -> String {
+    let mut source = String::new();
+    let list = |item: &str| modules.iter().map(|(name, _)| format!("&{name}::{item}")).collect::<Vec<_>>();
+    // Writing to a String cannot fail.
+    for (name, path) in modules {
+        let _ = writeln!(source, "#[path = {path:?}]\npub mod {name};");
+    }
+    let models = list("Dynamics").join(", ");
+    let _ =
+        writeln!(source, "pub(crate) static MODELS: &[&dyn ::dynid_runtime::model::Model] = &[{models}];");
+    let operations = list("OPERATIONS").join(", ");
+    let kind = "&[&[::dynid_runtime::model::Operations]]";
+    let _ = writeln!(source, "pub(crate) static OPERATIONS: {kind} = &[{operations}];");
+    source
 }
 
 /// The robots of several YAMLs, and what is doubtful about them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Collection {
     /// In the order of the files.
-    pub robots: Vec<Robot>,
+    pub robots: Vec<RobotTable>,
     /// What is allowed in the files but probably not meant.
     pub doubts: Vec<Diagnostic>,
 }
@@ -65,7 +93,7 @@ pub fn read_all(files: &[(String, Vec<u8>)]) -> Result<Collection, Vec<Diagnosti
                 match collection.robots.iter().position(|known| known.name == robot.name) {
                     Some(first) => {
                         let message = format!("the name {} is already that of {}", robot.name, paths[first]);
-                        mistakes.push(at_key(path, bytes, "name", message));
+                        mistakes.push(at_name(path, bytes, message));
                     }
                     None => {
                         collection.robots.push(robot);
@@ -77,11 +105,4 @@ pub fn read_all(files: &[(String, Vec<u8>)]) -> Result<Collection, Vec<Diagnosti
         }
     }
     if mistakes.is_empty() { Ok(collection) } else { Err(mistakes) }
-}
-
-/// A mistake at a top-level key of a file, or at its start where the key cannot be found.
-fn at_key(path: &str, bytes: &[u8], key: &str, message: String) -> Diagnostic {
-    let text = String::from_utf8_lossy(bytes);
-    let line = text.lines().position(|line| line.trim_start().starts_with(key)).unwrap_or(0) + 1;
-    Diagnostic { path: path.to_owned(), line, column: 1, message }
 }

@@ -1,22 +1,23 @@
 //! Robots and base parameters for the tests of this crate.
 #![allow(clippy::unwrap_used)]
 
-use crate::base::{BaseParameter, BaseSet, ParameterKind, StandardParameter};
+use crate::base::BaseSet;
 use crate::mechanics::Equations;
-use crate::robot::{Drive, Expression, Frame, JointKind, Limits, Robot};
+use crate::robot::{DriveTable, Expression, RobotTable, TableRow};
 use crate::symbolic::Point;
+use dynid_description::{BaseParameter, JointKind, Limits, ParameterKind};
 use std::f64::consts::FRAC_PI_2;
 
 /// A row of a table: sigma, alpha, d, theta, r, as in the reference file.
 pub type Row = (u8, f64, f64, f64, f64);
 
 /// A serial robot.
-pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> Robot {
+pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> RobotTable {
     let number = |x: f64| Expression::Number(x);
-    let frames: Vec<Frame> = rows
+    let frames: Vec<TableRow> = rows
         .iter()
         .enumerate()
-        .map(|(k, &(sigma, alpha, d, theta, r))| Frame {
+        .map(|(k, &(sigma, alpha, d, theta, r))| TableRow {
             j: k + 1,
             parent: k,
             kind: [JointKind::Revolute, JointKind::Prismatic, JointKind::Fixed][usize::from(sigma)],
@@ -30,24 +31,24 @@ pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> Robot {
         .collect();
     let n = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let gear = (0..n).map(|i| (0..n).map(|j| if i == j { 1.0 } else { 0.0 }).collect()).collect();
-    Robot {
+    RobotTable {
         name: name.to_owned(),
         description: String::new(),
         gravity,
         constants: Vec::new(),
         frames,
-        drive: Drive { gear, coupled_friction: Vec::new() },
+        drive: DriveTable { gear, coupled_friction: Vec::new() },
         limits: Limits::default(),
         nominal: None,
     }
 }
 
-pub fn planar_2r() -> Robot {
+pub fn planar_2r() -> RobotTable {
     serial("planar_2r", [0.0, -9.81, 0.0], &[(0, 0.0, 0.0, 0.0, 0.0), (0, 0.0, 0.5, 0.0, 0.0)])
 }
 
 /// Table I without the payload frame, with the coupling of axes 5 and 6.
-pub fn tx40() -> Robot {
+pub fn tx40() -> RobotTable {
     let h = FRAC_PI_2;
     let mut robot = serial(
         "tx40",
@@ -70,31 +71,15 @@ pub fn tx40() -> Robot {
 }
 
 /// chi_st of a robot, all of it kept.
-pub fn all_parameters(robot: &Robot) -> BaseSet {
-    use ParameterKind::*;
-    let mut standard = Vec::new();
-    let mut joint = 0;
-    for (frame, row) in robot.frames.iter().enumerate() {
-        let mut kinds = vec![XX, XY, XZ, YY, YZ, ZZ, MX, MY, MZ, M];
-        if row.kind != JointKind::Fixed {
-            kinds.extend([Ia, Fv, Fc, Off]);
-            if robot.drive.coupled_friction.contains(&joint) {
-                kinds.extend([Fvm, Fcm]);
-            }
-            joint += 1;
-        }
-        standard.extend(kinds.into_iter().map(|kind| {
-            let symbol = if kind == Off { "off".to_owned() } else { format!("{kind:?}") };
-            StandardParameter { name: format!("{symbol}{}", row.j), kind, frame }
-        }));
-    }
+pub fn all_parameters(robot: &RobotTable) -> BaseSet {
+    let standard = robot.standard_parameters();
     let base = (0..standard.len())
         .map(|k| BaseParameter {
             name: standard[k].name.clone(),
             standard: k,
-            combination: vec![(k, 1.0)],
+            combination: vec![(k, 1.0)].into(),
             relation: standard[k].name.clone(),
-            unit: String::new(),
+            unit: "".into(),
         })
         .collect();
     BaseSet { standard, base }
@@ -102,7 +87,7 @@ pub fn all_parameters(robot: &Robot) -> BaseSet {
 
 /// Base parameters by the numeric rank of the regressor: what depends on kept columns is left out, YY, MZ, M and Ia
 /// being judged last. The regrouping relations are not worked out.
-pub fn numeric_base(robot: &Robot) -> BaseSet {
+pub fn numeric_base(robot: &RobotTable) -> BaseSet {
     let mut set = all_parameters(robot);
     let equations = Equations::derive(robot, &set).unwrap();
     let n = equations.idm.len();

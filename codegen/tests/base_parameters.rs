@@ -4,7 +4,8 @@
 mod numeric;
 
 use dynid_codegen::base::{BaseSet, base_set};
-use dynid_codegen::robot::{Drive, Expression, Frame, JointKind, Limits, Robot, parse};
+use dynid_codegen::robot::{DriveTable, Expression, RobotTable, TableRow, parse};
+use dynid_description::{BaseParameter, JointKind, Limits, ParameterKind};
 use numeric::regressor;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -15,7 +16,7 @@ fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-fn robot(name: &str) -> Robot {
+fn robot(name: &str) -> RobotTable {
     let path = workspace().join("robots").join(format!("{name}.yaml"));
     parse(name, &std::fs::read(path).unwrap()).unwrap()
 }
@@ -24,7 +25,7 @@ const ROBOTS: [&str; 9] =
     ["branched", "cobot6", "panda", "planar_2r", "puma560", "scara4", "stanford", "tx40", "ur10e"];
 
 /// Standard columns at enough random states for every rank to show.
-fn observations(robot: &Robot, set: &BaseSet, random: &mut Pcg64) -> nalgebra::DMatrix<f64> {
+fn observations(robot: &RobotTable, set: &BaseSet, random: &mut Pcg64) -> nalgebra::DMatrix<f64> {
     let n = robot.joint_frames().len();
     let states = 2 + 3 * set.standard.len() / n;
     let mut rows = nalgebra::DMatrix::zeros(states * n, set.standard.len());
@@ -52,7 +53,7 @@ fn rank(matrix: &nalgebra::DMatrix<f64>) -> (usize, f64) {
 }
 
 /// What makes a base set right; `Err` says what is wrong.
-fn check(robot: &Robot, random: &mut Pcg64) -> Result<(), String> {
+fn check(robot: &RobotTable, random: &mut Pcg64) -> Result<(), String> {
     let set = base_set(robot);
     let rows = observations(robot, &set, random);
     let (rank, gap) = rank(&rows);
@@ -102,7 +103,7 @@ fn the_base_of_random_tables_has_the_numeric_rank_and_the_same_torques() {
     assert!(wrong.is_empty(), "{} of 600 wrong\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
 }
 
-fn table(robot: &Robot) -> String {
+fn table(robot: &RobotTable) -> String {
     let mut text = format!(
         "gravity {:?} gear {:?} {:?}\n",
         robot.gravity, robot.drive.gear, robot.drive.coupled_friction
@@ -118,7 +119,7 @@ fn table(robot: &Robot) -> String {
 
 /// Up to eight axes: serial or tree, all kinds of joints, special and general angles and lengths, gravity along an
 /// axis, none, or general, gears that couple joints.
-fn random_robot(random: &mut Pcg64) -> Robot {
+fn random_robot(random: &mut Pcg64) -> RobotTable {
     let count = random.random_range(1..=9);
     let tree = random.random_bool(0.4);
     let general = random.random_bool(0.3);
@@ -138,7 +139,7 @@ fn random_robot(random: &mut Pcg64) -> Robot {
         let side = branches || random.random_bool(0.1);
         let off = Expression::ZERO;
         let (gamma, b) = if side { (gamma, b) } else { (off.clone(), off) };
-        frames.push(Frame { j, parent, kind, gamma, b, alpha, d, theta, r });
+        frames.push(TableRow { j, parent, kind, gamma, b, alpha, d, theta, r });
     }
     if frames.iter().all(|f| f.kind == JointKind::Fixed)
         || frames.iter().filter(|f| f.kind != JointKind::Fixed).count() > 8
@@ -155,7 +156,7 @@ fn random_robot(random: &mut Pcg64) -> Robot {
     };
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let drive = random_drive(random, joints);
-    Robot {
+    RobotTable {
         name: "random".to_owned(),
         description: String::new(),
         gravity,
@@ -190,8 +191,8 @@ fn random_length(random: &mut Pcg64, general: bool) -> Expression {
     }
 }
 
-fn random_drive(random: &mut Pcg64, joints: usize) -> Drive {
-    let mut drive = Drive::direct(joints);
+fn random_drive(random: &mut Pcg64, joints: usize) -> DriveTable {
+    let mut drive = DriveTable::direct(joints);
     for (m, row) in drive.gear.iter_mut().enumerate() {
         row[m] = [10.0, 32.0, -48.0, 101.0][random.random_range(0..4)];
     }
@@ -218,7 +219,7 @@ fn random_drive(random: &mut Pcg64, joints: usize) -> Drive {
 }
 
 fn names(set: &BaseSet) -> Vec<&str> {
-    set.base.iter().map(|p| p.name.as_str()).collect()
+    set.base.iter().map(|p| p.name.as_ref()).collect()
 }
 
 fn relation<'a>(set: &'a BaseSet, name: &str) -> &'a str {
@@ -230,7 +231,7 @@ fn relation<'a>(set: &'a BaseSet, name: &str) -> &'a str {
 }
 
 /// A robot from rows of its table.
-fn table_of(rows: &str, rest: &str) -> Robot {
+fn table_of(rows: &str, rest: &str) -> RobotTable {
     let text = format!("name: arm\nframes:\n{rows}{rest}\n");
     parse("arm.yaml", text.as_bytes()).unwrap_or_else(|m| panic!("{}", m[0]))
 }
@@ -245,9 +246,7 @@ fn inertial_counts_are_those_of_the_independent_reference() {
     let reference: serde_json::Value = serde_json::from_slice(&text).unwrap();
     for name in ROBOTS.iter().filter(|name| reference.get(**name).is_some()) {
         let set = base_set(&robot(name));
-        let inertial = |p: &&dynid_codegen::base::BaseParameter| {
-            set.standard[p.standard].kind <= dynid_codegen::base::ParameterKind::M
-        };
+        let inertial = |p: &&BaseParameter| set.standard[p.standard].kind <= ParameterKind::M;
         let expected = reference[*name]["inertial_base_count"].as_u64().unwrap() as usize;
         assert_eq!(set.base.iter().filter(inertial).count(), expected, "{name}");
     }
@@ -284,7 +283,7 @@ fn the_tx40_has_the_sixty_base_parameters_of_table_ii() {
     assert_eq!(relation(&bare, "XX6R"), "XX6 - YY6");
     let held = |k: usize| bare.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
     let without: Vec<&str> =
-        (0..bare.standard.len()).filter(|&k| !held(k)).map(|k| bare.standard[k].name.as_str()).collect();
+        (0..bare.standard.len()).filter(|&k| !held(k)).map(|k| bare.standard[k].name.as_ref()).collect();
     assert_eq!(without.join(" "), "XX1 XY1 XZ1 YY1 YZ1 MX1 MY1 MZ1 M1 MZ2 M2");
 }
 

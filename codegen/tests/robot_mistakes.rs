@@ -1,6 +1,7 @@
 //! Every mistake in a robot's YAML is reported at its place, all of them at once.
 
-use dynid_codegen::robot::{JointKind, Robot, parse, parse_with_doubts};
+use dynid_codegen::robot::{RobotTable, parse, parse_with_doubts};
+use dynid_description::JointKind;
 use proptest::prelude::*;
 
 /// The mistakes of a text as `line:column: message`.
@@ -25,7 +26,7 @@ fn one_mistake(text: &str, place: &str, words: &[&str]) {
     }
 }
 
-fn read(text: &str) -> Robot {
+fn read(text: &str) -> RobotTable {
     parse("arm.yaml", text.as_bytes()).unwrap_or_else(|m| panic!("{}", m[0]))
 }
 
@@ -300,8 +301,8 @@ fn coupled_friction_names_joints_by_their_number() {
 #[test]
 fn limits_are_symmetric_or_low_and_high() {
     let limits = read(&arm("limits: {position: [pi, [-1, 2]], velocity: 3}")).limits;
-    assert_eq!(limits.position, [[-std::f64::consts::PI, std::f64::consts::PI], [-1.0, 2.0]]);
-    assert_eq!(limits.velocity, [[-3.0, 3.0], [-3.0, 3.0]]);
+    assert_eq!(limits.position.as_ref(), [[-std::f64::consts::PI, std::f64::consts::PI], [-1.0, 2.0]]);
+    assert_eq!(limits.velocity.as_ref(), [[-3.0, 3.0], [-3.0, 3.0]]);
     assert!(limits.torque.is_empty());
     one_mistake(&arm("limits: {position: [1]}"), "5:20", &["1 entry", "expected 2"]);
     one_mistake(&arm("limits: {position: [1, [2, 1]]}"), "5:24", &["low < high"]);

@@ -1,14 +1,15 @@
 //! The robots of `robots/` are what the references say they are.
 #![allow(clippy::unwrap_used)]
 
-use dynid_codegen::robot::{JointKind, Robot, parse};
+use dynid_codegen::robot::{RobotTable, parse};
+use dynid_description::JointKind;
 use std::path::{Path, PathBuf};
 
 fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-fn robots() -> Vec<Robot> {
+fn robots() -> Vec<RobotTable> {
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(workspace().join("robots")).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();

@@ -1,4 +1,19 @@
 //! A robot as plain numbers: what a generator of models and the programs that use the models both have to know.
+//!
+//! ```
+//! use dynid_description::{Drive, Frame, JointKind, Limits, Robot};
+//!
+//! let frame = Frame { parent: None, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 };
+//! let drive = Drive { gear: vec![100.0].into(), coupled_friction: vec![].into() };
+//! let robot = Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![frame], drive, Limits::default());
+//!
+//! let names: Vec<&str> = robot.standard.iter().map(|p| p.name.as_ref()).collect();
+//! assert_eq!(names[..3], ["XX1", "XY1", "XZ1"]);
+//! assert_eq!(names[10..], ["Ia1", "Fv1", "Fc1", "off1"]);
+//! let saved = serde_json::to_string(&robot)?;
+//! assert_eq!(serde_json::from_str::<Robot>(&saved)?, robot);
+//! # Ok::<(), serde_json::Error>(())
+//! ```
 #![deny(missing_docs)]
 
 mod base_parameter;

@@ -8,7 +8,7 @@ use dynid_runtime::model::{Model, ParameterKind, Robot};
 use dynid_runtime::recording::{self, Trajectory};
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, MotionKind, excite};
-use dynid_runtime::simulation::{LoopSettings, Plant, SimulatedEffects, SimulationError, simulate};
+use dynid_runtime::simulation::{LoopSettings, SimulationError, World, simulate};
 
 use super::execute_words;
 use crate::failure::Failure;
@@ -127,8 +127,8 @@ fn simulated(
         };
         let plan = excite(model, Some(chi), &settings, &|_| {}).map_err(failed)?;
         for motion in &plan.motions {
-            let effects = SimulatedEffects::new(model, chi, std::slice::from_ref(hidden));
-            let mut plant = Plant::with_torques(model, &effects.chi, effects.torques).map_err(failed)?;
+            let world = World::from_base(model, chi).with(std::slice::from_ref(hidden));
+            let mut plant = world.plant("").map_err(failed)?;
             let mut settings = LoopSettings::nominal(model, chi, motion, RATE, own_seed);
             settings.record_every = RECORD_EVERY;
             settings.name = format!("motion {}", k + 1);

@@ -11,11 +11,11 @@ use dynid_runtime::report::{percent, significant};
 use dynid_runtime::signal::Motion;
 
 use super::validate::{known_parameters, prediction, read_model};
-use crate::closed_loop::{ClosedLoop, closed_loop};
 use crate::failure::Failure;
 use crate::output::{Bar, print, table, write, write_json};
 use crate::pages::diagnosis::{Extras, KeptApart, confidence_words, joint_words, page};
 use crate::recorded::{Measured, RecordingOptions, left_out_words, measure, read};
+use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
@@ -136,7 +136,7 @@ fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<
     let progress = |done: f64| bar.share(done, "simulation");
     let model = measured.dynamics.model();
     Some(
-        closed_loop(model, &measured.title, &measured.trajectories, diagnosis, &progress)
+        replay(model, &measured.title, &measured.trajectories, diagnosis, &progress)
             .map_err(|error| error.to_string()),
     )
 }

@@ -10,7 +10,7 @@ use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
 use dynid_runtime::simulation::{
-    ElasticJoint, LoopSettings, Plant, Reference, Residue, SimulatedEffects, Simulation, SimulationError,
+    ElasticJoint, LoopSettings, Plant, Reference, Residue, Simulation, SimulationError, World,
     check_standard, simulate,
 };
 
@@ -94,17 +94,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Parameters::Base(chi, _) => chi.clone(),
     };
     let failed = |error: SimulationError| Failure::Input(error.to_string());
-    if let Parameters::Base(chi, terms) = &parameters {
-        for effect in SimulatedEffects::new(model, chi, terms).left_out {
-            print(&format!("{} is in the model, but is not simulated", effect.id()));
-        }
+    let terms = match &parameters {
+        Parameters::Base(_, terms) => terms.as_slice(),
+        Parameters::Standard(_) => &[],
+    };
+    let world = World::from_base(model, &chi).with(terms);
+    for effect in world.left_out() {
+        print(&format!("{} is in the model, but is not simulated", effect.id()));
     }
     let motions = planned(model, &chi, arguments)?;
     make_folder(&arguments.out)?;
     let bar = Bar::new("simulating");
     let mut runs: Vec<Simulation> = Vec::new();
     for (k, motion) in motions.iter().enumerate() {
-        let mut plant = plant(model, &parameters, arguments)?;
+        let mut plant = plant(&world, model, &parameters, arguments)?;
         let settings = loop_settings(model, &chi, motion.as_ref(), arguments, k);
         let done = |share: f64| bar.at(((k as f64 + share) * 1000.0) as usize, 1000 * motions.len());
         runs.push(simulate(&mut plant, motion.as_ref(), &settings, &mut { done }).map_err(failed)?);
@@ -168,7 +171,9 @@ fn planned(
     Ok(motions)
 }
 
+/// The robot; `world` is what base parameters and effects make of it.
 fn plant<'m>(
+    world: &'m World<'_>,
     model: &'m dyn Model,
     parameters: &Parameters,
     arguments: &Arguments,
@@ -178,10 +183,7 @@ fn plant<'m>(
     let elastic = arguments.elastic.iter().map(|text| elastic_joint(text)).collect::<Result<Vec<_>, _>>()?;
     let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
     match parameters {
-        Parameters::Base(chi, terms) if !more => {
-            let effects = SimulatedEffects::new(model, chi, terms);
-            Plant::with_torques(model, &effects.chi, effects.torques).map_err(failed)
-        }
+        Parameters::Base(..) if !more => world.plant("").map_err(failed),
         Parameters::Base(..) => Err(Failure::Input(
             "--residue, --ripple and --elastic need standard parameters: simulate a robot with nominal values".to_owned(),
         )),

@@ -1,9 +1,9 @@
 //! The report of `diagnose`: the verdict first, then for every finding where it was seen and what it changed.
 
-use crate::closed_loop::ClosedLoop;
 use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueSeries};
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
+use dynid_runtime::simulation::replay::ClosedLoop;
 
 /// A recording that was kept apart from the diagnosis, and the errors on it.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@
 
 use super::placement::{Inertia, Placement};
 use crate::exact::{Form, Number, Span};
-use crate::robot::JointKind;
+use dynid_description::JointKind;
 
 /// Length of an energy row: ten parameters, and 1 for the potential energy (0 for the kinetic).
 const ROW: usize = 11;

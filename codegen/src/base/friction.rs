@@ -1,16 +1,20 @@
 //! Which friction parameters of coupled motors are independent of those of the joints.
 
 use super::regroup::Regrouping;
-use super::{ParameterKind, StandardParameter};
 use crate::exact::{Form, Number, Span, decimal};
-use crate::robot::Robot;
+use crate::robot::RobotTable;
+use dynid_description::{ParameterKind, StandardParameter};
 
 /// Regroups the viscous and Coulomb friction of motors.
 ///
 /// Viscous friction at speed s = N dq / N_mm has the torque NT N dq, a symmetric matrix; matrices are compared entry
 /// by entry. Coulomb friction is NT sign(N dq): two of them are independent unless the motors turn with the same
 /// combination of joints, and a regular gear lets that be only a motor that turns with its own joint alone.
-pub(super) fn regroup_friction(robot: &Robot, standard: &[StandardParameter], regrouping: &mut Regrouping) {
+pub(super) fn regroup_friction(
+    robot: &RobotTable,
+    standard: &[StandardParameter],
+    regrouping: &mut Regrouping,
+) {
     let joint_frames = robot.joint_frames();
     let joints = joint_frames.len();
     let joint_of = |frame: usize| joint_frames.iter().position(|&f| f == frame);

@@ -1,37 +1,38 @@
 //! Base parameters: the closed-form regrouping rules, and what they do not reach.
-
 //!
 //! A base parameter is a combination of standard parameters that the dynamics can show; a column of the standard
 //! regressor that depends on others is left out and its parameter regrouped into those (Gautier and Khalil 1990,
 //! Khalil and Dombre 2002, for trees Khalil and Bennis 1995). The closed-form rules are what moving a body from a link
 //! to its parent gives, so they come out in symbols of the table; where gravity, parallel axes, prismatic joints or a
 //! special geometry leave more unseen, the spaces of attainable velocities and energies tell, in exact arithmetic.
+//!
+//! ```
+//! use dynid_codegen::{base::base_set, robot::parse};
+//!
+//! let yaml = b"
+//! name: planar
+//! gravity: [0, -9.81, 0]
+//! constants: {d2: 0.5}
+//! frames:
+//!   - {j: 1, sigma: 0, alpha: 0, d: 0,  theta: q1, r: 0}
+//!   - {j: 2, sigma: 0, alpha: 0, d: d2, theta: q2, r: 0}
+//! ";
+//! let set = base_set(&parse("planar.yaml", yaml).expect("a table without mistakes"));
+//! assert_eq!(set.standard.len(), 28);
+//! assert_eq!(set.base.len(), 13);
+//! assert_eq!(set.base[0].name, "ZZ1R");
+//! assert_eq!(set.base[0].relation, "ZZ1 + Ia1 + d2^2*M2");
+//! ```
 
 mod attainable;
 mod friction;
 mod placement;
 mod regroup;
 
-pub use crate::robot::{ParameterKind, StandardParameter};
-
 use crate::exact::Form;
-use crate::robot::{Robot, standard_parameters};
+use crate::robot::RobotTable;
+use dynid_description::{BaseParameter, StandardParameter};
 use regroup::Regrouping;
-
-/// A base parameter: the standard parameter whose column is kept, and what was regrouped into it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BaseParameter {
-    /// Standard name, with an R when something was regrouped into it.
-    pub name: String,
-    /// Index of the kept parameter in `BaseSet::standard`.
-    pub standard: usize,
-    /// chi = sum of coefficient * `chi_st[index]`, ascending index, the kept one with coefficient 1.
-    pub combination: Vec<(usize, f64)>,
-    /// The same in symbols of the table: `ZZ1 + Ia1 + d3^2*M3`.
-    pub relation: String,
-    /// SI unit.
-    pub unit: String,
-}
 
 /// The standard parameters of a robot in the order of chi_st, and its base parameters in the order of chi.
 ///
@@ -46,8 +47,8 @@ pub struct BaseSet {
 }
 
 /// The base parameters of a robot.
-pub fn base_set(robot: &Robot) -> BaseSet {
-    let standard = standard_parameters(&robot.frames, &robot.drive);
+pub fn base_set(robot: &RobotTable) -> BaseSet {
+    let standard = robot.standard_parameters();
     let mut regrouping = regroup::regroup(robot, &standard);
     friction::regroup_friction(robot, &standard, &mut regrouping);
     let kept = (0..standard.len()).filter(|column| !regrouping.contains_key(column));
@@ -56,7 +57,7 @@ pub fn base_set(robot: &Robot) -> BaseSet {
 }
 
 fn base_parameter(
-    robot: &Robot,
+    robot: &RobotTable,
     standard: &[StandardParameter],
     regrouping: &Regrouping,
     kept: usize,
@@ -68,7 +69,7 @@ fn base_parameter(
         })
         .collect();
     let parameter = &standard[kept];
-    let mut relation = parameter.name.clone();
+    let mut relation = parameter.name.to_string();
     let mut combination = vec![(kept, 1.0)];
     for &(column, factor) in &regrouped {
         let (sign, product) = factor.signed_product(&standard[column].name);
@@ -77,10 +78,10 @@ fn base_parameter(
     }
     combination.sort_by_key(|&(column, _)| column);
     BaseParameter {
-        name: format!("{}{}", parameter.name, if regrouped.is_empty() { "" } else { "R" }),
+        name: format!("{}{}", parameter.name, if regrouped.is_empty() { "" } else { "R" }).into(),
         standard: kept,
-        combination,
-        relation,
-        unit: parameter.kind.unit(robot.frames[parameter.frame].kind).to_owned(),
+        combination: combination.into(),
+        relation: relation.into(),
+        unit: parameter.kind.unit(robot.frames[parameter.frame].kind).into(),
     }
 }

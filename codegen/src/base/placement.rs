@@ -1,7 +1,8 @@
 //! Where a frame stands on its parent, and how the inertial parameters of a body read in the parent's frame.
 
 use crate::exact::{Angles, Form, Number, decimal};
-use crate::robot::{Expression, Frame, JointKind, Robot};
+use crate::robot::{Expression, RobotTable, TableRow};
+use dynid_description::JointKind;
 
 /// XX XY XZ YY YZ ZZ MX MY MZ M.
 pub(super) type Inertia = [Form; 10];
@@ -19,12 +20,12 @@ pub(super) struct Placement {
 }
 
 /// The angles of a table.
-pub(super) fn angles_of(robot: &Robot) -> Angles {
+pub(super) fn angles_of(robot: &RobotTable) -> Angles {
     Angles::of(robot.frames.iter().flat_map(|f| [f.gamma.value(), f.alpha.value(), f.theta.value()]))
 }
 
 impl Placement {
-    pub fn of(frame: &Frame, angles: &Angles) -> Placement {
+    pub fn of(frame: &TableRow, angles: &Angles) -> Placement {
         let (cg, sg) = cos_sin(&frame.gamma, angles);
         let (ca, sa) = cos_sin(&frame.alpha, angles);
         let (ct, st) = match frame.kind {

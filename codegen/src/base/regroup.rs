@@ -2,9 +2,9 @@
 
 use super::attainable::{Attainable, OFFSET, SPEEDS};
 use super::placement::{Inertia, Placement, angles_of};
-use super::{ParameterKind, StandardParameter};
 use crate::exact::{Form, Number, decimal};
-use crate::robot::{INERTIAL, JointKind, Robot};
+use crate::robot::RobotTable;
+use dynid_description::{JointKind, ParameterKind, StandardParameter};
 use std::collections::BTreeMap;
 
 /// Preference of a revolute link's parameters, by index in XX .. M: the last ones are regrouped first, so that in the
@@ -22,7 +22,7 @@ pub(super) type Regrouping = BTreeMap<usize, Vec<(usize, Form)>>;
 /// frame to the first: of all that depends on the joint's position or speed, independent columns are kept and taken
 /// off the others. What is left of a link is then the same wherever the joint stands, so it is a body on the parent.
 /// What is left at the base moves nothing.
-pub(super) fn regroup(robot: &Robot, standard: &[StandardParameter]) -> Regrouping {
+pub(super) fn regroup(robot: &RobotTable, standard: &[StandardParameter]) -> Regrouping {
     let joint_frames = robot.joint_frames();
     let joints = joint_frames.len();
     let joint_of = |frame: usize| joint_frames.iter().position(|&f| f == frame);
@@ -74,7 +74,7 @@ struct Candidate {
 }
 
 fn candidates(
-    robot: &Robot,
+    robot: &RobotTable,
     standard: &[StandardParameter],
     joint_of: &impl Fn(usize) -> Option<usize>,
 ) -> Vec<Candidate> {
@@ -175,7 +175,7 @@ fn keep_one(
     direction: &[Number],
 ) {
     let wanted = match pivot {
-        0..OFFSET => INERTIAL[pivot],
+        0..OFFSET => ParameterKind::INERTIAL[pivot],
         OFFSET => ParameterKind::Off,
         _ => ParameterKind::Ia,
     };

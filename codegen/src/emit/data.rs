@@ -1,26 +1,25 @@
 //! The robot as numbers, as statics of the generated module.
 
-use crate::base::BaseSet;
 use crate::mechanics::Equations;
-use crate::robot::{JointKind, Robot};
+use dynid_description::{JointKind, Limits, Nominal, Robot};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// `static ROBOT` and `static PATTERN`.
-pub fn statics(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
+pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
     let (name, description) = (&robot.name, super::header::one_line(&robot.description));
     let gravity = robot.gravity.map(float);
     let frames = frames(robot);
-    let gear = floats(robot.drive.gear.iter().flatten());
+    let gear = floats(&robot.drive.gear);
     let coupled = borrowed(robot.drive.coupled_friction.iter().map(|&m| index(m)));
-    let limits = limits(robot);
-    let standard = borrowed(set.standard.iter().map(|p| {
+    let limits = limits(&robot.limits);
+    let standard = borrowed(robot.standard.iter().map(|p| {
         let (name, kind, frame) = (&p.name, format_ident!("{}", format!("{:?}", p.kind)), index(p.frame));
         quote! {
             StandardParameter { name: Cow::Borrowed(#name), kind: ParameterKind::#kind, frame: #frame }
         }
     }));
-    let base = borrowed(set.base.iter().map(|p| {
+    let base = borrowed(robot.base.iter().map(|p| {
         let (name, relation, unit, standard) = (&p.name, &p.relation, &p.unit, index(p.standard));
         let combination = borrowed(p.combination.iter().map(|&(k, c)| {
             let (k, c) = (index(k), float(c));
@@ -36,7 +35,7 @@ pub fn statics(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStre
             }
         }
     }));
-    let nominal = nominal(robot, set);
+    let nominal = nominal(robot.nominal.as_ref());
     let pattern = pattern(equations);
     quote! {
         /// The robot.
@@ -57,7 +56,7 @@ pub fn statics(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStre
 
 fn frames(robot: &Robot) -> TokenStream {
     borrowed(robot.frames.iter().map(|frame| {
-        let parent = match robot.frames.iter().position(|f| f.j == frame.parent) {
+        let parent = match frame.parent {
             Some(k) => {
                 let k = index(k);
                 quote!(Some(#k))
@@ -70,8 +69,7 @@ fn frames(robot: &Robot) -> TokenStream {
             JointKind::Fixed => quote!(Fixed),
         };
         let [gamma, b, alpha, d, theta, r] =
-            [&frame.gamma, &frame.b, &frame.alpha, &frame.d, &frame.theta, &frame.r]
-                .map(|e| float(e.value()));
+            [frame.gamma, frame.b, frame.alpha, frame.d, frame.theta, frame.r].map(float);
         quote! {
             Frame {
                 parent: #parent, kind: JointKind::#kind,
@@ -81,14 +79,13 @@ fn frames(robot: &Robot) -> TokenStream {
     }))
 }
 
-fn limits(robot: &Robot) -> TokenStream {
+fn limits(limits: &Limits) -> TokenStream {
     let pairs = |values: &[[f64; 2]]| {
         borrowed(values.iter().map(|&[low, high]| {
             let (low, high) = (float(low), float(high));
             quote!([#low, #high])
         }))
     };
-    let limits = &robot.limits;
     let [position, velocity, acceleration, torque] =
         [&limits.position, &limits.velocity, &limits.acceleration, &limits.torque].map(|v| pairs(v));
     quote! {
@@ -96,13 +93,17 @@ fn limits(robot: &Robot) -> TokenStream {
     }
 }
 
-fn nominal(robot: &Robot, set: &BaseSet) -> TokenStream {
-    let Some(nominal) = &robot.nominal else { return quote!(None) };
-    let value = |name: &str| nominal.standard.iter().find(|(n, _)| n == name).map_or(0.0, |(_, x)| *x);
-    let standard: Vec<f64> = set.standard.iter().map(|p| value(&p.name)).collect();
-    let lists =
-        [&standard, &nominal.kp, &nominal.kd, &nominal.ki, &nominal.position_noise, &nominal.torque_noise];
-    let [standard, kp, kd, ki, position_noise, torque_noise] = lists.map(|v| floats(v.iter()));
+fn nominal(nominal: Option<&Nominal>) -> TokenStream {
+    let Some(nominal) = nominal else { return quote!(None) };
+    let lists = [
+        &nominal.standard,
+        &nominal.kp,
+        &nominal.kd,
+        &nominal.ki,
+        &nominal.position_noise,
+        &nominal.torque_noise,
+    ];
+    let [standard, kp, kd, ki, position_noise, torque_noise] = lists.map(|values| floats(values));
     quote! {
         Some(Nominal {
             standard: #standard,
@@ -133,8 +134,8 @@ fn borrowed(items: impl Iterator<Item = TokenStream>) -> TokenStream {
     quote!(Cow::Borrowed(&[#(#items),*]))
 }
 
-fn floats<'a>(values: impl Iterator<Item = &'a f64>) -> TokenStream {
-    borrowed(values.map(|&x| float(x)))
+fn floats(values: &[f64]) -> TokenStream {
+    borrowed(values.iter().map(|&x| float(x)))
 }
 
 /// A number with its sign.

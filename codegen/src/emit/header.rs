@@ -2,11 +2,12 @@
 
 use crate::base::BaseSet;
 use crate::mechanics::Equations;
-use crate::robot::{Expression, Frame, JointKind, Robot};
+use crate::robot::{Expression, RobotTable, TableRow};
+use dynid_description::JointKind;
 use std::fmt::Write;
 
 /// Table, base parameters and operation counts as module documentation.
-pub fn header(robot: &Robot, set: &BaseSet, equations: &Equations) -> String {
+pub fn header(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> String {
     let mut text = String::new();
     let mut line = |content: &str| {
         let separator = if content.is_empty() { "" } else { " " };
@@ -55,7 +56,7 @@ pub fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned()
 }
 
-fn row(frame: &Frame) -> String {
+fn row(frame: &TableRow) -> String {
     let with_variable = |constant: &Expression, moves: bool| {
         let constant = constant.to_string();
         match (moves, constant.as_str()) {

@@ -5,26 +5,28 @@ use super::program::InputNames;
 use super::{comments, data, header};
 use crate::base::BaseSet;
 use crate::mechanics::Equations;
-use crate::robot::Robot;
+use crate::numeric::numeric_robot;
+use crate::robot::RobotTable;
 use crate::symbolic::Expr;
+use dynid_description::ParameterKind;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// The source of a robot's module, formatted.
-pub fn module(robot: &Robot, set: &BaseSet, equations: &Equations) -> Result<String, syn::Error> {
+pub fn module(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> Result<String, syn::Error> {
     let tokens = tokens(robot, set, equations);
     let file = syn::parse2(tokens)?;
     let code = comments::restore(&prettyplease::unparse(&file));
     Ok(format!("{}\n{code}", header::header(robot, set, equations)))
 }
 
-fn tokens(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
+fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStream {
     let n = Literal::usize_unsuffixed(equations.idm.len());
     let nb = Literal::usize_unsuffixed(set.base.len());
     let entries = Literal::usize_unsuffixed(equations.pattern().len());
-    let statics = data::statics(robot, set, equations);
+    let statics = data::statics(&numeric_robot(robot, set), equations);
     let functions = functions(robot, set, equations);
-    let model = model();
+    let (lines, model) = (lines(), model());
     let operations = operations(equations);
     quote! {
         #![allow(non_snake_case, unused_variables, clippy::all)]
@@ -47,6 +49,7 @@ fn tokens(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
         #statics
         #operations
         #functions
+        #lines
         #model
     }
 }
@@ -72,9 +75,9 @@ fn operations(equations: &Equations) -> TokenStream {
     }
 }
 
-fn functions(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream {
+fn functions(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStream {
     let joints = robot.joint_frames().iter().map(|&f| robot.frames[f].j).collect();
-    let inputs = InputNames { joints, parameters: set.base.iter().map(|p| p.name.clone()).collect() };
+    let inputs = InputNames { joints, parameters: set.base.iter().map(|p| p.name.to_string()).collect() };
     let g = &equations.graph;
     let energy = function(
         g,
@@ -128,7 +131,7 @@ fn functions(robot: &Robot, set: &BaseSet, equations: &Equations) -> TokenStream
 }
 
 /// One value per base parameter; what is zero is written too.
-fn row(robot: &Robot, set: &BaseSet, values: &[Expr]) -> Vec<Output> {
+fn row(robot: &RobotTable, set: &BaseSet, values: &[Expr]) -> Vec<Output> {
     let output = |(index, &value): (usize, &Expr)| {
         let j = robot.frames[set.standard[set.base[index].standard].frame].j;
         Output { index, result: 0, value, group: format!("Link {j}.") }
@@ -137,12 +140,12 @@ fn row(robot: &Robot, set: &BaseSet, values: &[Expr]) -> Vec<Output> {
 }
 
 /// Link by link, and for each link from its own joint inwards, so that the wrenches of its columns stay at hand.
-fn regressor(robot: &Robot, set: &BaseSet, equations: &Equations) -> Vec<Output> {
+fn regressor(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> Vec<Output> {
     let pattern = equations.pattern();
     let joint_frames = robot.joint_frames();
     let place = |&(i, k): &(usize, usize)| {
         let standard = &set.standard[set.base[k].standard];
-        (standard.frame, standard.kind >= crate::base::ParameterKind::Ia, std::cmp::Reverse(i), k)
+        (standard.frame, standard.kind >= ParameterKind::Ia, std::cmp::Reverse(i), k)
     };
     let mut order: Vec<usize> = (0..pattern.len()).collect();
     order.sort_by_key(|&e| place(&pattern[e]));
@@ -180,7 +183,8 @@ fn forward(equations: &Equations) -> Vec<Output> {
     outputs
 }
 
-fn model() -> TokenStream {
+/// The functions for one line of samples side by side.
+fn lines() -> TokenStream {
     quote! {
         fn energy_line(states: &LineStates<N>, h: &mut [Line; NB]) {
             evaluate_line(states, h, |[q, dq, _], h| energy(q, dq, h));
@@ -193,7 +197,12 @@ fn model() -> TokenStream {
         fn idm_line(states: &LineStates<N>, entries: &mut [Line; ENTRIES]) {
             evaluate_line(states, entries, |[q, dq, ddq], entries| idm(q, dq, ddq, entries));
         }
+    }
+}
 
+/// The `Model` that calls them.
+fn model() -> TokenStream {
+    quote! {
         /// The dynamics as a [`Model`].
         #[derive(Debug, Clone, Copy)]
         pub struct Dynamics;

@@ -1,6 +1,6 @@
 //! Sines and cosines of constant angles as exact numbers.
 
-use super::Number;
+use super::number::Number;
 use num_rational::Ratio;
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! Exact numbers that remember how they are written in symbols of the table.
 
-use super::Number;
+use super::number::Number;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::fmt;

@@ -1,6 +1,6 @@
 //! Subspaces of exact vectors.
 
-use super::Number;
+use super::number::Number;
 
 /// The space that some vectors span, as a basis in fully reduced echelon form.
 #[derive(Debug, Clone, Default)]

@@ -2,8 +2,8 @@
 
 use super::motion::FrameMotion;
 use super::vector::{self, Vector};
-use crate::base::ParameterKind;
 use crate::symbolic::Graph;
+use dynid_description::ParameterKind;
 
 /// Force, and moment at the origin of the frame, in the axes of the frame.
 #[derive(Debug, Clone, Copy)]

@@ -1,27 +1,31 @@
 //! Rotor inertia, friction and offsets, with motors that several joints turn: (9), (25), (26).
 
-use super::model::ModelError;
-use crate::base::{ParameterKind, StandardParameter};
-use crate::robot::Drive;
+use super::error::ModelError;
+use crate::robot::RobotTable;
 use crate::symbolic::{Expr, Graph, Symbol};
+use dynid_description::{ParameterKind, StandardParameter};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
-/// The transmission per unit of its diagonal, and the quadratic forms of the rotor inertias.
+/// Columns of the drive parameters: the gear per unit of its diagonal, and the quadratic forms of the rotor inertias.
 #[derive(Debug, Clone)]
-pub struct Transmission {
+pub struct DriveColumns {
     /// N[m][j] / N[m][m].
     relative: Vec<Vec<f64>>,
     /// A_j: ddq -> torques per unit Ia_j.
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
-impl Transmission {
+impl DriveColumns {
     /// From the gear matrix (motor speed = gear * joint speed).
-    pub fn new(drive: &Drive) -> Result<Self, ModelError> {
-        for (m, row) in drive.gear.iter().enumerate() {
+    ///
+    /// # Errors
+    /// A motor that does not turn with its own joint.
+    pub fn new(robot: &RobotTable) -> Result<Self, ModelError> {
+        let drive = &robot.drive;
+        for (row, (m, frame)) in drive.gear.iter().zip(robot.joint_frames().into_iter().enumerate()) {
             if row[m] == 0.0 {
-                return Err(ModelError::ZeroGear { motor: m + 1 });
+                return Err(ModelError::ZeroGear { motor: robot.frames[frame].j });
             }
         }
         let relative =
@@ -32,7 +36,7 @@ impl Transmission {
             .iter()
             .map(|form| form.iter().map(|row| row.iter().map(value).collect()).collect())
             .collect();
-        Ok(Transmission { relative, inertia })
+        Ok(DriveColumns { relative, inertia })
     }
 
     /// A_j of the rotor inertia Ia_j, row-major.

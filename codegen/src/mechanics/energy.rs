@@ -3,9 +3,9 @@
 use super::geometry::{Geometry, angle_rate};
 use super::motion::FrameMotion;
 use super::vector::{self, Vector};
-use crate::base::{ParameterKind, StandardParameter};
-use crate::robot::JointKind;
 use crate::symbolic::{Expr, Graph, Symbol};
+use dynid_description::JointKind;
+use dynid_description::{ParameterKind, StandardParameter};
 
 /// What the energy of one frame needs, in its axes.
 #[derive(Debug, Clone, Copy)]

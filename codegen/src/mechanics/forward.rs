@@ -1,12 +1,13 @@
 //! Mass matrix and bias for given base parameters, for simulation: composite bodies (Walker and Orin 1982) and
 //! recursive Newton-Euler without accelerations (Luh, Walker and Paul 1980).
 
-use super::geometry::Geometry;
+use super::geometry::{Geometry, Link};
 use super::motion::{Screw, frame_motions};
 use super::vector::{self, Vector};
-use crate::base::{BaseSet, ParameterKind};
-use crate::robot::JointKind;
+use crate::base::BaseSet;
 use crate::symbolic::{Expr, Graph, Symbol};
+use dynid_description::JointKind;
+use dynid_description::ParameterKind;
 
 /// Inertial parameters of one body, symbols for the base parameters and zero for what was regrouped away.
 #[derive(Debug, Clone, Copy)]
@@ -87,7 +88,7 @@ pub fn mass_matrix(g: &mut Graph, geometry: &Geometry, set: &BaseSet, screws: &[
 }
 
 /// The parameters of a body in the frame of its parent.
-fn carried_inward(g: &mut Graph, link: &super::Link, body: &Body) -> Body {
+fn carried_inward(g: &mut Graph, link: &Link, body: &Body) -> Body {
     let rotation = &link.from_parent;
     // R J RT: first the columns of JT = J, then the rows.
     let half = body.rows().map(|row| rotation.outward(g, row));

@@ -1,8 +1,9 @@
 //! The table in a form that saves operations: exact constant rotations, and parallel axes turned together.
 
 use super::vector::{self, Vector};
-use crate::robot::{JointKind, Robot};
+use crate::robot::RobotTable;
 use crate::symbolic::{Angle, ConstantAngle, Expr, Graph, Symbol};
+use dynid_description::JointKind;
 
 /// A rotation C Rz(angle): a constant part, then a turn about the new z axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,7 +69,7 @@ impl Rotation {
 
 impl Geometry {
     /// The tree of a robot. `merge` turns consecutive parallel axes together.
-    pub fn new(g: &mut Graph, robot: &Robot, merge: bool) -> Self {
+    pub fn new(g: &mut Graph, robot: &RobotTable, merge: bool) -> Self {
         let mut links: Vec<Link> = Vec::with_capacity(robot.frames.len());
         let mut joint_frames = Vec::new();
         for frame in &robot.frames {

@@ -4,9 +4,9 @@ use super::columns::{Wrench, body_wrench};
 use super::geometry::Geometry;
 use super::motion::{FrameMotion, Screw};
 use super::vector;
-use crate::base::StandardParameter;
-use crate::robot::JointKind;
 use crate::symbolic::{Expr, Graph};
+use dynid_description::JointKind;
+use dynid_description::StandardParameter;
 
 /// How the wrench of a column reaches the axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,27 +1,16 @@
 //! All equations of one robot in one graph.
 
-use super::drive::Transmission;
+use super::drive::DriveColumns;
 use super::energy::{energy, frame_energies, power};
+use super::error::ModelError;
 use super::forward::{bias, mass_matrix};
 use super::geometry::Geometry;
 use super::inverse::{Derivation, inertial_column};
 use super::motion::{frame_motions, screws};
-use crate::base::{BaseSet, ParameterKind};
-use crate::robot::Robot;
+use crate::base::BaseSet;
+use crate::robot::RobotTable;
 use crate::symbolic::{Expr, Graph, OperationCounts, Point, Symbol};
-
-/// Why a robot has no model.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ModelError {
-    /// A motor must turn with its own joint.
-    #[error(
-        "the gear ratio of motor {motor} to its own joint is zero; give a matrix with a diagonal free of zeros"
-    )]
-    ZeroGear {
-        /// Number of the motor, from 1.
-        motor: usize,
-    },
-}
+use dynid_description::ParameterKind;
 
 /// One way to derive the equations.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +25,7 @@ pub(super) struct Variant {
 
 /// Operations of the functions of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ModelCounts {
     /// Energy row h.
     pub energy: OperationCounts,
@@ -73,7 +63,10 @@ pub struct Equations {
 
 impl Equations {
     /// Derives everything from the table; of the possible derivations the one with fewer operations is taken.
-    pub fn derive(robot: &Robot, set: &BaseSet) -> Result<Self, ModelError> {
+    ///
+    /// # Errors
+    /// A drive without a model.
+    pub fn derive(robot: &RobotTable, set: &BaseSet) -> Result<Self, ModelError> {
         let first = Variant { merge: true, compose: true, derivation: Derivation::ScrewsOutward };
         let others = [
             Variant { compose: false, ..first },
@@ -90,9 +83,9 @@ impl Equations {
         Ok(best)
     }
 
-    pub(super) fn derive_as(robot: &Robot, set: &BaseSet, variant: Variant) -> Result<Self, ModelError> {
+    pub(super) fn derive_as(robot: &RobotTable, set: &BaseSet, variant: Variant) -> Result<Self, ModelError> {
         let Variant { merge, compose, derivation } = variant;
-        let transmission = Transmission::new(&robot.drive)?;
+        let drive = DriveColumns::new(robot)?;
         let mut graph = if compose { Graph::composing_angles() } else { Graph::new() };
         let g = &mut graph;
         let geometry = Geometry::new(g, robot, merge);
@@ -107,9 +100,9 @@ impl Equations {
             let frame = parameter.frame;
             let column = match geometry.links[frame].joint {
                 Some(joint) if parameter.kind >= ParameterKind::Ia => {
-                    h.push(transmission.energy(g, parameter, joint));
-                    dh.push(transmission.power(g, parameter, joint));
-                    transmission.column(g, parameter, joint)
+                    h.push(drive.energy(g, parameter, joint));
+                    dh.push(drive.power(g, parameter, joint));
+                    drive.column(g, parameter, joint)
                 }
                 _ => {
                     h.push(energy(g, &motions[frame], &energies[frame], parameter));
@@ -127,7 +120,7 @@ impl Equations {
             if let (ParameterKind::Ia, Some(joint)) = (parameter.kind, geometry.links[parameter.frame].joint)
             {
                 let chi = g.symbol(Symbol::Parameter(k));
-                for (i, row) in transmission.rotor_form(joint).iter().enumerate() {
+                for (i, row) in drive.rotor_form(joint).iter().enumerate() {
                     for (l, &weight) in row[..=i].iter().enumerate() {
                         let rotor = g.scale(weight, chi);
                         let entry = &mut mass[i * (i + 1) / 2 + l];

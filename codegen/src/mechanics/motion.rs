@@ -1,9 +1,9 @@
 //! Motion of every frame: angular velocity and acceleration, acceleration of the origin, and the joint screws.
 
-use super::geometry::{Geometry, angle_rate};
+use super::geometry::{Geometry, Link, angle_rate};
 use super::vector::{self, Vector};
-use crate::robot::JointKind;
 use crate::symbolic::{Expr, Graph, Symbol};
+use dynid_description::JointKind;
 
 /// Motion of one frame, in its own axes.
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +64,7 @@ pub fn frame_motions(g: &mut Graph, geometry: &Geometry, accelerations: bool) ->
 }
 
 /// Angular acceleration about z within the reference frame, and acceleration along z of a prismatic joint.
-fn accelerations_of(g: &mut Graph, link: &super::Link, accelerations: bool) -> (Expr, Expr) {
+fn accelerations_of(g: &mut Graph, link: &Link, accelerations: bool) -> (Expr, Expr) {
     if !accelerations {
         return (Graph::ZERO, Graph::ZERO);
     }

@@ -4,19 +4,20 @@
 
 use super::inverse::Derivation;
 use super::model::{Equations, Variant};
-use crate::base::ParameterKind;
-use crate::robot::{Drive, Expression, Frame, JointKind, Limits, Robot};
+use crate::robot::{DriveTable, Expression, RobotTable, TableRow};
 use crate::testing::{Random, all_parameters};
+use dynid_description::ParameterKind;
+use dynid_description::{JointKind, Limits};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 type Matrix = [[f64; 4]; 4];
 type Vector = [f64; 3];
 
 /// A tree of up to six axes, with special and general angles, zero and general lengths, fixed frames in between.
-fn random_robot(random: &mut Random) -> Robot {
+fn random_robot(random: &mut Random) -> RobotTable {
     let mut pick = |count: usize| ((random.unit() + 1.0) / 2.0 * count as f64) as usize;
     let count = 1 + pick(6);
-    let mut frames: Vec<Frame> = Vec::new();
+    let mut frames: Vec<TableRow> = Vec::new();
     for j in 1..=count {
         let angle = |choice: usize| [0.0, FRAC_PI_2, -FRAC_PI_2, PI, 0.0, 0.7, -1.9][choice];
         let length = |choice: usize| [0.0, 0.3, -0.17, 0.0][choice];
@@ -24,7 +25,7 @@ fn random_robot(random: &mut Random) -> Robot {
         let kind =
             [JointKind::Revolute, JointKind::Revolute, JointKind::Prismatic, JointKind::Fixed][pick(4)];
         let branches = pick(5) == 0;
-        frames.push(Frame {
+        frames.push(TableRow {
             j,
             parent: if branches { pick(j) } else { j - 1 },
             kind: if j == 1 { JointKind::Revolute } else { kind },
@@ -38,13 +39,13 @@ fn random_robot(random: &mut Random) -> Robot {
     }
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let gravity = if pick(2) == 0 { [0.0, 0.0, -9.81] } else { [1.3, -4.0, 8.0] };
-    Robot {
+    RobotTable {
         name: "random".to_owned(),
         description: String::new(),
         gravity,
         constants: Vec::new(),
         frames,
-        drive: Drive::direct(joints),
+        drive: DriveTable::direct(joints),
         limits: Limits::default(),
         nominal: None,
     }
@@ -80,7 +81,7 @@ fn column(m: &Matrix, k: usize) -> Vector {
 }
 
 /// Energy per unit of each of the ten inertial parameters of every frame.
-fn energies(robot: &Robot, q: &[f64], dq: &[f64]) -> Vec<f64> {
+fn energies(robot: &RobotTable, q: &[f64], dq: &[f64]) -> Vec<f64> {
     let mut poses: Vec<Matrix> = Vec::new();
     // Of each frame, the joints that move it, by the frames they turn.
     let mut paths: Vec<Vec<usize>> = Vec::new();
@@ -127,7 +128,7 @@ fn energies(robot: &Robot, q: &[f64], dq: &[f64]) -> Vec<f64> {
 }
 
 /// Torques of one joint per unit parameter: d/dt (dT/d dq_i) - d(T - U)/dq_i.
-fn lagrange_row(robot: &Robot, [q, dq, ddq]: [&[f64]; 3], i: usize) -> Vec<f64> {
+fn lagrange_row(robot: &RobotTable, [q, dq, ddq]: [&[f64]; 3], i: usize) -> Vec<f64> {
     let rest = vec![0.0; q.len()];
     let momentum = |t: f64| -> Vec<f64> {
         let q: Vec<f64> = (0..q.len()).map(|k| q[k] + dq[k] * t + 0.5 * ddq[k] * t * t).collect();

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::model::Equations;
-use crate::robot::Robot;
+use crate::robot::RobotTable;
 use crate::testing::{Random, Row, all_parameters, numeric_base, planar_2r, serial, tx40};
 use std::path::Path;
 
@@ -21,7 +21,7 @@ fn numbers(value: &serde_yaml::Value) -> Vec<f64> {
     value.as_sequence().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
-fn reference_robot(name: &str, entry: &serde_yaml::Value) -> Robot {
+fn reference_robot(name: &str, entry: &serde_yaml::Value) -> RobotTable {
     let rows: Vec<Row> = entry["mdh"]
         .as_sequence()
         .unwrap()

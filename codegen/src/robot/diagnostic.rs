@@ -4,6 +4,7 @@ use std::fmt;
 
 /// One mistake, with its place. Prints as `file:line:column: message`.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// The file as the caller named it.
     pub path: String,

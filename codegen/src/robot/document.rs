@@ -1,12 +1,15 @@
 //! YAML text to a tree of values that know their line and column.
 
-use super::Diagnostic;
+use super::diagnostic::Diagnostic;
 use saphyr_parser::{Event, Marker, Parser, ScalarStyle};
 
 /// Deepest nesting that is read; a robot needs four levels.
 const MAX_DEPTH: usize = 16;
 /// Longest file that is read, bytes; a robot of 64 frames needs a few thousand.
 const MAX_BYTES: usize = 1 << 20;
+
+/// Where a file starts.
+pub(super) const START: Place = Place { line: 1, column: 1 };
 
 /// Line and column, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,40 +75,79 @@ fn indenting_tab(text: &str, line: usize) -> Option<Place> {
 
 /// Reads the one document of a YAML file.
 pub(super) fn read_document(path: &str, bytes: &[u8]) -> Result<Node, Diagnostic> {
-    let fail = |place: Place, message: String| Diagnostic {
+    tree(bytes).map_err(|Fault { place, message }| Diagnostic {
         path: path.to_owned(),
         line: place.line,
         column: place.column,
         message,
-    };
-    let start = Place { line: 1, column: 1 };
+    })
+}
+
+/// Why there is no tree, and where.
+struct Fault {
+    place: Place,
+    message: String,
+}
+
+impl Fault {
+    fn new(place: Place, message: impl Into<String>) -> Self {
+        Fault { place, message: message.into() }
+    }
+
+    fn empty() -> Self {
+        Fault::new(START, "the file is empty; expected a robot: name, frames, ...")
+    }
+}
+
+fn tree(bytes: &[u8]) -> Result<Node, Fault> {
+    let text = utf8(bytes)?;
+    let mut tree = Tree::default();
+    for event in Parser::new_from_str(text) {
+        let (event, span) = event.map_err(|e| {
+            let place = Place::of(*e.marker());
+            match indenting_tab(text, place.line) {
+                Some(tab) => Fault::new(tab, "not YAML: indented with a tab; expected spaces"),
+                None => Fault::new(place, format!("not YAML: {}", e.info())),
+            }
+        })?;
+        tree.take(event, Place::of(span.start))?;
+    }
+    match tree.root {
+        Some(Node { value: Value::Scalar { ref text, plain: true }, .. }) if text.is_empty() => {
+            Err(Fault::empty())
+        }
+        Some(node) => Ok(node),
+        None => Err(Fault::empty()),
+    }
+}
+
+/// The text of a file that is not too long, without a byte order mark.
+fn utf8(bytes: &[u8]) -> Result<&str, Fault> {
     if bytes.len() > MAX_BYTES {
-        return Err(fail(
-            start,
-            format!("the file has {} bytes; a robot has at most {MAX_BYTES}", bytes.len()),
-        ));
+        let message = format!("the file has {} bytes; a robot has at most {MAX_BYTES}", bytes.len());
+        return Err(Fault::new(START, message));
     }
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let good = String::from_utf8_lossy(&bytes[..e.valid_up_to()]).into_owned();
         let line = good.matches('\n').count() + 1;
         let column = good.chars().rev().take_while(|&c| c != '\n').count() + 1;
         let byte = bytes[e.valid_up_to()];
-        fail(Place { line, column }, format!("the file is not UTF-8 text (byte 0x{byte:02x} here)"))
+        Fault::new(Place { line, column }, format!("the file is not UTF-8 text (byte 0x{byte:02x} here)"))
     })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let empty = || fail(start, "the file is empty; expected a robot: name, frames, ...".to_owned());
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
 
-    let mut root: Option<Node> = None;
-    let mut open: Vec<(Node, Option<Node>)> = Vec::new();
-    for event in Parser::new_from_str(text) {
-        let (event, span) = event.map_err(|e| {
-            let place = Place::of(*e.marker());
-            match indenting_tab(text, place.line) {
-                Some(tab) => fail(tab, "not YAML: indented with a tab; expected spaces".to_owned()),
-                None => fail(place, format!("not YAML: {}", e.info())),
-            }
-        })?;
-        let place = Place::of(span.start);
+/// What has been read of the tree.
+#[derive(Default)]
+struct Tree {
+    root: Option<Node>,
+    /// Lists and groups that have not ended, outermost first; a group with the key that waits for its value.
+    open: Vec<(Node, Option<Node>)>,
+}
+
+impl Tree {
+    /// Takes in what the parser found next.
+    fn take(&mut self, event: Event<'_>, place: Place) -> Result<(), Fault> {
         let tagged = matches!(
             &event,
             Event::Scalar(_, _, _, Some(_))
@@ -113,45 +155,45 @@ pub(super) fn read_document(path: &str, bytes: &[u8]) -> Result<Node, Diagnostic
                 | Event::MappingStart(_, Some(_))
         );
         if tagged {
-            return Err(fail(
-                place,
-                "a tag (!...) has no meaning in a robot; expected a plain value".to_owned(),
-            ));
+            return Err(Fault::new(place, "a tag (!...) has no meaning in a robot; expected a plain value"));
         }
-        let finished = match event {
-            Event::Scalar(text, style, ..) => Node {
-                place,
-                value: Value::Scalar { text: text.into_owned(), plain: style == ScalarStyle::Plain },
-            },
-            Event::SequenceStart(..) | Event::MappingStart(..) => {
-                if open.len() == MAX_DEPTH {
-                    return Err(fail(
-                        place,
-                        format!("nested deeper than {MAX_DEPTH} levels; a robot needs four"),
-                    ));
+        match event {
+            Event::Scalar(text, style, ..) => {
+                let value = Value::Scalar { text: text.into_owned(), plain: style == ScalarStyle::Plain };
+                self.put(Node { place, value });
+            }
+            Event::SequenceStart(..) => self.open(place, Value::Sequence(Vec::new()))?,
+            Event::MappingStart(..) => self.open(place, Value::Mapping(Vec::new()))?,
+            Event::SequenceEnd | Event::MappingEnd => {
+                if let Some((node, _)) = self.open.pop() {
+                    self.put(node);
                 }
-                let is_list = matches!(event, Event::SequenceStart(..));
-                let value = if is_list { Value::Sequence(Vec::new()) } else { Value::Mapping(Vec::new()) };
-                open.push((Node { place, value }, None));
-                continue;
             }
-            Event::SequenceEnd | Event::MappingEnd => match open.pop() {
-                Some((node, _)) => node,
-                None => continue,
-            },
             Event::Alias(_) => {
-                return Err(fail(
-                    place,
-                    "an alias (*...) is not read in a robot; write the value out".to_owned(),
-                ));
+                return Err(Fault::new(place, "an alias (*...) is not read in a robot; write the value out"));
             }
-            Event::DocumentStart(_) if root.is_some() => {
-                return Err(fail(place, "a second document; expected one robot a file".to_owned()));
+            Event::DocumentStart(_) if self.root.is_some() => {
+                return Err(Fault::new(place, "a second document; expected one robot a file"));
             }
-            _ => continue,
-        };
-        match open.last_mut() {
-            None => root = Some(finished),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// A list or a group begins.
+    fn open(&mut self, place: Place, value: Value) -> Result<(), Fault> {
+        if self.open.len() == MAX_DEPTH {
+            let message = format!("nested deeper than {MAX_DEPTH} levels; a robot needs four");
+            return Err(Fault::new(place, message));
+        }
+        self.open.push((Node { place, value }, None));
+        Ok(())
+    }
+
+    /// Puts a finished value where it belongs.
+    fn put(&mut self, finished: Node) {
+        match self.open.last_mut() {
+            None => self.root = Some(finished),
             Some((Node { value: Value::Sequence(items), .. }, _)) => items.push(finished),
             Some((Node { value: Value::Mapping(pairs), .. }, key)) => match key.take() {
                 None => *key = Some(finished),
@@ -160,10 +202,5 @@ pub(super) fn read_document(path: &str, bytes: &[u8]) -> Result<Node, Diagnostic
             // Only sequences and mappings are ever opened.
             Some(_) => {}
         }
-    }
-    match root {
-        Some(Node { value: Value::Scalar { ref text, plain: true }, .. }) if text.is_empty() => Err(empty()),
-        Some(node) => Ok(node),
-        None => Err(empty()),
     }
 }

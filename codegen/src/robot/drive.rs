@@ -1,10 +1,11 @@
 //! Gear matrix and coupled motors.
 
 use super::document::{Node, Value};
+use super::drive_table::{DriveTable, exact};
 use super::reader::Reader;
-use super::{Drive, Frame, JointKind};
-use crate::exact::{decimal, determinant, inverse};
-use num_rational::BigRational;
+use super::table::TableRow;
+use crate::exact::determinant;
+use dynid_description::JointKind;
 use num_traits::Zero;
 
 const KEYS: [&str; 2] = ["gear", "coupled_friction"];
@@ -13,11 +14,11 @@ const KEYS: [&str; 2] = ["gear", "coupled_friction"];
 pub(super) fn read_drive(
     reader: &mut Reader,
     node: &Node,
-    frames: &[Frame],
+    frames: &[TableRow],
     constants: &[(String, f64)],
-) -> Drive {
+) -> DriveTable {
     let joints: Vec<usize> = frames.iter().filter(|f| f.kind != JointKind::Fixed).map(|f| f.j).collect();
-    let mut drive = Drive::direct(joints.len());
+    let mut drive = DriveTable::direct(joints.len());
     let Some(fields) = reader.fields(node, "drive", &KEYS) else { return drive };
     if let Some(gear) = fields.get("gear").and_then(|gear| read_gear(reader, gear, &joints, constants)) {
         drive.gear = gear;
@@ -78,40 +79,4 @@ fn read_gear(
         right = false;
     }
     right.then_some(gear)
-}
-
-fn exact(gear: &[Vec<f64>]) -> Vec<Vec<BigRational>> {
-    gear.iter().map(|row| row.iter().map(|&x| decimal(x)).collect()).collect()
-}
-
-impl Drive {
-    /// Every motor drives its own joint one to one.
-    pub fn direct(joints: usize) -> Drive {
-        let gear = (0..joints).map(|m| (0..joints).map(|k| f64::from(u8::from(k == m))).collect()).collect();
-        Drive { gear, coupled_friction: Vec::new() }
-    }
-
-    /// For each joint j the symmetric n x n matrix A_j of its rotor inertia: Ia_j contributes Ia_j * A_j * ddq to the
-    /// joint torques and Ia_j * dqT A_j dq / 2 to the energy.
-    ///
-    /// Rotor m has the inertia Ja_m and the speed N_m dq (row m of the gear). As in (26), Ia_j = sum_m N_mj^2 Ja_m, so
-    /// A_j = sum_m `(inverse of (N o N)^T)[m][j]` N_m^T N_m. Where N o N is singular (a differential), Ia_m stands
-    /// for N_mm^2 Ja_m alone and A_m = N_m^T N_m / N_mm^2.
-    pub fn rotor_matrices(&self) -> Vec<Vec<Vec<BigRational>>> {
-        let gear = exact(&self.gear);
-        let n = gear.len();
-        let squares: Vec<Vec<_>> =
-            (0..n).map(|j| (0..n).map(|m| &gear[m][j] * &gear[m][j]).collect()).collect();
-        let share = inverse(&squares).unwrap_or_else(|| {
-            let alone = |m: usize, j: usize| if m == j { squares[m][m].recip() } else { BigRational::zero() };
-            (0..n).map(|m| (0..n).map(|j| alone(m, j)).collect()).collect()
-        });
-        let entry = |j: usize, i: usize, k: usize| {
-            (0..n)
-                .filter(|&m| !share[m][j].is_zero())
-                .map(|m| &share[m][j] * &gear[m][i] * &gear[m][k])
-                .fold(BigRational::zero(), |sum, x| sum + x)
-        };
-        (0..n).map(|j| (0..n).map(|i| (0..n).map(|k| entry(j, i, k)).collect()).collect()).collect()
-    }
 }

@@ -1,6 +1,6 @@
 //! Reading the expressions of a table: numbers, pi, `q<j>`, constants, + - * / and parentheses.
 
-use super::Expression;
+use super::expression::Expression;
 
 /// Longest expression that is read, in operators, names and numbers; bounds every recursion over an expression.
 const MAX_TOKENS: usize = 200;

@@ -1,12 +1,15 @@
 //! A robot from its YAML.
 
-use super::document::{Node, Value, read_document};
+use super::diagnostic::Diagnostic;
+use super::document::{Node, Place, START, Value, read_document};
 use super::drive::read_drive;
+use super::drive_table::DriveTable;
 use super::formula::joint_variable;
 use super::reader::Reader;
+use super::rows::read_frames;
 use super::simulation_values::{read_limits, read_nominal};
-use super::table::read_frames;
-use super::{Diagnostic, Drive, JointKind, Limits, Robot};
+use super::table::RobotTable;
+use dynid_description::{JointKind, Limits};
 use std::collections::HashSet;
 
 const KEYS: [&str; 8] =
@@ -16,7 +19,10 @@ const KEYS: [&str; 8] =
 ///
 /// `path` is how the messages name the file. All mistakes are reported at once, in the order of the file; a file
 /// that is not UTF-8, not YAML, or empty gives just one.
-pub fn parse(path: &str, bytes: &[u8]) -> Result<Robot, Vec<Diagnostic>> {
+///
+/// # Errors
+/// Every mistake of the file.
+pub fn parse(path: &str, bytes: &[u8]) -> Result<RobotTable, Vec<Diagnostic>> {
     parse_with_doubts(path, bytes).map(|(robot, _)| robot)
 }
 
@@ -24,7 +30,7 @@ pub fn parse(path: &str, bytes: &[u8]) -> Result<Robot, Vec<Diagnostic>> {
 ///
 /// # Errors
 /// As [`parse`].
-pub fn parse_with_doubts(path: &str, bytes: &[u8]) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>> {
+pub fn parse_with_doubts(path: &str, bytes: &[u8]) -> Result<(RobotTable, Vec<Diagnostic>), Vec<Diagnostic>> {
     let root = read_document(path, bytes).map_err(|diagnostic| vec![diagnostic])?;
     let mut reader = Reader::new(path);
     let robot = read_robot(&mut reader, &root);
@@ -36,7 +42,20 @@ pub fn parse_with_doubts(path: &str, bytes: &[u8]) -> Result<(Robot, Vec<Diagnos
     }
 }
 
-fn read_robot(reader: &mut Reader, root: &Node) -> Option<Robot> {
+/// A mistake at the name of a robot.
+pub(crate) fn at_name(path: &str, bytes: &[u8], message: String) -> Diagnostic {
+    let place = match read_document(path, bytes) {
+        Ok(Node { value: Value::Mapping(pairs), .. }) => pairs
+            .iter()
+            .find(|(key, _)| matches!(&key.value, Value::Scalar { text, .. } if text == "name"))
+            .map(|(key, _)| key.place),
+        _ => None,
+    };
+    let Place { line, column } = place.unwrap_or(START);
+    Diagnostic { path: path.to_owned(), line, column, message }
+}
+
+fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
     let fields = reader.fields(root, "a robot", &KEYS)?;
     let name = reader.required(&fields, "name").and_then(|node| {
         let name = reader.text(node, "the robot's name")?;
@@ -58,7 +77,7 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<Robot> {
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let drive = match fields.get("drive") {
         Some(node) => read_drive(reader, node, &frames, &constants),
-        None => Drive::direct(joints),
+        None => DriveTable::direct(joints),
     };
     let limits = match fields.get("limits") {
         Some(node) => read_limits(reader, node, joints, &constants),
@@ -66,7 +85,16 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<Robot> {
     };
     let nominal =
         fields.get("nominal").and_then(|node| read_nominal(reader, node, &frames, &drive, &constants));
-    Some(Robot { name: name?, description, gravity: gravity?, constants, frames, drive, limits, nominal })
+    Some(RobotTable {
+        name: name?,
+        description,
+        gravity: gravity?,
+        constants,
+        frames,
+        drive,
+        limits,
+        nominal,
+    })
 }
 
 fn read_constants(reader: &mut Reader, node: &Node) -> Vec<(String, f64)> {

@@ -1,9 +1,9 @@
 //! Reading values of a YAML tree, with every mistake noted at its place.
 
-use super::diagnostic::nearest;
+use super::diagnostic::{Diagnostic, nearest};
 use super::document::{Node, Place, Value, shortened};
+use super::expression::Expression;
 use super::formula::{Formula, parse_formula};
-use super::{Diagnostic, Expression};
 
 /// Collects the mistakes of one file.
 pub(super) struct Reader {

@@ -2,8 +2,10 @@
 
 use super::diagnostic::nearest;
 use super::document::{Node, Value, shortened};
+use super::drive_table::DriveTable;
 use super::reader::Reader;
-use super::{Drive, Frame, JointKind, Limits, Nominal, standard_parameters};
+use super::table::{NominalValues, TableRow, standard_parameters};
+use dynid_description::{JointKind, Limits};
 
 /// Reads `limits`: per joint a number x, which stands for [-x, x], or [low, high]; one number stands for every joint.
 pub(super) fn read_limits(
@@ -32,10 +34,10 @@ pub(super) fn read_limits(
         reader.length(node, &format!("limits of {key}"), items.len(), joints);
         ranges
     };
-    limits.position = ranges("position");
-    limits.velocity = ranges("velocity");
-    limits.acceleration = ranges("acceleration");
-    limits.torque = ranges("torque");
+    limits.position = ranges("position").into();
+    limits.velocity = ranges("velocity").into();
+    limits.acceleration = ranges("acceleration").into();
+    limits.torque = ranges("torque").into();
     limits
 }
 
@@ -68,13 +70,13 @@ fn range(reader: &mut Reader, node: &Node, key: &str, constants: &[(String, f64)
 pub(super) fn read_nominal(
     reader: &mut Reader,
     node: &Node,
-    frames: &[Frame],
-    drive: &Drive,
+    frames: &[TableRow],
+    drive: &DriveTable,
     constants: &[(String, f64)],
-) -> Option<Nominal> {
+) -> Option<NominalValues> {
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let fields = reader.fields(node, "nominal", &["parameters", "controller", "noise"])?;
-    let mut nominal = Nominal {
+    let mut nominal = NominalValues {
         standard: Vec::new(),
         kp: Vec::new(),
         kd: Vec::new(),
@@ -127,11 +129,12 @@ fn not_negative(
 fn read_parameters(
     reader: &mut Reader,
     node: &Node,
-    frames: &[Frame],
-    drive: &Drive,
+    frames: &[TableRow],
+    drive: &DriveTable,
     constants: &[(String, f64)],
 ) -> Vec<(String, f64)> {
-    let names: Vec<String> = standard_parameters(frames, drive).into_iter().map(|p| p.name).collect();
+    let standard = standard_parameters(frames, drive);
+    let names: Vec<&str> = standard.iter().map(|p| p.name.as_ref()).collect();
     let mut values = Vec::new();
     let Value::Mapping(pairs) = &node.value else {
         let found = node.describe();
@@ -143,8 +146,8 @@ fn read_parameters(
     };
     for (key, value) in pairs {
         let Some(name) = reader.text(key, "the name of a standard parameter") else { continue };
-        if !names.iter().any(|known| known == name) {
-            let hint = match nearest(name, names.iter().map(String::as_str)) {
+        if !names.contains(&name) {
+            let hint = match nearest(name, names.iter().copied()) {
                 Some(close) => format!("did you mean {close}?"),
                 None => format!("expected names such as {} to {}", names[0], names[names.len() - 1]),
             };

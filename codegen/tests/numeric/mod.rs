@@ -1,6 +1,7 @@
 //! Standard inverse dynamic regressor by Newton and Euler in plain matrices, written for the tests alone.
 
-use dynid_codegen::robot::{JointKind, Robot};
+use dynid_codegen::robot::RobotTable;
+use dynid_description::JointKind;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
 /// A frame in motion, everything in the axes of frame 0. `jv`, `jw`: velocities per unit joint speed.
@@ -15,7 +16,7 @@ struct Body {
     jw: Vec<Vector3<f64>>,
 }
 
-fn motions(robot: &Robot, q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<Body> {
+fn motions(robot: &RobotTable, q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<Body> {
     let n = q.len();
     let zero = Vector3::zeros();
     let mut bodies = vec![Body {
@@ -65,7 +66,7 @@ fn motions(robot: &Robot, q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<Body> {
 }
 
 /// n x n_st: the torque of each standard parameter alone, in the order of chi_st.
-pub fn regressor(robot: &Robot, q: &[f64], dq: &[f64], ddq: &[f64]) -> DMatrix<f64> {
+pub fn regressor(robot: &RobotTable, q: &[f64], dq: &[f64], ddq: &[f64]) -> DMatrix<f64> {
     let n = q.len();
     let bodies = motions(robot, q, dq, ddq);
     let mut columns: Vec<DVector<f64>> = Vec::new();
@@ -114,13 +115,13 @@ fn link_torque(body: &Body, k: usize) -> DVector<f64> {
 }
 
 /// Rows N_m / N_mm of the gear.
-fn motor_rows(robot: &Robot) -> Vec<DVector<f64>> {
+fn motor_rows(robot: &RobotTable) -> Vec<DVector<f64>> {
     let rows = robot.drive.gear.iter().enumerate();
     rows.map(|(m, row)| DVector::from_column_slice(row) / row[m]).collect()
 }
 
 /// A_j with Ia_j A_j ddq the torque of a rotor inertia.
-fn rotor_matrices(robot: &Robot) -> Vec<DMatrix<f64>> {
+fn rotor_matrices(robot: &RobotTable) -> Vec<DMatrix<f64>> {
     let gear = &robot.drive.gear;
     let n = gear.len();
     let squares = DMatrix::from_fn(n, n, |j, m| gear[m][j] * gear[m][j]);

@@ -16,11 +16,14 @@
 //!
 //! ```
 //! use dynid_runtime::diagnosis::{Settings, Silent, StopReason, diagnose};
-//! use dynid_runtime::model::{Drive, Frame, JointKind, Limits, Model, RecursiveModel, Robot, StateSlices, torques};
+//! use dynid_runtime::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot, StateSlices, torques};
 //! use dynid_runtime::recording::Trajectory;
 //!
 //! // Its table and its base parameters: of the standard parameters those that a planar arm's torques depend on.
-//! let row = |parent, d| Frame { parent, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d, theta: 0.0, r: 0.0 };
+//! let row = |parent, d| {
+//!     let kind = JointKind::Revolute;
+//!     Frame { parent, kind, gamma: 0.0, b: 0.0, alpha: 0.0, d, theta: 0.0, r: 0.0 }
+//! };
 //! let frames = vec![row(None, 0.0), row(Some(0), 0.5)];
 //! let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
 //! let mut robot = Robot::with_standard_as_base("pendulum", [0.0, -9.81, 0.0], frames, drive, Limits::default());
@@ -28,17 +31,24 @@
 //!     ("ZZ1", 0.9), ("MX1", 2.0), ("MY1", 0.1), ("Fv1", 1.0), ("Fc1", 0.8), ("off1", 0.1),
 //!     ("ZZ2", 0.3), ("MX2", 0.8), ("MY2", 0.05), ("Fv2", 0.6), ("Fc2", 0.5), ("off2", -0.2),
 //! ];
-//! robot.base = robot.base.iter().filter(|b| known.iter().any(|k| k.0 == b.name)).cloned().collect();
-//! let chi: Vec<f64> = robot.base.iter().filter_map(|b| known.iter().find(|k| k.0 == b.name)).map(|k| k.1).collect();
+//! let value = |name: &str| known.iter().find(|k| k.0 == name).map(|k| k.1);
+//! robot.base = robot.base.iter().filter(|b| value(&b.name).is_some()).cloned().collect();
+//! let chi: Vec<f64> = robot.base.iter().filter_map(|b| value(&b.name)).collect();
 //! let model = RecursiveModel::new(robot)?;
 //!
 //! // Three motions of ten seconds, their torques with the spring of 4 N.m/rad and a little noise.
 //! let mut noise = 1_u32;
 //! let mut recorded = |name: &str, phase: f64| {
-//!     let time: Vec<f64> = (0..2000).map(|t| t as f64 / 200.0).collect();
+//!     let time: Vec<f64> = (0..2000).map(|t| f64::from(t) / 200.0).collect();
 //!     let series = |j: f64, order: i32| -> Vec<f64> {
-//!         let wave = |t: f64, w: f64, p: f64| w.powi(order) * (w * t + p + order as f64 * 1.570_796_326_8).sin();
-//!         time.iter().map(|&t| 0.9 * wave(t, 1.3 + 0.4 * j, phase * (1.0 + j)) + 0.4 * wave(t, 3.1 - 0.5 * j, 2.0 * phase)).collect()
+//!         let wave = |t: f64, w: f64, p: f64| {
+//!             let quarters = f64::from(order) * std::f64::consts::FRAC_PI_2;
+//!             w.powi(order) * (w * t + p + quarters).sin()
+//!         };
+//!         let at = |t: f64| {
+//!             0.9 * wave(t, 1.3 + 0.4 * j, phase * (1.0 + j)) + 0.4 * wave(t, 3.1 - 0.5 * j, 2.0 * phase)
+//!         };
+//!         time.iter().map(|&t| at(t)).collect()
 //!     };
 //!     let [q, dq, ddq] = [0, 1, 2].map(|order| vec![series(0.0, order), series(1.0, order)]);
 //!     let mut torque = torques(&model, &chi, StateSlices::new(&q, &dq, &ddq).states());
@@ -68,6 +78,7 @@
 
 mod candidates;
 mod contact;
+mod error;
 mod explanation;
 mod judging;
 mod outcome;
@@ -78,6 +89,7 @@ mod rules;
 mod search;
 mod settings;
 
+pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
     OrderSpectrum, ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, StopReason,
@@ -85,8 +97,7 @@ pub use outcome::{
 };
 pub use predict::{predict_errors, term_torques};
 pub use preparation::slowest_speeds;
-pub use rows::fit::SingularDesign;
-pub use settings::{DiagnosisError, Progress, Settings, Silent};
+pub use settings::{Progress, Settings, Silent};
 
 use crate::effects::EffectKind;
 use crate::model::Model;

@@ -1,6 +1,6 @@
 //! What a diagnosis found, as data: the JSON of the contract and what a report draws.
 
-use crate::effects::{EffectTerm, Parameter, Wrench};
+use crate::effects::{ContactForce, EffectTerm, Parameter};
 use serde::{Deserialize, Serialize};
 
 /// Relative errors |Y - W chi| / |Y|.
@@ -10,6 +10,17 @@ pub struct Errors {
     pub relative_error: f64,
     /// Joint by joint.
     pub per_joint: Vec<f64>,
+}
+
+impl Errors {
+    /// From the squares of residual and torque, per joint.
+    pub(super) fn of_squares(left: &[f64], whole: &[f64]) -> Self {
+        let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
+        Self {
+            relative_error: ratio(left.iter().sum(), whole.iter().sum()),
+            per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
+        }
+    }
 }
 
 /// Relative errors on motion that was held out.
@@ -149,7 +160,7 @@ pub struct Finding {
     pub term: EffectTerm,
     /// Where it is a contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub contacts: Vec<Wrench>,
+    pub contacts: Vec<ContactForce>,
 }
 
 impl Finding {

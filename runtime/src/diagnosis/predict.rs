@@ -1,13 +1,13 @@
 //! Accepted effects as part of a model: their torques on any motion, and the errors of a model with them.
 
-use super::DiagnosisError;
+use super::error::DiagnosisError;
 use super::outcome::{Errors, Estimated};
 use super::rows::context::{Context, scales};
 use super::rows::design::Design;
 use super::rows::selection::RowSelection;
 use super::rows::signals::{ModelTorques, Signals, directions};
 use super::settings::Settings;
-use crate::effects::{EffectTerm, Form, Place, Transmission};
+use crate::effects::{EffectTerm, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
 use crate::signal::Motion;
@@ -47,12 +47,7 @@ fn torques_on(
             context.scales[j] = scale.into();
         }
         let mut amplitude = term.amplitude.clone();
-        if let (Form::Compliance(_), Place::Joint(j), &[k, d, rotor, play]) =
-            (term.effect.form(), term.place, term.amplitude.as_slice())
-        {
-            let prismatic = context.scales[j].prismatic;
-            let known =
-                Transmission { stiffness: k, damping: d, rotor, play, frequency: term.shape[0], prismatic };
+        if let Some((j, known)) = term.transmission() {
             context.transmissions = vec![(j, known)];
             amplitude = vec![1.0];
         }
@@ -108,14 +103,5 @@ pub fn predict_errors(
             }
         }
     }
-    Ok(errors(&left, &whole))
-}
-
-/// Relative errors from squares per joint.
-pub(super) fn errors(left: &[f64], whole: &[f64]) -> Errors {
-    let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
-    Errors {
-        relative_error: ratio(left.iter().sum(), whole.iter().sum()),
-        per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
-    }
+    Ok(Errors::of_squares(&left, &whole))
 }

@@ -1,6 +1,7 @@
 //! What a diagnosis starts from: band, windows, filtered motions, speeds of standstill, the skew of the torques; and
 //! the recordings that it refuses.
 
+use super::error::DiagnosisError;
 use super::explanation::delay::skew_of;
 use super::outcome::Sampling;
 use super::rows::context::{Context, scales, top_speeds};
@@ -10,7 +11,7 @@ use super::rows::motion::{Moving, left_over};
 use super::rows::selection::RowSelection;
 use super::rows::signals::{Signals, directions};
 use super::rules;
-use super::settings::{DiagnosisError, Settings, fitted_to, given_speeds};
+use super::settings::{Settings, fitted_to, given_speeds};
 use crate::model::{JointIndex, Model};
 use crate::recording::Trajectory;
 

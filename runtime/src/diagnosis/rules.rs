@@ -63,6 +63,13 @@ pub(super) const PARAMETERS_PER_UNDETERMINED: usize = 4;
 /// The recording is refused where the standard model explains less of the torque's squares, per cent. Judgement: far
 /// below any right model, above what wrong units or a wrong joint order leave; not measured.
 pub(super) const LEAST_EXPLAINED_BY_MODEL: f64 = 40.0;
+/// Part of the samples of a joint that its top speed is not below: single spikes do not set it. Statistics.
+pub(super) const TOP_SPEED_PERCENT: usize = 98;
+/// Cut-off of the motion that drives compliant links, Hz: below the ringing itself. Mechanics; joint_elasticity and
+/// backlash in `docs/concealment.md`.
+pub(super) const DRIVING_BAND: f64 = 15.0;
+/// Least inertia behind a transmission, as a part of that with the rotor. Mechanics: no division by zero.
+pub(super) const LEAST_LINK_INERTIA: f64 = 1e-3;
 /// Rounds in which a skew is taken out: the second takes what linearisation left of the first. Mechanics.
 pub(super) const DELAY_ROUNDS: usize = 2;
 /// A skew of fewer samples is left to its column. Mechanics: within one sample, linear interpolation is exact enough.
@@ -169,6 +176,12 @@ pub(super) const REFITS: usize = 2;
 /// The same where a term changes the number that its own column is the derivative by. Judgement; not measured.
 pub(super) const REFITS_OF_BENT_COLUMNS: usize = 4;
 
+/// Shapes that a refinement tries at most. Times, and how sharp a resonance is; joint_elasticity in
+/// `docs/concealment.md`.
+pub(super) const MOST_EVALUATIONS: usize = 80;
+/// A refinement ends when its steps are this part of the first ones. Judgement: finer than shapes are known.
+pub(super) const SMALLEST_STEP: f64 = 0.02;
+
 // ---- Order spectra ------------------------------------------------------------------------------------------------
 
 /// Highest order per motor turn: beyond the sixth harmonic of a motor's torque. Mechanics; torque_ripple.
@@ -269,6 +282,9 @@ pub(super) const SCAN_STRETCH: f64 = 2.0;
 pub(super) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording. Statistics: size in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 0.01;
+/// Rows in which a joint is slower than this part of its top speed are not scanned: Stribeck's friction and presliding
+/// are there, and come back at every reversal. Mechanics; false contacts in `docs/concealment.md`.
+pub(super) const SCAN_SLOWEST: f64 = 0.2;
 /// Rows that a joint needs to be scanned. Statistics: for the autoregression of its residual.
 pub(super) const SCAN_LEAST_ROWS: usize = 150;
 /// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles.
@@ -290,6 +306,9 @@ pub(super) const SCAN_MOST_ORDER: usize = 12;
 
 /// Orders per motor turn that cogging, current offsets, gear teeth and wave generators have. Mechanics.
 pub(super) const LINE_MULTIPLES: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0];
+/// Part of the sampling rate up to which recorded torques are taken for what they say. Mechanics: four fifths of what
+/// can be sampled at all.
+pub(super) const RECORDED_BAND: f64 = 0.4;
 /// Orders of a spectrum that are looked at besides.
 pub(super) const LINE_PICKED: usize = 4;
 /// How far a known order must stand above the median of the orders around it. Statistics: an amplitude of noise does
@@ -315,3 +334,20 @@ pub(super) const LINE_COVERED: usize = 3;
 
 /// A parameter is told to have shifted beyond this many standard deviations of the difference. Statistics.
 pub(super) const SHIFTED: f64 = 3.0;
+/// Step of a shape, relative to it, over which the derivative of its columns is taken. Mechanics: small against its
+/// standard deviation, large against rounding.
+pub(super) const SHAPE_STEP: f64 = 0.02;
+/// The same for the derivative of a quantity.
+pub(super) const QUANTITY_STEP: f64 = 1e-4;
+/// Largest standard deviation of a shape that is told, relative to the shape. Judgement: beyond it nothing is known.
+pub(super) const LARGEST_SHAPE_SIGMA: f64 = 10.0;
+/// Bins of a curve. Words and plots only.
+pub(super) const BINS: usize = 40;
+/// Part of a residual that a variable must order to be named. Words only.
+pub(super) const ORDERED_BY_VARIABLE: f64 = 0.1;
+/// Part of the mismatch of all joints below which a joint has none. Words only.
+pub(super) const LEAST_MISMATCH: f64 = 0.02;
+/// Fewest second differences that a noise floor is estimated from. Statistics: known to a quarter.
+pub(super) const LEAST_DIFFERENCES: f64 = 10.0;
+/// Part of what remains that must be more than noise to be told. Words only.
+pub(super) const UNEXPLAINED: f64 = 0.3;

@@ -2,7 +2,9 @@
 //!
 //! The encoder sees the motor. With x = q_motor - q_link the link obeys M ddx = load - f(x, dx), where M is the
 //! inertia of the links behind the joint, `load` the torque that they would ask for if they followed the motor
-//! rigidly, and f the torque of spring and damper. The motor then feels M ddx less than the rigid model says.
+//! rigidly, and f the torque of spring and damper. The motor is then loaded by M ddx less than the rigid model says.
+
+use super::shape::{ShapeSearch, Step};
 
 /// A compliant transmission of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +42,19 @@ impl Transmission {
     }
 }
 
+impl Transmission {
+    /// From what a model keeps of it: stiffness, damping, rotor, play; `None` where that is not what it has.
+    pub fn from_amplitude(amplitude: &[f64], frequency: f64, prismatic: bool) -> Option<Self> {
+        let &[stiffness, damping, rotor, play] = amplitude else { return None };
+        Some(Self { stiffness, damping, rotor, play, frequency, prismatic })
+    }
+
+    /// What a model keeps of it: stiffness, damping, rotor, play.
+    pub fn amplitude(&self) -> [f64; 4] {
+        [self.stiffness, self.damping, self.rotor, self.play]
+    }
+}
+
 /// An effect of this form.
 pub trait Compliance: Sync {
     /// Shapes to try: natural frequency Hz, damping ratio, rotor fraction, play as a fraction of the travel.
@@ -49,10 +64,24 @@ pub trait Compliance: Sync {
     fn describe(&self, transmission: &Transmission) -> Vec<(&'static str, f64, &'static str)>;
 }
 
+/// How a shape is searched. Frequency and rotor trade against each other along the ridge of one stiffness, so they are
+/// moved together, too; the rotor is a part of the inertia that the motor sees.
+pub(in crate::effects) fn shape_search() -> ShapeSearch {
+    let any = [f64::NEG_INFINITY, f64::INFINITY];
+    ShapeSearch {
+        steps: vec![Step::Times(1.12), Step::Times(1.9), Step::Add(0.15), Step::Times(1.4)],
+        bounds: vec![any, any, [0.0, LARGEST_ROTOR], any],
+        together: vec![vec![(0, 0.4), (2, 1.0)], vec![(0, -0.4), (2, -1.0)]],
+    }
+}
+
+/// Largest rotor that is tried, as a fraction of the least inertia.
+const LARGEST_ROTOR: f64 = 0.95;
+
 /// Steps of the integration between two samples: at least this many a second.
 const STEPS_PER_SECOND: f64 = 2000.0;
 
-/// -M ddx for every sample: what the motor feels beyond the rigid model.
+/// -M ddx for every sample: the torque on the motor beyond the rigid model.
 ///
 /// `load[t]` and `inertia[t]` belong to the links alone (no rotor). Semi-implicit (symplectic) steps, which neither add
 /// nor take energy; where the step is too long for the spring, implicit ones, which are stable for every stiffness.

@@ -1,23 +1,11 @@
-//! An outside force in time windows.
+//! Outside forces on links.
 
-use super::Words;
 use crate::model::{Link, Robot, standard_idm};
 use serde::{Deserialize, Serialize};
 
-/// What a person is told.
-pub(super) const WORDS: Words = Words {
-    id: "contact",
-    title: "Contact",
-    what: "Something pushed the robot for a while.",
-    looks_like: "several joints jump together, in the ratio that one force on one link has, and come back",
-    revealed_by: "time",
-    experiment: "move the same path without the obstacle",
-    source: "De Luca and Mattone 2005; Haddadin, De Luca and Albu-Schaeffer 2017",
-};
-
 /// A force that acted on a link while a window of time lasted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Wrench {
+pub struct ContactForce {
     /// Motion it happened in.
     pub motion: String,
     /// First and last instant, s.

@@ -1,6 +1,7 @@
 //! Laws of a single joint: what they are evaluated at, and the trait that they share.
 
-use super::Parameter;
+use super::quantity::Parameter;
+use super::shape::Step;
 
 /// The scales of a joint in a recording: shapes are searched relative to them, so that no number of a law depends
 /// on a robot's size.
@@ -56,6 +57,18 @@ pub struct At {
     pub friction: f64,
 }
 
+/// How a law acts where its joint is at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AtRest {
+    /// As at any speed: it passes through zero speed without a jump, or does not depend on it.
+    Smooth,
+    /// It has the sign of the velocity, and holds the joint like dry friction.
+    Dry,
+    /// Its memory acts like a spring, and takes the place of a part of the joint's dry friction: what has the sign of
+    /// the velocity in it holds the joint less.
+    BuildsUp,
+}
+
 /// A torque law of one joint, linear in its amplitudes for a given shape.
 pub trait JointLaw: Sync {
     /// Amplitudes, that is columns.
@@ -64,15 +77,17 @@ pub trait JointLaw: Sync {
     /// Shapes to try, coarse: the search refines them. One empty shape where the law has none.
     fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>>;
 
-    /// Which shape parameters are continuous and may be refined, as a factor between neighbours of the grid.
-    fn refinement(&self) -> &'static [f64] {
-        &[]
+    /// Shapes to try besides where the residual of the joint has waves of these orders.
+    fn shapes_of_orders(&self, orders: &[f64]) -> Vec<Vec<f64>> {
+        let _ = orders;
+        Vec::new()
     }
 
+    /// How each number of the shape is varied between the values of the grid; empty where it is not.
+    fn steps(&self, scale: &Scale) -> Vec<Step>;
+
     /// Whether only a positive amplitude is this effect: a negative one is something else.
-    fn only_positive(&self) -> bool {
-        false
-    }
+    fn only_positive(&self) -> bool;
 
     /// Values of the columns at an instant.
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, memory: f64, out: &mut [f64]);
@@ -82,17 +97,15 @@ pub trait JointLaw: Sync {
         memory
     }
 
-    /// Whether the law has the sign of the velocity, so that it also holds the joint at rest.
-    fn is_dry(&self, _shape: &[f64], _amplitude: &[f64]) -> bool {
-        false
-    }
+    /// How it acts in a simulated robot whose joint comes to rest.
+    fn at_rest(&self, shape: &[f64], amplitude: &[f64]) -> AtRest;
 
     /// Amplitudes and shape as the quantities a person knows: value, standard deviation (0 where unknown), unit.
     fn parameters(&self, scale: &Scale, shape: &[f64], amplitude: &[f64], sigma: &[f64]) -> Vec<Parameter>;
 }
 
 /// `count` values from `low` to `high`, each a constant factor from the next.
-pub(super) fn geometric(low: f64, high: f64, count: usize) -> Vec<f64> {
+pub(in crate::effects) fn geometric(low: f64, high: f64, count: usize) -> Vec<f64> {
     let step = (high / low).ln() / (count.max(2) - 1) as f64;
     (0..count).map(|k| low * (step * k as f64).exp()).collect()
 }

@@ -1,45 +1,50 @@
-//! The catalogue of physics that the standard model leaves out: one file per effect.
+//! The catalogue of physics that the standard model leaves out.
 //!
-//! An effect is written once. Laws of a single joint are a [`JointLaw`]: evaluated sample by sample they are columns
-//! of an identification, evaluated inside an integrator they are a torque of a simulation. Errors of the model's own
-//! numbers are a [`Sensitivity`]: their columns are exact derivatives of the model. Compliant transmissions are a
-//! [`Compliance`]: their torque is the response of the link that is driven through them.
+//! An effect is one file in `catalogue/` and one line in `catalogue.rs`. The file implements [`Effect`], which is
+//! everything that is known of it apart from its torque, and one of the forms in which a torque is made ([`Form`]), so
+//! that it is written once for identification, simulation and diagnosis. Laws of a single joint are a [`JointLaw`]:
+//! evaluated sample by sample they are columns of an identification, evaluated inside an integrator they are a torque
+//! of a simulation. Errors of the model's own numbers are a [`Sensitivity`]: their columns are exact derivatives of the
+//! model. Compliant transmissions are a [`Compliance`]: their torque is the response of the link that is driven through
+//! them. Bodies on links are a [`BodyOnLink`].
+//!
+//! ```
+//! use dynid_runtime::effects::EffectKind;
+//!
+//! let stribeck = EffectKind::from_id("stribeck").expect("the catalogue has it");
+//! assert_eq!(stribeck.words().title, "Stribeck friction");
+//! assert!(!stribeck.needs_baseline());
+//! ```
 
-mod added_mass;
-mod asymmetric_friction;
-mod backlash;
-mod base_tilt;
+mod catalogue;
 mod compliance;
 mod contact;
-mod coupled_transmission;
-mod friction_drift;
-mod friction_level_change;
-mod geometry_error;
-mod joint_elasticity;
+mod coupled;
+mod effect;
+mod form;
 mod joint_law;
-mod kind;
-mod load_dependent_friction;
-mod nonlinear_viscous;
-mod payload;
-mod position_dependent_friction;
-mod position_offset;
-mod presliding_hysteresis;
+mod place;
+mod quantity;
 mod rigid_body;
 mod sensitivity;
-mod spring;
-mod stribeck;
+mod shape;
 mod term;
-mod time_delay;
-mod torque_constant_error;
-mod torque_ripple;
-mod torque_saturation;
-mod wrong_sample_rate;
 
+pub use catalogue::EffectKind;
 pub use compliance::{Compliance, Transmission, deflection};
-pub use contact::{JointTorque, Wrench, unit_force_torques};
-pub use coupled_transmission::CoupledTransmission;
-pub use joint_law::{At, JointLaw, Scale};
-pub use kind::{EffectKind, Form, Words};
-pub use rigid_body::{BodyOnLink, Lump, body_columns};
+pub use contact::{ContactForce, JointTorque, unit_force_torques};
+pub use coupled::CoupledRotor;
+pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, Words};
+pub use form::Form;
+pub use joint_law::{At, AtRest, JointLaw, Scale};
+pub use place::Place;
+pub use quantity::{Parameter, Quantities};
+pub use rigid_body::{BodyEstimate, BodyOnLink, body_columns};
 pub use sensitivity::{Direction, Seeds, Sensitivity, Variant, derivable, derivative};
-pub use term::{EffectTerm, Parameter, Place, TermScale};
+pub use shape::{Move, ShapeSearch, Step};
+pub use term::{EffectTerm, TermScale};
+
+#[cfg(test)]
+mod catalogue_tests;
+#[cfg(test)]
+mod sensitivity_tests;

@@ -1,5 +1,6 @@
 //! A rigid body fixed to a link: its ten columns, and what they say about mass, centre and inertia.
 
+use super::quantity::Parameter;
 use crate::model::{Link, Robot, standard_idm};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
@@ -7,11 +8,14 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 pub trait BodyOnLink: Sync {
     /// Frames (0-based) of the links that may carry it.
     fn links(&self, robot: &Robot) -> Vec<usize>;
+
+    /// Joint (0-based) that it is named on when it is on a link; `None` for the whole robot.
+    fn named_joint(&self, robot: &Robot, frame: usize) -> Option<usize>;
 }
 
 /// A rigid body from the ten parameters that were added to a link.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Lump {
+pub struct BodyEstimate {
     /// kg.
     pub mass: f64,
     /// Centre of mass in the frame of the link, m.
@@ -23,7 +27,7 @@ pub struct Lump {
     pub consistent: bool,
 }
 
-impl Lump {
+impl BodyEstimate {
     /// From XX XY XZ YY YZ ZZ MX MY MZ M at the origin of the frame.
     ///
     /// Ten least-squares numbers need not be a body: `slack` (kg.m²) is by how much the triangle inequality may fail
@@ -38,6 +42,24 @@ impl Lump {
         e.as_mut_slice().sort_by(f64::total_cmp);
         let consistent = mass > 0.0 && e[0] > -slack && e[0] + e[1] > e[2] - slack;
         Self { mass, centre: [c[0], c[1], c[2]], principal: [e[0], e[1], e[2]], consistent }
+    }
+}
+
+impl BodyEstimate {
+    /// The quantities a person knows; `sigma` are standard deviations of the ten parameters.
+    pub fn parameters(&self, sigma: &[f64]) -> Vec<Parameter> {
+        let s = |k: usize| sigma.get(k).copied().unwrap_or(0.0);
+        let m = self.mass.abs().max(1e-9);
+        vec![
+            Parameter::new("mass", self.mass, s(9), "kg"),
+            Parameter::new("x", self.centre[0], s(6) / m, "m"),
+            Parameter::new("y", self.centre[1], s(7) / m, "m"),
+            Parameter::new("z", self.centre[2], s(8) / m, "m"),
+            Parameter::new("I1", self.principal[0], s(0), "kg.m2"),
+            Parameter::new("I2", self.principal[1], s(3), "kg.m2"),
+            Parameter::new("I3", self.principal[2], s(5), "kg.m2"),
+            Parameter::new("physically_consistent", f64::from(self.consistent), 0.0, "1"),
+        ]
     }
 }
 
@@ -79,12 +101,12 @@ mod tests {
             p[6 + k] = m * c[k];
         }
         p[9] = m;
-        let lump = Lump::from_parameters(&p, 1e-9);
-        assert!(lump.consistent);
+        let body = BodyEstimate::from_parameters(&p, 1e-9);
+        assert!(body.consistent);
         for k in 0..3 {
-            assert!((lump.centre[k] - c[k]).abs() < 1e-12 && (lump.principal[k] - i[k]).abs() < 1e-12);
+            assert!((body.centre[k] - c[k]).abs() < 1e-12 && (body.principal[k] - i[k]).abs() < 1e-12);
         }
         p[0] -= 0.06;
-        assert!(!Lump::from_parameters(&p, 1e-4).consistent);
+        assert!(!BodyEstimate::from_parameters(&p, 1e-4).consistent);
     }
 }

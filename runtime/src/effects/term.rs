@@ -1,43 +1,12 @@
 //! An accepted effect as part of a model: what it is, where, and its numbers.
 
-use super::{EffectKind, Scale, Wrench};
+use super::catalogue::EffectKind;
+use super::compliance::Transmission;
+use super::contact::ContactForce;
+use super::form::Form;
+use super::joint_law::Scale;
+use super::place::Place;
 use serde::{Deserialize, Serialize};
-
-/// A quantity with its standard deviation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Parameter {
-    /// Its name.
-    pub name: String,
-    /// Its value, SI.
-    pub value: f64,
-    /// Standard deviation; 0 where it is not known.
-    pub sigma: f64,
-    /// SI unit.
-    pub unit: String,
-}
-
-impl Parameter {
-    /// A quantity.
-    pub fn new(name: &str, value: f64, sigma: f64, unit: &str) -> Self {
-        Self { name: name.into(), value, sigma, unit: unit.into() }
-    }
-}
-
-/// Where in the robot an effect acts; joints and frames are counted from 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Place {
-    /// A joint.
-    Joint(usize),
-    /// One of the numbers of a sensitivity, as its effect counts its variants.
-    Variant(usize),
-    /// A frame that carries a body.
-    Link(usize),
-    /// Two joints, the second one's motor turning with both.
-    Pair(usize, usize),
-    /// The whole robot.
-    Robot,
-}
 
 /// An effect that has become part of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,7 +27,22 @@ pub struct EffectTerm {
     pub scale: Option<TermScale>,
     /// Forces, where it is a contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub wrenches: Vec<Wrench>,
+    pub wrenches: Vec<ContactForce>,
+}
+
+impl EffectTerm {
+    /// The joint and the transmission of a compliant joint; `None` for every other effect.
+    pub fn transmission(&self) -> Option<(usize, Transmission)> {
+        match self.effect.form() {
+            Form::Compliance(_) => {
+                let prismatic = self.scale.is_some_and(|s| s.prismatic);
+                let frequency = self.shape.first().copied()?;
+                let known = Transmission::from_amplitude(&self.amplitude, frequency, prismatic)?;
+                Some((self.place.joint()?, known))
+            }
+            Form::Joint(_) | Form::Sensitivity(_) | Form::Body(_) | Form::Coupled | Form::Window => None,
+        }
+    }
 }
 
 /// [`Scale`], saved.

@@ -1,7 +1,6 @@
 //! The orthogonal factor of rows [W Y]: what is kept of any number of rows, without W and without WT W.
 
 use super::householder::reduce;
-use super::solve::{Solution, solve};
 
 /// Rows that are gathered before they are reduced: columns an odd number of cache lines apart, so that a row does not
 /// crowd a few sets of the cache.
@@ -154,11 +153,6 @@ impl Factor {
         (0..self.unknowns)
             .map(|l| self.r[l * rows..l * rows + l + 1].iter().zip(&e).map(|(r, e)| r * e).sum())
             .collect()
-    }
-
-    /// The least-squares solution (15) with what it rests on; see [`Solution`].
-    pub fn solve(&self) -> Solution {
-        solve(self)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::observe::{Equations, Observation, ObserveError, ObserveSettings, Standstill, observe};
 use crate::model::Model;
 use crate::recording::Trajectory;
-use crate::signal::{Motion, Preparation, SignalError, Standstill as Detected, prepare, prepare_all};
+use crate::signal::{Motion, Preparation, SignalError, StandstillSpeeds, prepare, prepare_all};
 
 /// A recording that is observed piece by piece: what is kept is orthogonal factors.
 ///
@@ -36,7 +36,7 @@ impl<'a> Piecewise<'a> {
         let (motions, too_short) = prepare_all(&first, &preparation)?;
         drop(first);
         if settings.standstill == Standstill::Automatic {
-            settings.standstill = Standstill::Detected(Detected::of(&motions));
+            settings.standstill = Standstill::Detected(StandstillSpeeds::of(&motions));
         }
         let left_out = too_short.iter().map(SignalError::to_string).collect();
         let observations = vec![None; equations.len()];

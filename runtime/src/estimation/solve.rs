@@ -28,8 +28,17 @@ pub struct Solution {
     pub dependent: Vec<Vec<usize>>,
 }
 
-/// Rank by a pivoted QR of the scaled triangle, then back substitution on what is independent.
-pub(super) fn solve(factor: &Factor) -> Solution {
+impl Factor {
+    /// The least-squares solution (15) with what it rests on; see [`Solution`].
+    ///
+    /// Rank by a pivoted QR of the triangle with columns of unit length, then back substitution on what is
+    /// independent.
+    pub fn solve(&self) -> Solution {
+        solve(self)
+    }
+}
+
+fn solve(factor: &Factor) -> Solution {
     let k = factor.unknowns();
     let norms = factor.column_norms();
     let scale: Vec<f64> = norms.iter().map(|&n| if n > 0.0 { 1.0 / n } else { 0.0 }).collect();

@@ -1,6 +1,6 @@
 //! Dual numbers: a value and its derivative with respect to one quantity.
 
-use super::Number;
+use super::number::Number;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// v + d·ε with ε² = 0 (Clifford 1873): evaluating a model in it gives the model and one exact derivative, of one

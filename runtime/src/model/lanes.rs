@@ -1,6 +1,6 @@
 //! Four samples at a time.
 
-use super::Number;
+use super::number::Number;
 use wide::{f64x4, u64x4};
 
 /// Four `f64` side by side: the number type of batches.

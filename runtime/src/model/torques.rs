@@ -1,35 +1,10 @@
 //! Inverse dynamics with known parameters: tau = IDM(q, dq, ddq) chi.
 
-use super::{Model, States};
+use super::dynamics::Model;
+use super::states::States;
 
 /// Samples whose regressors are held at a time.
 const BLOCK: usize = 64;
-
-/// Signals that are held as vectors, as [`States`] borrows them.
-#[derive(Debug, Clone)]
-pub struct StateSlices<'a> {
-    signals: [Vec<&'a [f64]>; 3],
-}
-
-impl<'a> StateSlices<'a> {
-    /// Positions, velocities and accelerations, each `[j][t]`.
-    pub fn new(q: &'a [Vec<f64>], dq: &'a [Vec<f64>], ddq: &'a [Vec<f64>]) -> Self {
-        Self { signals: [q, dq, ddq].map(|signal| signal.iter().map(Vec::as_slice).collect()) }
-    }
-
-    /// What the functions of a [`Model`] take.
-    pub fn states(&self) -> States<'_> {
-        let [q, dq, ddq] = &self.signals;
-        States { q, dq, ddq }
-    }
-}
-
-impl<'a> States<'a> {
-    /// Samples of each signal.
-    pub fn samples(&self) -> usize {
-        self.q.first().map_or(0, |q| q.len())
-    }
-}
 
 /// Torques of base parameters `chi` at every sample: IDM chi of (4), `[j][t]`, N.m or N.
 ///
@@ -80,6 +55,7 @@ pub fn torques_at(model: &dyn Model, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::StateSlices;
     use crate::simulation::testing::{arm, random_state};
     use rand::SeedableRng;
 

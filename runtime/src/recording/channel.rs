@@ -11,7 +11,7 @@ use super::{RecordingError, Rows};
 use crate::model::{JointKind, Robot};
 
 /// What is the same for all windows.
-pub(super) struct Plan {
+pub(super) struct Conversions {
     pub position: Conversion,
     pub velocity: Option<Conversion>,
     pub torque: Conversion,
@@ -25,7 +25,7 @@ pub(super) struct Conversion {
     gain: Vec<f64>,
 }
 
-impl Plan {
+impl Conversions {
     /// Checks the channels of a manifest against the robot.
     pub(super) fn new(manifest: &Manifest, robot: &Robot) -> Result<Self, RecordingError> {
         let joints = robot.joints();

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::channel::Plan;
+use super::channel::Conversions;
 use super::window::{BLOCK, Open};
 use super::{Manifest, Reach, RecordingError, RowReport, Trajectory};
 use crate::model::Robot;
@@ -29,10 +29,6 @@ pub fn load(manifest: &Manifest, robot: &Robot) -> Result<Recording, RecordingEr
     Ok(Recording { trajectories, rows: loader.into_report() })
 }
 
-/// Percent of the rows of a trajectory that may be left out. A logger that garbles one row in five cannot be
-/// trusted with the other four.
-pub const MOST_LEFT_OUT: f64 = 20.0;
-
 /// Reads a recording motion after motion, each in pieces of bounded length.
 ///
 /// For a recording longer than memory, pieces of some 100,000 rows go one by one through the preparation and into
@@ -40,7 +36,7 @@ pub const MOST_LEFT_OUT: f64 = 20.0;
 pub struct Loader<'a> {
     manifest: &'a Manifest,
     robot: &'a Robot,
-    plan: Plan,
+    conversions: Conversions,
     reach: Reach,
     most_rows: usize,
     report: RowReport,
@@ -52,12 +48,12 @@ pub struct Loader<'a> {
 impl<'a> Loader<'a> {
     /// Checks the manifest against the robot. A trajectory of more than `most_rows` rows comes in pieces.
     pub fn new(manifest: &'a Manifest, robot: &'a Robot, most_rows: usize) -> Result<Self, RecordingError> {
-        let plan = Plan::new(manifest, robot)?;
+        let conversions = Conversions::new(manifest, robot)?;
         let most_rows = most_rows.max(BLOCK);
         Ok(Self {
             manifest,
             robot,
-            plan,
+            conversions,
             reach: Reach::of(robot),
             most_rows,
             report: RowReport::default(),
@@ -83,7 +79,7 @@ impl<'a> Loader<'a> {
                     None => return Ok(None),
                 },
             };
-            let (piece, at_end) = open.read_piece(&self.plan, self.robot.joints(), self.most_rows)?;
+            let (piece, at_end) = open.read_piece(&self.conversions, self.robot.joints(), self.most_rows)?;
             self.ready.extend(open.motions_of(piece, &self.reach, !self.robot.limits.velocity.is_empty()));
             if at_end {
                 open.finish(&mut self.report)?;

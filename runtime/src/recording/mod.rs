@@ -21,10 +21,10 @@ mod window;
 mod write;
 
 pub use error::RecordingError;
-pub use load::{Loader, MOST_LEFT_OUT, Recording, load};
+pub use load::{Loader, Recording, load};
 pub use manifest::{Channel, Column, Layout, Manifest, Side, Time, Window};
 pub use regear::regear;
-pub use report::{Cut, LeftOutRow, Reason, RowReport};
+pub use report::{Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RowReport};
 pub use rows::Rows;
 pub use screen::Reach;
 pub use table::TableReader;

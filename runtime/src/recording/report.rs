@@ -4,6 +4,10 @@ use std::fmt;
 
 use serde::Serialize;
 
+/// Percent of the rows of a trajectory that may be left out. A logger that garbles one row in five cannot be
+/// trusted with the other four.
+pub const MOST_LEFT_OUT: f64 = 20.0;
+
 /// Why a row cannot be right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::channel::{Plan, convert, joint_number};
+use super::channel::{Conversions, convert, joint_number};
 use super::manifest::{Channel, Manifest, Time, Window};
 use super::screen::{Fault, Piece, Reach, screen};
 use super::source::Source;
@@ -118,7 +118,7 @@ impl Open {
     /// Reads up to `most` rows of the window. True at the end of the files.
     pub(super) fn read_piece(
         &mut self,
-        plan: &Plan,
+        conversions: &Conversions,
         joints: usize,
         most: usize,
     ) -> Result<(Piece, bool), RecordingError> {
@@ -141,7 +141,7 @@ impl Open {
             if count == 0 {
                 return Ok((piece, true));
             }
-            self.take_block(plan, &mut piece, count);
+            self.take_block(conversions, &mut piece, count);
             self.rows_read += count as u64;
         }
         Ok((piece, false))
@@ -168,7 +168,7 @@ impl Open {
         RecordingError::UnequalRows { first, first_rows, second, second_rows }
     }
 
-    fn take_block(&mut self, plan: &Plan, piece: &mut Piece, count: usize) {
+    fn take_block(&mut self, conversions: &Conversions, piece: &mut Piece, count: usize) {
         let time = self.times(count);
         // Rows of the window, in runs; a row without a readable time belongs where the one before it does.
         let mut runs: Vec<Range<usize>> = Vec::new();
@@ -194,17 +194,22 @@ impl Open {
             let channels = [
                 (
                     &self.position,
-                    Some(&plan.position),
-                    plan.motor.as_ref().map(|m| &m.0),
+                    Some(&conversions.position),
+                    conversions.motor.as_ref().map(|m| &m.0),
                     &mut piece.position,
                 ),
                 (
                     &self.velocity,
-                    plan.velocity.as_ref(),
-                    plan.motor.as_ref().map(|m| &m.0),
+                    conversions.velocity.as_ref(),
+                    conversions.motor.as_ref().map(|m| &m.0),
                     &mut piece.velocity,
                 ),
-                (&self.torque, Some(&plan.torque), plan.motor.as_ref().map(|m| &m.1), &mut piece.torque),
+                (
+                    &self.torque,
+                    Some(&conversions.torque),
+                    conversions.motor.as_ref().map(|m| &m.1),
+                    &mut piece.torque,
+                ),
             ];
             for (places, conversion, matrix, out) in channels {
                 if let Some(conversion) = conversion {

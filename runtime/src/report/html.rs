@@ -2,25 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::Plot;
+use super::escape::escape;
+use super::plot::Plot;
 
 const STYLE: &str = include_str!("page.css");
-
-/// Text made safe inside HTML elements and quoted attributes.
-pub fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            _ => out.push(c),
-        }
-    }
-    out
-}
 
 /// A page that grows from top to bottom. Every text given to it is escaped.
 #[derive(Debug, Clone)]

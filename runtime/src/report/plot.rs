@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::axis::Axis;
-use super::escape;
+use super::escape::escape;
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 84.0;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::axis::Axis;
-use super::escape;
+use super::escape::escape;
 
 const LEFT: f64 = 60.0;
 const RIGHT: f64 = 14.0;

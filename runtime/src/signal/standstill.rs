@@ -9,7 +9,7 @@ use super::{KeptRows, Motion};
 /// the larger of 2 % of its fast speed (95th percentile of |dq|) and six times the noise of its speed where
 /// the recording is quietest. A joint that never moves gets a threshold above all of its speeds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Standstill {
+pub struct StandstillSpeeds {
     /// Per joint, rad/s or m/s.
     pub thresholds: Vec<f64>,
     /// Noise of dq where it is quietest, per joint, rad/s or m/s.
@@ -25,7 +25,7 @@ const NOISE: f64 = 6.0;
 /// Length of the stretches that noise is estimated on, s.
 const STRETCH: f64 = 0.1;
 
-impl Standstill {
+impl StandstillSpeeds {
     /// Thresholds common to all motions of a recording, so that a joint is judged alike in each.
     pub fn of(motions: &[Motion]) -> Self {
         let joints = motions.iter().map(|m| m.dq.len()).max().unwrap_or(0);
@@ -122,7 +122,7 @@ mod tests {
     fn rows_near_standstill_and_around_reversals_are_marked() {
         let dq: Vec<f64> = (0..4000).map(|k| 2.0 * (k as f64 * 0.01).sin() + noise(k, 1e-3)).collect();
         let m = motion(vec![dq]);
-        let still = Standstill::of(std::slice::from_ref(&m));
+        let still = StandstillSpeeds::of(std::slice::from_ref(&m));
         assert!(still.thresholds[0] > 0.03 && still.thresholds[0] < 0.05, "{still:?}");
         let kept = Decimator::new(5).expect("valid").kept_rows(10..3990);
         let moving = &still.moving(&m, &kept, 2)[0];
@@ -143,7 +143,7 @@ mod tests {
         let moves: Vec<f64> = (0..4000).map(|k| 1.0 + (k as f64 * 0.01).sin() * 0.5).collect();
         let mut m = motion(vec![rest, moves.clone(), moves]);
         m.fixed = vec![2];
-        let still = Standstill::of(std::slice::from_ref(&m));
+        let still = StandstillSpeeds::of(std::slice::from_ref(&m));
         let kept = Decimator::new(5).expect("valid").kept_rows(10..3990);
         let mask = still.moving(&m, &kept, 2);
         assert!(mask[0].iter().all(|m| !m));
@@ -153,8 +153,8 @@ mod tests {
 
     #[test]
     fn no_motion_at_all_is_no_error() {
-        assert!(Standstill::of(&[]).thresholds.is_empty());
+        assert!(StandstillSpeeds::of(&[]).thresholds.is_empty());
         let short = motion(vec![vec![1.0; 5]]);
-        assert_eq!(Standstill::of(&[short]).thresholds, [0.0]);
+        assert_eq!(StandstillSpeeds::of(&[short]).thresholds, [0.0]);
     }
 }

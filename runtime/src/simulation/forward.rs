@@ -1,8 +1,9 @@
 //! Forward dynamics of a plant: which friction holds, and the accelerations that follow.
 
+use super::driven::Driven;
 use super::extra::Instant;
 use super::plant::{Hold, Plant, State, Work};
-use super::rest::{self, Decision};
+use super::stiction::{self, Decision};
 use super::{SimulationError, cholesky};
 
 impl Plant<'_> {
@@ -18,20 +19,13 @@ impl Plant<'_> {
         ddq: &mut [f64],
     ) -> Result<(), SimulationError> {
         self.decide(state, torque)?;
-        self.accelerate(state.time, &state.q, &state.dq, &state.hold, torque, ddq)
+        self.accelerate(&Driven::by(state, torque), ddq)
     }
 
     /// Mass matrix (factored in place) and the torques that accelerate it, all friction of slipping elements
     /// included, that of sticking ones not.
-    fn assemble(
-        &mut self,
-        time: f64,
-        q: &[f64],
-        dq: &[f64],
-        hold: &[Hold],
-        torque: &[f64],
-        right: &mut [f64],
-    ) -> Result<(), SimulationError> {
+    fn assemble(&mut self, at: &Driven<'_>, right: &mut [f64]) -> Result<(), SimulationError> {
+        let &Driven { time, q, dq, hold, torque } = at;
         let (n, d) = (self.joints, self.freedom);
         let work = &mut self.work;
         self.model.mass_and_bias(&self.chi, &q[..n], &dq[..n], &mut work.link_mass, &mut work.link_bias);
@@ -122,17 +116,17 @@ impl Plant<'_> {
         if state.hold.iter().all(|&hold| hold != Hold::Sticking) {
             return Ok(());
         }
-        let mut free = std::mem::take(&mut self.work.slopes[0]);
-        let assembled = self.assemble(state.time, &state.q, &state.dq, &state.hold, torque, &mut free);
+        let mut free = std::mem::take(&mut self.work.stages.slopes[0]);
+        let assembled = self.assemble(&Driven::by(state, torque), &mut free);
         if assembled.is_ok() {
             cholesky::solve(self.freedom, &self.work.mass, &mut free);
             self.choose_sticking(&state.hold);
             self.condense(&free);
-            let Work { a, b, limits, levels, chosen, decisions, rest, .. } = &mut self.work;
+            let Work { a, b, limits, levels, chosen, decisions, stiction: memory, .. } = &mut self.work;
             for (limit, &k) in limits.iter_mut().zip(chosen.iter()) {
                 *limit = [-levels[k][0], levels[k][1]];
             }
-            rest::decide(chosen.len(), a, b, limits, rest, decisions);
+            stiction::decide(chosen.len(), a, b, limits, memory, decisions);
             for (&k, decision) in chosen.iter().zip(decisions.iter()) {
                 state.hold[k] = match decision {
                     Decision::Stick => Hold::Sticking,
@@ -141,7 +135,7 @@ impl Plant<'_> {
                 };
             }
         }
-        self.work.slopes[0] = free;
+        self.work.stages.slopes[0] = free;
         assembled
     }
 
@@ -150,20 +144,12 @@ impl Plant<'_> {
         self.work.chosen.extend((0..hold.len()).filter(|&k| hold[k] == Hold::Sticking));
     }
 
-    /// Accelerations with every element held or slipping as `hold` says.
-    pub(super) fn accelerate(
-        &mut self,
-        time: f64,
-        q: &[f64],
-        dq: &[f64],
-        hold: &[Hold],
-        torque: &[f64],
-        ddq: &mut [f64],
-    ) -> Result<(), SimulationError> {
-        self.assemble(time, q, dq, hold, torque, ddq)?;
+    /// Accelerations with every element held or slipping as `at.hold` says.
+    pub(super) fn accelerate(&mut self, at: &Driven<'_>, ddq: &mut [f64]) -> Result<(), SimulationError> {
+        self.assemble(at, ddq)?;
         let d = self.freedom;
         cholesky::solve(d, &self.work.mass, ddq);
-        self.choose_sticking(hold);
+        self.choose_sticking(at.hold);
         if self.work.chosen.is_empty() {
             return Ok(());
         }

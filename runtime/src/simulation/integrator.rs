@@ -73,7 +73,7 @@ impl Plant<'_> {
             if !reversed {
                 continue;
             }
-            let [start, .., end] = &self.work.slopes;
+            let [start, .., end] = &self.work.stages.slopes;
             let when = h * cubic_root(before, after, h * element.slip(start), h * element.slip(end));
             earliest = Some(earliest.map_or(when, |t: f64| t.min(when)));
         }
@@ -90,7 +90,7 @@ impl Plant<'_> {
                 Hold::Backward => -1.0,
             };
             let slip = along * element.slip(&self.work.next_dq);
-            let rate = along * element.slip(&self.work.slopes[3]);
+            let rate = along * element.slip(&self.work.stages.slopes[3]);
             if worst.is_none_or(|(least, _)| slip < least) {
                 worst = Some((slip, rate));
             }
@@ -144,9 +144,9 @@ impl Plant<'_> {
             return Err(SimulationError::Diverged { time: state.time });
         }
         if !self.effects.is_empty() {
-            let last = std::mem::take(&mut self.work.slopes[3]);
+            let last = std::mem::take(&mut self.work.stages.slopes[3]);
             self.note_load(state, &last);
-            self.work.slopes[3] = last;
+            self.work.stages.slopes[3] = last;
             self.advance_effects(state, step);
         }
         Ok(())

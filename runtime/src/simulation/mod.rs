@@ -8,26 +8,35 @@ mod cholesky;
 mod closed_loop;
 mod consistency;
 mod controller;
+mod coupled_friction;
 mod didim;
 mod drive;
+mod driven;
 mod effect;
 mod error;
 pub mod excitation;
 mod extra;
 mod forward;
 mod integrator;
+mod less_friction;
+mod lu;
 mod plant;
+mod push;
 mod reference;
+pub mod replay;
 mod residue;
-mod rest;
+mod rosenbrock;
 mod scheme;
 mod sensors;
+mod steps;
+mod stiction;
+mod stiff;
+mod world;
 
 pub use closed_loop::{LoopSettings, Simulation, simulate};
 pub use consistency::check_standard;
 pub use controller::ControllerSettings;
 pub use didim::{DidimError, DidimEstimate, DidimSettings, Experiment, didim, simulated_motions};
-pub use effect::SimulatedEffects;
 pub use error::SimulationError;
 pub use extra::{ExtraTorque, Instant};
 pub use plant::{ElasticJoint, Hold, Plant, State};
@@ -35,6 +44,7 @@ pub use reference::{Reference, SampledReference};
 pub use residue::Residue;
 pub use scheme::Scheme;
 pub use sensors::SensorSettings;
+pub use world::World;
 
 #[cfg(test)]
 mod recovery_tests;
@@ -42,3 +52,5 @@ mod recovery_tests;
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod world_tests;

@@ -3,8 +3,9 @@
 use super::SimulationError;
 use super::drive::{DriveFriction, rotor_matrix};
 use super::extra::ExtraTorque;
-use super::rest::{Decision, RestScratch};
-use super::scheme::{Scheme, Stiff};
+use super::scheme::Scheme;
+use super::stiction::{Decision, StictionScratch};
+use super::stiff::Stiff;
 use crate::model::{Model, ParameterKind};
 
 /// Compliance and play between motor and link of one joint.
@@ -84,19 +85,35 @@ pub(super) struct Work {
     pub(super) limits: Vec<[f64; 2]>,
     pub(super) chosen: Vec<usize>,
     pub(super) decisions: Vec<Decision>,
-    pub(super) rest: RestScratch,
+    pub(super) stiction: StictionScratch,
     pub(super) extra: Vec<f64>,
     pub(super) joint_levels: Vec<[f64; 2]>,
     pub(super) levels: Vec<[f64; 2]>,
     pub(super) motor_q: Vec<f64>,
     pub(super) motor_dq: Vec<f64>,
     pub(super) load: Vec<f64>,
-    pub(super) slopes: [Vec<f64>; 4],
-    pub(super) stage_q: Vec<f64>,
-    pub(super) stage_dq: Vec<f64>,
+    pub(super) stages: Stages,
     pub(super) stiff: Stiff,
     pub(super) next_q: Vec<f64>,
     pub(super) next_dq: Vec<f64>,
+}
+
+/// Memory of the stages of one step.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Stages {
+    /// Accelerations: the first at the start of the step, the last nearest its end.
+    pub(super) slopes: [Vec<f64>; 4],
+    /// Coordinates in between.
+    pub(super) q: Vec<f64>,
+    /// Their velocities.
+    pub(super) dq: Vec<f64>,
+}
+
+impl Stages {
+    fn new(freedom: usize) -> Self {
+        let zero = || vec![0.0; freedom];
+        Self { slopes: std::array::from_fn(|_| zero()), q: zero(), dq: zero() }
+    }
 }
 
 impl<'m> Plant<'m> {
@@ -203,16 +220,14 @@ impl<'m> Plant<'m> {
             limits: vec![[0.0; 2]; elements],
             chosen: Vec::with_capacity(elements),
             decisions: vec![Decision::Stick; elements],
-            rest: RestScratch::new(elements),
+            stiction: StictionScratch::new(elements),
             extra: vec![0.0; n],
             joint_levels: vec![[0.0; 2]; n],
             levels: friction.elements.iter().map(|e| [e.level; 2]).collect(),
             motor_q: vec![0.0; n],
             motor_dq: vec![0.0; n],
             load: vec![0.0; n],
-            slopes: std::array::from_fn(|_| vec![0.0; freedom]),
-            stage_q: vec![0.0; freedom],
-            stage_dq: vec![0.0; freedom],
+            stages: Stages::new(freedom),
             stiff: Stiff::new(freedom),
             next_q: vec![0.0; freedom],
             next_dq: vec![0.0; freedom],

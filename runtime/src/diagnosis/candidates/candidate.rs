@@ -3,7 +3,7 @@
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::effects::{EffectKind, Form, Place};
+use crate::effects::{EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 
 /// An effect at a place.
@@ -21,77 +21,30 @@ pub(in crate::diagnosis) struct Candidate {
     pub only_positive: bool,
 }
 
-/// Which effects are looked for, and on which rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::diagnosis) enum SmoothingWindow {
-    /// As slow as the motion.
-    Slow,
-    /// Faster than the motion.
-    Fast,
-}
+/// An effect at a place with the shapes to try.
+pub(in crate::diagnosis) type Proposal = (EffectKind, Place, Vec<Vec<f64>>);
 
-/// The smoothing window that shows an effect best.
-pub(in crate::diagnosis) fn smoothing_window(effect: EffectKind) -> SmoothingWindow {
-    match effect {
-        EffectKind::TorqueRipple | EffectKind::JointElasticity | EffectKind::Backlash => {
-            SmoothingWindow::Fast
-        }
-        _ => SmoothingWindow::Slow,
-    }
-}
-
-/// Places and shapes of every effect that this window shows. `orders[j]` are ripple orders seen on joint j.
+/// Places and shapes of every effect that this smoothing shows best. `orders[j]` are ripple orders seen on joint j.
 pub(in crate::diagnosis) fn proposals(
     context: &Context<'_>,
-    wanted: SmoothingWindow,
+    window: SmoothingWindow,
     change: bool,
     orders: &[Vec<f64>],
-) -> Vec<(EffectKind, Place, Vec<Vec<f64>>)> {
+) -> Vec<Proposal> {
     let robot = context.model.robot();
-    let n = robot.joints();
     let mut list = Vec::new();
     for effect in EffectKind::ALL {
-        if smoothing_window(effect) != wanted || (effect.needs_baseline() && !change) {
+        let properties = effect.properties();
+        if properties.window != window || !properties.sought.with(change) {
             continue;
         }
-        match effect.form() {
-            Form::Joint(law) => {
-                for (j, seen) in orders.iter().enumerate() {
-                    let mut shapes = law.shapes(&context.scales[j]);
-                    if effect == EffectKind::TorqueRipple {
-                        shapes.extend(seen.iter().map(|&o| vec![o]));
-                    }
-                    list.push((effect, Place::Joint(j), shapes));
-                }
+        let form = effect.form();
+        for place in form.places(robot) {
+            let mut shapes = form.shapes(place, &context.scales);
+            if let Some(seen) = place.joint().and_then(|j| orders.get(j)) {
+                shapes.extend(form.shapes_of_orders(seen));
             }
-            Form::Sensitivity(law) => {
-                // The same robot in two recordings has the same geometry, and the delay is taken out of all anyway.
-                if effect == EffectKind::TimeDelay || (change && effect == EffectKind::GeometryError) {
-                    continue;
-                }
-                let count = if law.together() { 1 } else { law.variants(robot).len() };
-                list.extend((0..count).map(|v| (effect, Place::Variant(v), vec![vec![]])));
-            }
-            Form::Compliance(law) => {
-                let shapes: Vec<Vec<f64>> = law.shapes().iter().map(|s| s.to_vec()).collect();
-                list.extend((0..n).map(|j| (effect, Place::Joint(j), shapes.clone())));
-            }
-            Form::Body(law) => {
-                list.extend(law.links(robot).into_iter().map(|l| (effect, Place::Link(l), vec![vec![]])));
-            }
-            Form::Coupled => {
-                let shapes: Vec<Vec<f64>> =
-                    crate::effects::CoupledTransmission::RATIOS.iter().map(|&r| vec![r]).collect();
-                for b in 1..n {
-                    for (a, c) in [(b - 1, b), (b, b - 1)] {
-                        let known = robot.drive.gear.get(c * n + a).is_some_and(|g| *g != 0.0);
-                        if !known {
-                            list.push((effect, Place::Pair(a, c), shapes.clone()));
-                        }
-                    }
-                }
-            }
-            Form::Window => {}
+            list.push((effect, place, shapes));
         }
     }
     list
@@ -101,7 +54,7 @@ pub(in crate::diagnosis) fn proposals(
 pub(in crate::diagnosis) fn build(
     context: &Context<'_>,
     design: &Design,
-    proposals: &[(EffectKind, Place, Vec<Vec<f64>>)],
+    proposals: &[Proposal],
     change: bool,
     threads: usize,
     report: &(dyn Fn(f64) + Sync),
@@ -130,12 +83,13 @@ pub(in crate::diagnosis) fn make(
         })
         .filter(|t| t.columns.iter().all(|c| c.iter().flat_map(|(_, v)| v).all(|x| x.is_finite())))
         .collect();
-    let own = match (effect.form(), place) {
-        (_, Place::Joint(j)) => vec![j],
-        (_, Place::Pair(a, b)) => vec![a, b],
-        _ => (0..design.joints).collect(),
-    };
-    let fixed = matches!(effect.form(), Form::Compliance(_)).then_some(1.0);
-    let only_positive = matches!(effect.form(), Form::Joint(law) if law.only_positive());
-    Candidate { effect, place, own, shapes: trials.len(), trials, fixed, only_positive }
+    Candidate {
+        effect,
+        place,
+        own: place.joints(design.joints),
+        shapes: trials.len(),
+        trials,
+        fixed: effect.form().fixed_amplitude(),
+        only_positive: effect.form().only_positive(),
+    }
 }

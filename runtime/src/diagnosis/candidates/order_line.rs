@@ -27,9 +27,13 @@ pub(in crate::diagnosis) struct Stroke<'a> {
 pub(in crate::diagnosis) struct Line {
     /// Angle of the wave per angle of the joint.
     pub order: f64,
-    /// Amplitude of the wave, N.m or N, and its standard deviation from the orders around it.
-    pub amplitude: f64,
+    /// Amplitudes of cosine and sine, N.m or N, all motions together, and their standard deviation from the orders
+    /// around it.
+    pub cosine: f64,
+    pub sine: f64,
     pub sigma: f64,
+    /// Rms of the residual without what is slower, N.m or N, the median of the motions.
+    pub rms: f64,
     /// Its amplitude against the median of the orders around it, the median of the motions.
     pub above: f64,
     /// Share of the residual that one half of a motion predicts for the other, the median of the motions.
@@ -61,10 +65,15 @@ pub(in crate::diagnosis) fn lines(
             values.sort_by(f64::total_cmp);
             values[values.len() / 2]
         };
+        let order = median(|l| l.order);
+        let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
+        let wave = wave(&all, order);
         found.push(Line {
-            order: median(|l| l.order),
-            amplitude: median(|l| l.amplitude),
-            sigma: median(|l| l.sigma),
+            order,
+            cosine: wave.c,
+            sine: wave.s,
+            sigma: median(|l| l.sigma) / (shown.len() as f64).sqrt(),
+            rms: median(|l| l.rms),
             above: median(|l| l.above),
             share: median(|l| l.share),
         });
@@ -137,7 +146,9 @@ fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
     let (a, b) = (predicted(first, second), predicted(second, first));
     Some(Line {
         order,
-        amplitude: fitted.norm(),
+        cosine: fitted.c,
+        sine: fitted.s,
+        rms: (samples.iter().map(|s| s.r * s.r).sum::<f64>() / samples.len() as f64).sqrt(),
         // The median of amplitudes of noise is sqrt(2 ln 2) of the deviation of their parts.
         sigma: median / (2.0 * std::f64::consts::LN_2).sqrt(),
         above: fitted.norm() / median,
@@ -191,6 +202,13 @@ fn samples(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Vec<Sample> {
 struct Wave {
     c: f64,
     s: f64,
+}
+
+impl Line {
+    /// Of the wave, N.m or N.
+    pub fn amplitude(&self) -> f64 {
+        self.cosine.hypot(self.sine)
+    }
 }
 
 impl Wave {

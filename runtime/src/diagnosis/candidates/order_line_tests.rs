@@ -109,7 +109,7 @@ fn several_lines_of_a_motor_are_told_apart_and_measured() {
     assert_eq!(lines.len(), 2, "{lines:?}");
     for (line, (order, height)) in lines.iter().zip([(202.0, 0.6), (101.0, 0.4)]) {
         assert!((line.order - order).abs() < 0.5, "{lines:?}");
-        assert!((line.amplitude - height).abs() < 4.0 * line.sigma, "{lines:?}");
+        assert!((line.amplitude() - height).abs() < 4.0 * line.sigma, "{lines:?}");
     }
 }
 

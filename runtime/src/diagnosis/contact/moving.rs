@@ -6,8 +6,8 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::judging::ar1::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS, INNER_LINK_BETTER};
-use crate::effects::{JointTorque, Wrench};
+use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS, INNER_LINK_BETTER, SCAN_SLOWEST};
+use crate::effects::{ContactForce, JointTorque};
 
 /// Looks for pushes in what a model leaves of the torques on the rows of a design; `sigma` is the residual's level on
 /// each joint.
@@ -22,8 +22,17 @@ pub(in crate::diagnosis) fn in_motion(
     let step = design.spacing(first) as f64 / signals[first].rate;
     let tracks: Vec<Track> = (0..design.joints)
         .map(|joint| {
+            // Around a reversal friction is neither Coulomb's nor viscous, whatever pushes.
+            let slowest = SCAN_SLOWEST * context.scales[joint].speed;
+            let fast = |r: usize| {
+                let at = design.rows[r];
+                signals[at.signal].dq[joint][at.centre].abs() >= slowest
+            };
             let of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
-                (signals[k].is_target, rows.iter().map(|&(place, r)| (place, residual[r])).collect())
+                (
+                    signals[k].is_target,
+                    rows.iter().filter(|(_, r)| fast(*r)).map(|&(place, r)| (place, residual[r])).collect(),
+                )
             };
             Track {
                 joint,
@@ -74,18 +83,18 @@ pub(in crate::diagnosis) fn in_motion(
 /// Keeps the pushes of which another look still finds something.
 pub(in crate::diagnosis) fn still_there(found: Contacts, again: Option<&Contacts>) -> Option<Contacts> {
     let again = again?;
-    let seen = |w: &Wrench| {
+    let seen = |w: &ContactForce| {
         again
             .wrenches
             .iter()
             .any(|a| a.motion == w.motion && a.window[0] <= w.window[1] && w.window[0] <= a.window[1])
     };
-    let wrenches: Vec<Wrench> = found.wrenches.iter().filter(|w| seen(w)).cloned().collect();
+    let wrenches: Vec<ContactForce> = found.wrenches.iter().filter(|w| seen(w)).cloned().collect();
     (!wrenches.is_empty()).then_some(Contacts { wrenches, ..found })
 }
 
 /// A push as a force on a link where at least two joints feel it and one force explains them; else as joint torques.
-fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pushed]) -> Wrench {
+fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pushed]) -> ContactForce {
     let robot = context.model.robot();
     let motion = group[0].motion;
     let s = &context.signals[motion];
@@ -107,7 +116,7 @@ fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pus
         let means = inside.chunks(5).map(|c| c.iter().sum::<f64>() / c.len() as f64);
         means.fold(p.mean, |a, b| if b.abs() > a.abs() { b } else { a })
     };
-    let mut wrench = Wrench {
+    let mut wrench = ContactForce {
         motion: s.name.clone(),
         window: [time(first.places[0]), time(last.places[1])],
         link: frame_of(innermost) + 1,

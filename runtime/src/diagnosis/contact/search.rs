@@ -10,7 +10,7 @@ use crate::diagnosis::rules::{
     CONTACT_MARGIN, FORCE_EXPLAINS, FORCE_PREDICTS, HIGHEST_CONFIDENCE, INNER_LINK_BETTER,
     LARGEST_PUSHED_FRACTION, LEAST_INSTANTS, PUSHED, PUSHED_TOGETHER, REMAINING_FRACTION,
 };
-use crate::effects::Wrench;
+use crate::effects::ContactForce;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 pub(in crate::diagnosis) struct Contacts {
     /// Times per signal that no other row may use.
     pub windows: Vec<Vec<[f64; 2]>>,
-    pub wrenches: Vec<Wrench>,
+    pub wrenches: Vec<ContactForce>,
     /// Residual squares in the windows in units of the noise, without a force and with the force of the neighbouring
     /// instants.
     pub before: f64,
@@ -51,7 +51,7 @@ impl Contacts {
 
 /// A window that one force explains, with squares in units of the noise.
 struct Explained {
-    wrench: Wrench,
+    wrench: ContactForce,
     /// Of the residual.
     before: f64,
     /// Of what the force of the neighbouring instants leaves.
@@ -168,7 +168,7 @@ fn explain(
     }
     let mean = forces.iter().sum::<Vector3<f64>>() / forces.len() as f64;
     let largest = forces.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied().unwrap_or(mean);
-    let wrench = Wrench {
+    let wrench = ContactForce {
         motion: s.name.clone(),
         window,
         link: frame + 1,

@@ -6,12 +6,12 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, INNER_LINK_BETTER, STICTION};
-use crate::effects::{JointTorque, Wrench};
+use crate::effects::{ContactForce, JointTorque};
 use nalgebra::Vector3;
 
 /// What is seen of the outside while the robot holds still.
 pub(in crate::diagnosis) struct AtRest {
-    pub wrenches: Vec<Wrench>,
+    pub wrenches: Vec<ContactForce>,
     /// Squares beyond gravity, what the neighbouring instants leave of them, and of the torque, while pushed.
     pub squares: [f64; 3],
     /// Least probability that static friction explains a push.
@@ -152,7 +152,7 @@ fn wrench(
     standing: &Standing<'_>,
     push: &Push,
     squares: &mut [f64; 3],
-) -> Wrench {
+) -> ContactForce {
     let robot = context.model.robot();
     let sample = |time: f64| (((time - standing.start) * standing.rate).round().max(0.0)) as usize;
     let last = standing.still.len().saturating_sub(1);
@@ -188,7 +188,7 @@ fn wrench(
     let joint_of_frame = robot.joint_of_frame();
     let innermost = push.joints.iter().map(|p| p.joint).min().unwrap_or(0);
     let frame_of = |joint: usize| joint_of_frame.iter().position(|f| *f == Some(joint)).unwrap_or(joint);
-    let mut wrench = Wrench {
+    let mut wrench = ContactForce {
         motion: s.name.clone(),
         window: push.window,
         link: frame_of(innermost) + 1,

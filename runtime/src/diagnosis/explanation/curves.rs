@@ -1,66 +1,33 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
-use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::explanation::standard_model::StandardModelFit;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
 use crate::diagnosis::rows::design::{Design, RowAt};
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::signals::Signals;
+use crate::diagnosis::rules::{BINS, LEAST_DIFFERENCES, LEAST_MISMATCH, ORDERED_BY_VARIABLE};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::EffectKind;
+use crate::effects::Abscissa;
 use crate::model::JointIndex;
 
-/// Bins of a curve.
-const BINS: usize = 40;
-
-/// A variable of a row: its name with the unit, and its value.
-type Variable<'a> = (&'a str, Box<dyn Fn(&RowAt) -> f64 + 'a>);
-
-fn variable<'a>(model: &'a ExtendedModel<'_>, joint: usize, term: &'a Accepted) -> Variable<'a> {
-    let context = &model.context;
-    let unit = context.scales[joint].position_unit();
-    let prismatic = unit == "m";
-    let signals = context.signals;
-    let torques = &context.torques;
-    match term.effect {
-        EffectKind::LoadDependentFriction => (
-            if prismatic { "load, N" } else { "load torque, N.m" },
-            Box::new(move |r| torques[r.signal].rigid[joint][r.centre]),
-        ),
-        EffectKind::FrictionDrift => ("time, s", Box::new(move |r| signals[r.signal].time(r.centre))),
-        EffectKind::PreslidingHysteresis => (
-            "distance since reversal",
-            Box::new(move |r| since_reversal(&signals[r.signal], joint, r.centre)),
-        ),
-        EffectKind::TorqueRipple => {
-            let order = term.shape[0];
-            (
-                "angle within one wave, rad",
-                Box::new(move |r| {
-                    (order * signals[r.signal].q[joint][r.centre]).rem_euclid(2.0 * std::f64::consts::PI)
-                }),
-            )
+/// The variable that reveals a term, at a row of its first joint.
+fn abscissa(model: &ExtendedModel<'_>, joint: usize, term: &Accepted, r: &RowAt) -> f64 {
+    let s = &model.context.signals[r.signal];
+    let torques = &model.context.torques[r.signal];
+    match term.effect.properties().abscissa {
+        Abscissa::Speed => s.dq[joint][r.centre],
+        Abscissa::Position => s.q[joint][r.centre],
+        Abscissa::Acceleration => s.ddq[joint][r.centre],
+        Abscissa::Load => torques.rigid[joint][r.centre],
+        Abscissa::ModelTorque => torques.total[joint][r.centre],
+        Abscissa::Time => s.time(r.centre),
+        Abscissa::SinceReversal => since_reversal(s, joint, r.centre),
+        Abscissa::WaveAngle => {
+            let order = term.shape.first().copied().unwrap_or(1.0);
+            (order * s.q[joint][r.centre]).rem_euclid(2.0 * std::f64::consts::PI)
         }
-        EffectKind::TorqueConstantError | EffectKind::TorqueSaturation | EffectKind::FrictionLevelChange => {
-            ("model torque", Box::new(move |r| torques[r.signal].total[joint][r.centre]))
-        }
-        EffectKind::JointElasticity => {
-            ("acceleration", Box::new(move |r| signals[r.signal].ddq[joint][r.centre]))
-        }
-        EffectKind::Backlash => ("load torque", Box::new(move |r| torques[r.signal].rigid[joint][r.centre])),
-        EffectKind::Stribeck
-        | EffectKind::NonlinearViscous
-        | EffectKind::AsymmetricFriction
-        | EffectKind::CoupledTransmission => (
-            if prismatic { "joint speed, m/s" } else { "joint speed, rad/s" },
-            Box::new(move |r| signals[r.signal].dq[joint][r.centre]),
-        ),
-        _ => (
-            if prismatic { "joint position, m" } else { "joint position, rad" },
-            Box::new(move |r| signals[r.signal].q[joint][r.centre]),
-        ),
     }
 }
 
@@ -76,7 +43,7 @@ fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
 /// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
 pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, k: usize) -> Option<Curve> {
     let joint = *term.own.first()?;
-    let side = model.regression(smoothing_window(term.effect));
+    let side = model.regression(term.effect.properties().window);
     let design = &side.design;
     let dense = dense_columns(&model.context, design, term.effect, term.place, &term.shape, model.change);
     let amplitude: Vec<f64> = match term.fixed {
@@ -84,25 +51,24 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
         None => side.term_columns[k].clone().map(|c| side.fit.chi[c]).collect(),
     };
     let residual = side.fit.residual(design);
-    let (name, value) = variable(model, joint, term);
+    let properties = term.effect.properties();
     let signals = model.context.signals;
-    // Friction opposes the motion: over anything but the speed, both directions would hide each other.
-    let opposes = matches!(
-        term.effect,
-        EffectKind::LoadDependentFriction | EffectKind::FrictionDrift | EffectKind::PositionDependentFriction
-    );
-    let along = |r: &RowAt| if opposes { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 };
+    let along = |r: &RowAt| {
+        if properties.along_motion { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 }
+    };
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
         .filter(|&r| signals[design.rows[r].signal].is_target)
         .map(|r| {
             let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
             let sign = along(&design.rows[r]);
-            (value(&design.rows[r]), sign * (residual[r] + law), sign * law)
+            (abscissa(model, joint, term, &design.rows[r]), sign * (residual[r] + law), sign * law)
         })
         .collect();
     let mut curve = binned(rows);
-    curve.variable = if opposes { format!("{name} (torques along the motion)") } else { name.into() };
+    let name = properties.abscissa.label(model.context.scales[joint].prismatic);
+    curve.variable =
+        if properties.along_motion { format!("{name} (torques along the motion)") } else { name.into() };
     curve.unit = model.context.scales[joint].torque_unit().into();
     Some(curve)
 }
@@ -176,10 +142,10 @@ pub(in crate::diagnosis) fn mismatch(
         let best = candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let share = shares[j] / all;
         let where_ = match best {
-            Some((words, e)) if *e > 0.1 && share > 0.02 => {
+            Some((words, e)) if *e > ORDERED_BY_VARIABLE && share > LEAST_MISMATCH => {
                 format!("while moving; {words} ({:.0} % of it)", 100.0 * e.min(1.0))
             }
-            _ if share > 0.02 => "while moving; no single variable orders it".into(),
+            _ if share > LEAST_MISMATCH => "while moving; no single variable orders it".into(),
             _ => "nothing beyond the noise".into(),
         };
         list.push(Mismatch { joint: robot.joint_number(JointIndex(j)).0, share, where_ });
@@ -211,7 +177,9 @@ fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
     let range = design.of_joint(joint);
     let n = range.len() as f64;
     let whole = rms(residual[range].iter().map(|r| r * r).sum(), n);
-    if count < 10.0 { whole } else { rms(sum, count) / (7.0_f64 / 6.0).sqrt() }.min(whole).max(1e-12)
+    if count < LEAST_DIFFERENCES { whole } else { rms(sum, count) / (7.0_f64 / 6.0).sqrt() }
+        .min(whole)
+        .max(1e-12)
 }
 
 /// What nothing explains.

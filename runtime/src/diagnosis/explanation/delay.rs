@@ -1,6 +1,7 @@
 //! The skew of the torques behind the positions: measured before anything else, and named where it explains enough.
 
 use crate::diagnosis::candidates::trial::delay_columns;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::explanation::finding::unit_term;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
@@ -8,7 +9,7 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::outcome::{Finding, ParameterValue};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{LONGEST_BLOCK, NAMED_DELAY, NAMED_DELAY_SAMPLES};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::settings::Settings;

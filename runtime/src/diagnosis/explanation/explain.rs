@@ -1,10 +1,10 @@
 //! From a model with accepted terms to an outcome: numbers with their uncertainty, held-out errors, curves, sentences.
 
-use crate::diagnosis::DiagnosisError;
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
-use crate::diagnosis::explanation::{curves, delay, words};
+use crate::diagnosis::explanation::{curves, delay, line, words};
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::outcome::{
     CannotTell, Diagnosis, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling, SearchOutcome,
@@ -14,6 +14,7 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
+use crate::effects::Abscissa;
 use crate::model::Robot;
 
 /// What is known when a search has ended, besides the search.
@@ -45,6 +46,7 @@ pub(in crate::diagnosis) fn explain(
     let cannot_tell = cannot_tell(model, &effects);
     let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
     findings.extend(effects);
+    findings.extend(line::findings(search));
     findings.extend(delay::finding(model, skew, settings)?);
 
     // 2. What it gains on motion that was held out.
@@ -52,8 +54,8 @@ pub(in crate::diagnosis) fn explain(
 
     // 3. What it changes, and what it leaves.
     let after = estimated(&model.slow);
-    let waves =
-        |joint: usize| findings.iter().any(|f| f.effect == "torque_ripple" && f.joints.contains(&joint));
+    let is_wave = |f: &Finding| f.term.effect.properties().abscissa == Abscissa::WaveAngle;
+    let waves = |joint: usize| findings.iter().any(|f| is_wave(f) && f.joints.contains(&joint));
     let spectra = search.spectra.iter().filter(|s| waves(s.joint)).cloned().collect();
     let removed = |t: &crate::diagnosis::search::term::Accepted| Removed {
         effect: t.effect.id().into(),

@@ -1,15 +1,14 @@
 //! An accepted effect, or a contact, as a finding.
 
-use crate::diagnosis::DiagnosisError;
-use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::curves;
-use crate::diagnosis::explanation::quantities::{parameters, uncertainty};
+use crate::diagnosis::explanation::quantities::{Quantified, quantified, uncertainty};
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue};
 use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
 use crate::diagnosis::search::extended_model::ExtendedModel;
-use crate::effects::{EffectKind, EffectTerm, Form, Place};
+use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::{JointIndex, Robot};
 
 /// A term without amplitudes: what an effect at a place with a shape is.
@@ -28,16 +27,8 @@ pub(in crate::diagnosis) fn unit_term(effect: EffectKind, place: Place, shape: V
 
 /// Numbers j of the joints that an effect at a place is named on.
 pub(in crate::diagnosis) fn named_on(robot: &Robot, effect: EffectKind, place: Place) -> Vec<usize> {
-    let number = |joint: usize| robot.joint_number(JointIndex(joint)).0;
-    match (place, effect.form()) {
-        (Place::Joint(j), _) => vec![number(j)],
-        (Place::Pair(a, b), _) => vec![number(a), number(b)],
-        (Place::Variant(v), Form::Sensitivity(law)) if !law.together() => {
-            law.variants(robot).get(v).and_then(|x| x.joint).map(number).into_iter().collect()
-        }
-        (Place::Link(frame), _) if effect == EffectKind::AddedMass => vec![frame + 1],
-        _ => Vec::new(),
-    }
+    let joints = effect.form().named_joints(robot, place).into_iter();
+    joints.map(|j| robot.joint_number(JointIndex(j)).0).collect()
 }
 
 /// Term k of a model as a finding. The model stays as it is: the errors without the term are those of a copy.
@@ -47,12 +38,12 @@ pub(in crate::diagnosis) fn named_on(robot: &Robot, effect: EffectKind, place: P
 pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Result<Finding, DiagnosisError> {
     let robot = model.context.model.robot();
     let accepted = &model.terms[k];
-    let window = smoothing_window(accepted.effect);
+    let window = accepted.effect.properties().window;
     let regression = model.regression(window);
     let range = regression.term_columns[k].clone();
-    let mut amplitude: Vec<f64> = range.map(|c| regression.fit.chi[c]).collect();
-    let (mut sigma, shape_sigma) = uncertainty(model, k, &amplitude)?;
-    let parameters = parameters(model, accepted, &mut amplitude, &mut sigma, &shape_sigma);
+    let amplitude: Vec<f64> = range.map(|c| regression.fit.chi[c]).collect();
+    let deviations = uncertainty(model, k, &amplitude)?;
+    let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
     let scale = match accepted.place {
         Place::Joint(j) => Some(model.context.scales[j].into()),
         _ => None,

@@ -1,21 +1,26 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
-use crate::diagnosis::candidates::candidate::smoothing_window;
 use crate::diagnosis::candidates::trial::dense_columns;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{EffectKind, Form, Lump, Parameter, Place};
+use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, Parameter};
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
 /// derivative of the columns (variable projection, Golub and Pereyra 1973).
+///
+/// # Errors
+/// [`SingularDesign`] where there is no fit with these derivatives.
 pub(in crate::diagnosis) fn uncertainty(
     model: &ExtendedModel<'_>,
     k: usize,
     amplitude: &[f64],
 ) -> Result<(Vec<f64>, Vec<f64>), SingularDesign> {
     let term = &model.terms[k];
-    let side = model.regression(smoothing_window(term.effect));
+    let side = model.regression(term.effect.properties().window);
     let mut design = side.design.clone();
     let dense = |shape: &[f64]| {
         dense_columns(&model.context, &side.design, term.effect, term.place, shape, model.change)
@@ -23,9 +28,9 @@ pub(in crate::diagnosis) fn uncertainty(
     let start = design.columns.len();
     let mut varied = Vec::new();
     // The shape of a sensitivity is its amplitude once more.
-    let own_shape = !matches!(term.effect.form(), Form::Sensitivity(_));
+    let own_shape = !term.effect.form().shape_is_amplitude();
     for (i, &value) in term.shape.iter().enumerate().filter(|_| own_shape) {
-        let step = 0.02 * value.abs().max(1e-6);
+        let step = SHAPE_STEP * value.abs().max(1e-6);
         let moved = |s: f64| {
             let mut shape = term.shape.clone();
             shape[i] += s * step;
@@ -51,88 +56,89 @@ pub(in crate::diagnosis) fn uncertainty(
     let amplitudes = side.term_columns[k].clone().map(sd).collect();
     let mut shapes = vec![0.0; term.shape.len()];
     for (at, &i) in varied.iter().enumerate() {
-        shapes[i] = sd(start + at).min(10.0 * term.shape[i].abs());
+        shapes[i] = sd(start + at).min(LARGEST_SHAPE_SIGMA * term.shape[i].abs());
     }
     Ok((amplitudes, shapes))
 }
 
-/// The quantities a person knows, with the uncertainty of shapes propagated to first order.
-pub(in crate::diagnosis) fn parameters(
+/// What a finding and a model keep of an accepted effect.
+pub(in crate::diagnosis) struct Quantified {
+    /// The quantities a person knows.
+    pub parameters: Vec<Parameter>,
+    /// Amplitudes of a model's term, see [`crate::effects::EffectTerm`].
+    pub amplitude: Vec<f64>,
+    /// Their standard deviations.
+    pub sigma: Vec<f64>,
+}
+
+/// The quantities a person knows, with the uncertainty of shapes propagated to first order; from the amplitudes and
+/// the standard deviations of amplitudes and shape.
+pub(in crate::diagnosis) fn quantified(
     model: &ExtendedModel<'_>,
     term: &Accepted,
-    amplitude: &mut Vec<f64>,
-    sigma: &mut Vec<f64>,
-    shape_sigma: &[f64],
-) -> Vec<Parameter> {
-    let robot = model.context.model.robot();
+    amplitude: Vec<f64>,
+    (sigma, shape_sigma): (Vec<f64>, Vec<f64>),
+) -> Quantified {
     let context = &model.context;
-    match (term.effect.form(), term.place) {
-        (Form::Joint(law), Place::Joint(j)) => {
-            let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, amplitude, sigma);
-            propagate(of, &term.shape, shape_sigma)
+    let parameters = match term.effect.form() {
+        Form::Joint(law) => term.place.joint().map(|j| {
+            let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, &amplitude, &sigma);
+            propagate(of, &term.shape, &shape_sigma)
+        }),
+        Form::Compliance(law) => {
+            if let Some(j) = term.place.joint() {
+                return transmission(context, law, j, &term.shape, &shape_sigma);
+            }
+            None
         }
-        (Form::Compliance(law), Place::Joint(j)) => {
-            let of = |shape: &[f64]| {
-                law.describe(&context.transmission(j, shape))
-                    .into_iter()
-                    .map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
-                    .collect()
-            };
-            let t = context.transmission(j, &term.shape);
-            *amplitude = vec![t.stiffness, t.damping, t.rotor, t.play];
-            *sigma = vec![0.0; 4];
-            propagate(of, &term.shape, shape_sigma)
-        }
-        (Form::Sensitivity(law), Place::Variant(v)) => {
-            let variants = law.variants(robot);
-            let wanted = if law.together() { &variants[..] } else { &variants[v..=v] };
-            wanted
-                .iter()
-                .zip(amplitude.iter().zip(sigma.iter()))
-                .map(|(x, (a, s))| match term.effect {
-                    // Along the way to it a factor grows exponentially.
-                    EffectKind::WrongSampleRate => Parameter::new(x.name, a.exp_m1(), s * a.exp(), x.unit),
-                    _ => Parameter::new(x.name, *a, *s, x.unit),
-                })
-                .collect()
-        }
-        (Form::Body(_), _) => {
+        Form::Sensitivity(law) => term.place.variant().map(|v| {
+            let variants = law.variants(context.model.robot());
+            let wanted = if law.together() { &variants[..] } else { variants.get(v..=v).unwrap_or_default() };
+            let of = wanted.iter().zip(amplitude.iter().zip(&sigma));
+            of.map(|(variant, (a, s))| law.quantity(variant, *a, *s)).collect()
+        }),
+        Form::Body(_) => {
             let slack = 3.0 * sigma.iter().take(6).fold(0.0_f64, |a, b| a.max(*b));
-            let lump = Lump::from_parameters(amplitude, slack);
-            let s = |k: usize| sigma.get(k).copied().unwrap_or(0.0);
-            let m = lump.mass.abs().max(1e-9);
-            vec![
-                Parameter::new("mass", lump.mass, s(9), "kg"),
-                Parameter::new("x", lump.centre[0], s(6) / m, "m"),
-                Parameter::new("y", lump.centre[1], s(7) / m, "m"),
-                Parameter::new("z", lump.centre[2], s(8) / m, "m"),
-                Parameter::new("I1", lump.principal[0], s(0), "kg.m2"),
-                Parameter::new("I2", lump.principal[1], s(3), "kg.m2"),
-                Parameter::new("I3", lump.principal[2], s(5), "kg.m2"),
-                Parameter::new("physically_consistent", f64::from(lump.consistent), 0.0, "1"),
-            ]
+            Some(BodyEstimate::from_parameters(&amplitude, slack).parameters(&sigma))
         }
-        (Form::Coupled, _) => {
-            let names = [("viscous", "N.m.s/rad"), ("coulomb", "N.m"), ("inertia", "kg.m2")];
-            let mut list: Vec<Parameter> = names
-                .iter()
-                .zip(amplitude.iter().zip(sigma.iter()))
-                .map(|((name, unit), (a, s))| Parameter::new(name, *a, *s, unit))
-                .collect();
-            list.push(Parameter::new("ratio", term.shape[0], shape_sigma[0], "1"));
-            list
-        }
-        _ => Vec::new(),
+        Form::Coupled => term.shape.first().map(|&ratio| {
+            let ratio_sigma = shape_sigma.first().copied().unwrap_or(0.0);
+            CoupledRotor { ratio }.parameters(&amplitude, &sigma, ratio_sigma)
+        }),
+        Form::Window => None,
+    };
+    Quantified { parameters: parameters.unwrap_or_default(), amplitude, sigma }
+}
+
+/// A compliant transmission has no amplitude of its own: a model keeps its constants.
+fn transmission(
+    context: &Context<'_>,
+    law: &dyn Compliance,
+    j: usize,
+    shape: &[f64],
+    shape_sigma: &[f64],
+) -> Quantified {
+    let of = |shape: &[f64]| {
+        law.describe(&context.transmission(j, shape))
+            .into_iter()
+            .map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
+            .collect()
+    };
+    Quantified {
+        parameters: propagate(of, shape, shape_sigma),
+        amplitude: context.transmission(j, shape).amplitude().to_vec(),
+        sigma: vec![0.0; 4],
     }
 }
 
+/// Quantities of a shape; the standard deviations of its numbers through a difference.
 fn propagate(of: impl Fn(&[f64]) -> Vec<Parameter>, shape: &[f64], shape_sigma: &[f64]) -> Vec<Parameter> {
     let mut list = of(shape);
     for (i, &s) in shape_sigma.iter().enumerate() {
         if s == 0.0 {
             continue;
         }
-        let step = 1e-4 * shape[i].abs().max(1e-9);
+        let step = QUANTITY_STEP * shape[i].abs().max(1e-9);
         let mut moved = shape.to_vec();
         moved[i] += step;
         for (p, q) in list.iter_mut().zip(of(&moved)) {

@@ -1,11 +1,11 @@
 //! The standard model before anything was added to it.
 
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::outcome::{Errors, Estimated};
-use crate::diagnosis::predict::errors;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 
 /// Fit and errors of the standard model alone.
@@ -54,7 +54,7 @@ pub(in crate::diagnosis) fn in_sample(regression: &Regression) -> Errors {
             whole[j] += design.gram(j, g).y_squares();
         }
     }
-    errors(&left, &whole)
+    Errors::of_squares(&left, &whole)
 }
 
 /// The base parameters with their standard deviations.

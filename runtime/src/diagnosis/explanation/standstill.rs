@@ -4,7 +4,6 @@ use crate::diagnosis::contact::standing::AtRest;
 use crate::diagnosis::explanation::finding::of_contacts;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::*;
-use crate::diagnosis::predict::errors;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::motion::Moving;
 use crate::diagnosis::rules::LEAST_ROWS;
@@ -25,8 +24,8 @@ pub(in crate::diagnosis) fn explain(
     }
     let contacts = rest.contacts(context.signals.len());
     let findings: Vec<Finding> = contacts.iter().map(of_contacts).collect();
-    let before = errors(&rest.by_joint[0], &rest.by_joint[2]);
-    let after = errors(&rest.by_joint[1], &rest.by_joint[2]);
+    let before = Errors::of_squares(&rest.by_joint[0], &rest.by_joint[2]);
+    let after = Errors::of_squares(&rest.by_joint[1], &rest.by_joint[2]);
     let estimated = Estimated { chi: context.chi.clone(), sigma: chi_sigma.to_vec() };
     let all: f64 = rest.by_joint[0].iter().sum();
     let mismatch = known

@@ -1,28 +1,23 @@
 //! Sentences for a person.
 
 use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
-use crate::effects::EffectKind;
+use crate::diagnosis::rules;
+use crate::effects::{EffectKind, Parameter, Quantities};
 use crate::model::Robot;
-use crate::report::falls_or_rises;
+use crate::report::{falls_or_rises, significant};
 
-/// A number with three significant digits.
-fn short(x: f64) -> String {
-    if x == 0.0 {
-        return "0".into();
+impl Finding {
+    /// Its quantities by name.
+    fn quantities(&self) -> Quantities {
+        let list = self.parameters.iter();
+        Quantities::new(list.map(|(name, p)| Parameter::new(name, p.value, p.sigma, &p.unit)).collect())
     }
-    let digits = (2 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    format!("{x:.digits$}")
-}
 
-fn quantity(finding: &Finding, name: &str) -> String {
-    finding.parameters.get(name).map_or_else(String::new, |p| {
-        let unit = if p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
-        if p.sigma > 0.0 && p.sigma < p.value.abs() {
-            format!("{} ± {}{unit}", short(p.value), short(p.sigma))
-        } else {
-            format!("{}{unit}", short(p.value))
-        }
-    })
+    /// The law with the numbers that were found, in SI units; `None` where no formula of one line says it.
+    pub fn formula(&self) -> Option<String> {
+        let formula = EffectKind::from_id(&self.effect)?.effect().formula(&self.quantities());
+        (!formula.is_empty()).then_some(formula)
+    }
 }
 
 /// What was found, where, how large, and what it gains.
@@ -35,59 +30,7 @@ pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Find
             format!("On joints {}", many.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and "))
         }
     };
-    let q = |name: &str| quantity(f, name);
-    let detail = match effect {
-        EffectKind::Stribeck => {
-            format!("{} more friction close to rest, gone above about {}", q("fs"), q("vs"))
-        }
-        EffectKind::NonlinearViscous => format!("friction bends with speed to the power {}", q("p")),
-        EffectKind::LoadDependentFriction => format!("friction grows by {} of the load torque", q("mu")),
-        EffectKind::PositionDependentFriction => {
-            format!("the friction level swings by {} along the travel", q("amplitude"))
-        }
-        EffectKind::AsymmetricFriction => {
-            format!("viscous friction differs by direction, half the difference is {}", q("half_difference"))
-        }
-        EffectKind::PreslidingHysteresis => {
-            format!("{} of the friction builds up over {} after a reversal", q("level"), q("distance"))
-        }
-        EffectKind::FrictionDrift => format!("friction fades with a time constant of {}", q("tau")),
-        EffectKind::FrictionLevelChange => format!("friction is {} times that of the baseline", q("factor")),
-        EffectKind::TorqueRipple => format!(
-            "a torque ripple of {} at {} waves per joint turn, that is {} per motor turn",
-            q("amplitude"),
-            q("order"),
-            q("order_per_motor_turn")
-        ),
-        EffectKind::Spring if f.parameters.contains_key("k") => format!("a spring of {}", q("k")),
-        EffectKind::Spring => "a spring that acts through a lever".into(),
-        EffectKind::Payload | EffectKind::AddedMass => {
-            format!("a body of {} at ({}, {}, {})", q("mass"), q("x"), q("y"), q("z"))
-        }
-        EffectKind::BaseTilt => format!("the base is tilted by {} and {}", q("tilt_1"), q("tilt_2")),
-        EffectKind::CoupledTransmission => {
-            format!("its motor also turns with the neighbour, ratio {}", q("ratio"))
-        }
-        EffectKind::TorqueConstantError => {
-            format!("the recorded torque is {} times the real one", q("factor"))
-        }
-        EffectKind::TorqueSaturation => {
-            format!("the torque constant is off by {} at the highest torque", q("droop_at_most_torque"))
-        }
-        EffectKind::JointElasticity => {
-            format!("the transmission is a spring of {}, ringing at about {}", q("k"), q("frequency"))
-        }
-        EffectKind::Backlash => format!("there is a play of {}", q("gap")),
-        EffectKind::TimeDelay => format!("torques were recorded {} after the positions", q("delay")),
-        EffectKind::WrongSampleRate => {
-            format!("the true sampling rate differs by a fraction of {}", q("rate_error"))
-        }
-        EffectKind::PositionOffset => format!("the encoder zero is off by {}", q("offset")),
-        EffectKind::GeometryError => {
-            format!("a length of the table is off by {}{}", q("error_d"), q("error_r"))
-        }
-        EffectKind::Contact => String::new(),
-    };
+    let detail = effect.effect().detail(&f.quantities());
     format!(
         "{place}: {}. {}: {detail}. Held-out error of {} {} from {:.2} % to {:.2} %.",
         words.title.to_lowercase(),
@@ -114,7 +57,7 @@ pub(in crate::diagnosis) fn contact(f: &Finding) -> String {
                 let joints: Vec<String> = w
                     .joint_torques
                     .iter()
-                    .map(|t| format!("{} ({} N.m)", t.joint, short(t.largest)))
+                    .map(|t| format!("{} ({} N.m)", t.joint, significant(t.largest, 3)))
                     .collect();
                 format!("joint {}", joints.join(" and "))
             } else {
@@ -124,9 +67,9 @@ pub(in crate::diagnosis) fn contact(f: &Finding) -> String {
         })
         .collect();
     let much = if f.parameters.contains_key("largest_force") {
-        quantity(f, "largest_force")
+        f.quantities().text("largest_force")
     } else {
-        quantity(f, "largest_joint_torque")
+        f.quantities().text("largest_joint_torque")
     };
     let why = if f.contacts.iter().any(|w| w.force != [0.0; 3]) {
         " Several joints jump together in the ratio of one force on one link."
@@ -174,14 +117,14 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             .collect();
         lines.push(format!("The standard model leaves out: {}.", names.join("; ")));
         lines.push(format!(
-            "With it, the error on motion that was held back ({}) {} from {:.2} % to {:.2} %.",
+            "With it, the error on motion that was held out ({}) {} from {:.2} % to {:.2} %.",
             d.held_out.how,
             falls_or_rises(d.held_out.before, d.held_out.after),
             100.0 * d.held_out.before,
             100.0 * d.held_out.after
         ));
     }
-    if d.unexplained.share > 0.3 {
+    if d.unexplained.share > rules::UNEXPLAINED {
         lines.push(format!(
             "{:.0} % of what remains is not noise: something is left that nothing in the catalogue explains.",
             100.0 * d.unexplained.share

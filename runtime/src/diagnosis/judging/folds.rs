@@ -1,7 +1,8 @@
 //! How a recording is split into motion that is fitted and motion that is predicted.
 
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::FORWARD_CUTS;
 
 /// A split: the fit to some segments, and the segments that it predicts.

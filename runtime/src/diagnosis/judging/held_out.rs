@@ -1,11 +1,11 @@
 //! Errors on motion that was held out.
 
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::forward_cuts;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::outcome::Errors;
-use crate::diagnosis::predict::errors;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rows::fit::Fit;
 
 /// Squares of the held-out residual and of the torque.
 pub(in crate::diagnosis) struct HeldOutSquares {
@@ -54,7 +54,7 @@ impl HeldOutSquares {
 
     /// Relative errors, all joints together and joint by joint.
     pub fn errors(&self) -> Errors {
-        errors(&self.left, &self.whole)
+        Errors::of_squares(&self.left, &self.whole)
     }
 
     /// Relative error of some joints together.

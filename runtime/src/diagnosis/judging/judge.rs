@@ -1,11 +1,12 @@
 //! How good a candidate is on motion that it was not fitted to.
 
 use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::{Fold, forward_cuts};
 use crate::diagnosis::judging::partial_regression::Residualised;
 use crate::diagnosis::judging::prediction::Prediction;
 use crate::diagnosis::judging::regression::Regression;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::AIC_PENALTY;
 use nalgebra::DVector;
 

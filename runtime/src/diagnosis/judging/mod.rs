@@ -9,3 +9,5 @@ pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod regression;
 pub(in crate::diagnosis) mod significance;
+#[cfg(test)]
+mod tests;

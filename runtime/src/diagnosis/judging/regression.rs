@@ -1,9 +1,10 @@
 //! The regression of the torques on the standard model's columns and those of accepted effects, on the rows of one
 //! smoothing window.
 
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::{Fold, folds};
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::{Fit, SingularDesign};
+use crate::diagnosis::rows::fit::Fit;
 use std::ops::Range;
 
 /// Rows and columns with their fit, their folds, and the noise of each joint. What is asked of all four is asked here:

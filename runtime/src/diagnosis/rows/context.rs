@@ -1,10 +1,11 @@
 //! Everything that columns are made from: the model, the motions, and the current standard parameters.
 
-use crate::diagnosis::DiagnosisError;
-use crate::diagnosis::rows::signals::{ModelTorques, Signals, joint_kinds};
+use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::rows::signals::{ModelTorques, Signals};
+use crate::diagnosis::rules::{DRIVING_BAND, LEAST_LINK_INERTIA, RATE_PER_CUTOFF, TOP_SPEED_PERCENT};
 use crate::effects::{
-    At, CoupledTransmission, Direction, EffectKind, Form, Place, Scale, Transmission, body_columns,
-    deflection, derivable, derivative,
+    At, CoupledRotor, Direction, EffectKind, Form, JointLaw, Place, Scale, Sensitivity, Transmission,
+    body_columns, deflection, derivable, derivative,
 };
 use crate::model::{JointKind, Link, Model, RecursiveModel};
 use crate::signal::{Butterworth, Stencil, central_difference};
@@ -21,9 +22,6 @@ struct Links {
     /// Mass matrix, `[i * n + j][t]`.
     mass: Vec<Vec<f64>>,
 }
-
-/// Cut-off of the motion that drives compliant links, Hz.
-const DRIVING_BAND: f64 = 15.0;
 
 pub(in crate::diagnosis) struct Context<'a> {
     pub model: &'a dyn Model,
@@ -74,102 +72,87 @@ impl<'a> Context<'a> {
         &self.tables
     }
 
-    /// The columns of an effect in one motion, one per amplitude.
+    /// The columns of an effect in one motion, one per amplitude; none where the effect cannot be at the place.
     pub fn series(&self, signal: usize, effect: EffectKind, place: Place, shape: &[f64]) -> Vec<Series> {
-        match (effect.form(), place) {
-            (Form::Joint(law), Place::Joint(j)) => {
-                let s = &self.signals[signal];
-                let torques = &self.torques[signal];
-                let scale = &self.scales[j];
-                let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
-                let mut out = vec![0.0; columns.len()];
-                let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));
-                for t in 0..s.len() {
-                    memory = law.advance(shape, memory, s.q[j][t] - before);
-                    before = s.q[j][t];
-                    let dq = s.dq[j][t];
-                    let at = At {
-                        time: s.time(t),
-                        q: s.q[j][t],
-                        dq,
-                        sign: if dq > 0.0 { 1.0 } else { -1.0 },
-                        load: torques.rigid[j][t],
-                        torque: torques.total[j][t],
-                        friction: torques.friction[j][t],
-                    };
-                    law.law(scale, shape, &at, memory, &mut out);
-                    for (column, &value) in columns.iter_mut().zip(&out) {
-                        column[t] = value;
-                    }
-                }
-                columns.into_iter().map(|c| vec![(j, c)]).collect()
-            }
-            (Form::Sensitivity(law), Place::Variant(v)) => {
-                let variants = law.variants(self.model.robot());
-                let wanted = if law.together() { &variants[..] } else { &variants[v..=v] };
-                let s = &self.signals[signal];
-                let mut columns: Vec<Series> = wanted
-                    .iter()
-                    .enumerate()
-                    .map(|(which, _)| {
-                        let mut out = vec![Vec::new(); s.q.len()];
-                        derivative(
-                            &self.engine,
-                            self.model.robot().gravity,
-                            &self.chi,
-                            law,
-                            &Direction { variants: wanted, which, at: shape },
-                            [&s.q, &s.dq, &s.ddq, &s.jerk],
-                            &mut out,
-                        );
-                        out.into_iter().enumerate().collect()
-                    })
-                    .collect();
-                if effect == EffectKind::BaseTilt && !shape.is_empty() {
-                    columns.extend(self.hidden_moments(signal));
-                }
-                columns
-            }
-            (Form::Body(_), Place::Link(frame)) => self.body(signal, frame),
-            (Form::Compliance(_), Place::Joint(j)) => vec![self.compliant(signal, j, shape)],
-            (Form::Coupled, Place::Pair(a, b)) => {
-                let s = &self.signals[signal];
-                let law = CoupledTransmission { ratio: shape[0] };
-                let mut columns = vec![[vec![0.0; s.len()], vec![0.0; s.len()]]; 3];
-                for t in 0..s.len() {
-                    let values = law.columns([s.dq[a][t], s.dq[b][t]], [s.ddq[a][t], s.ddq[b][t]]);
-                    for (column, value) in columns.iter_mut().zip(values) {
-                        column[0][t] = value[0];
-                        column[1][t] = value[1];
-                    }
-                }
-                columns.into_iter().map(|[x, y]| vec![(a, x), (b, y)]).collect()
-            }
-            _ => Vec::new(),
-        }
+        let columns = match effect.form() {
+            Form::Joint(law) => place.joint().map(|j| self.of_joint(signal, law, j, shape)),
+            Form::Sensitivity(law) => place.variant().map(|v| self.derivatives(signal, law, v, shape)),
+            Form::Compliance(_) => place.joint().map(|j| vec![self.compliant(signal, j, shape)]),
+            Form::Body(_) => place.link().map(|frame| self.body(signal, frame)),
+            Form::Coupled => place.pair().map(|joints| self.coupled(signal, joints, shape)),
+            Form::Window => None,
+        };
+        columns.unwrap_or_default()
     }
 
-    /// Gravity that has left the direction of a first axis pulls at first moments that upright gravity never showed:
-    /// a sine and a cosine of that joint's angle.
-    fn hidden_moments(&self, signal: usize) -> Vec<Series> {
-        let robot = self.model.robot();
-        let g = robot.gravity;
-        let size = g.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let joint_of = robot.joint_of_frame();
-        let mut columns = Vec::new();
-        for (frame, joint) in robot.frames.iter().zip(joint_of) {
-            let (Some(j), None, JointKind::Revolute) = (joint, frame.parent, frame.kind) else { continue };
-            // Its axis is z of the frame: turned by gamma about z, then by alpha about x.
-            let (sine, cosine) = frame.alpha.sin_cos();
-            let axis = [frame.gamma.sin() * sine, -frame.gamma.cos() * sine, cosine];
-            let along = axis.iter().zip(g).map(|(a, g)| a * g).sum::<f64>().abs();
-            if along > 0.999 * size {
-                let q = &self.signals[signal].q[j];
-                columns.push(vec![(j, q.iter().map(|q| q.sin()).collect())]);
-                columns.push(vec![(j, q.iter().map(|q| q.cos()).collect())]);
+    fn of_joint(&self, signal: usize, law: &dyn JointLaw, j: usize, shape: &[f64]) -> Vec<Series> {
+        let s = &self.signals[signal];
+        let torques = &self.torques[signal];
+        let scale = &self.scales[j];
+        let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
+        let mut out = vec![0.0; columns.len()];
+        let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));
+        for t in 0..s.len() {
+            memory = law.advance(shape, memory, s.q[j][t] - before);
+            before = s.q[j][t];
+            let dq = s.dq[j][t];
+            let at = At {
+                time: s.time(t),
+                q: s.q[j][t],
+                dq,
+                sign: if dq > 0.0 { 1.0 } else { -1.0 },
+                load: torques.rigid[j][t],
+                torque: torques.total[j][t],
+                friction: torques.friction[j][t],
+            };
+            law.law(scale, shape, &at, memory, &mut out);
+            for (column, &value) in columns.iter_mut().zip(&out) {
+                column[t] = value;
             }
         }
+        columns.into_iter().map(|c| vec![(j, c)]).collect()
+    }
+
+    /// Derivatives with respect to the variant `v`, or to all together, on the way to the error `at`.
+    fn derivatives(&self, signal: usize, law: &dyn Sensitivity, v: usize, at: &[f64]) -> Vec<Series> {
+        let robot = self.model.robot();
+        let variants = law.variants(robot);
+        let wanted = if law.together() { &variants[..] } else { variants.get(v..=v).unwrap_or_default() };
+        let s = &self.signals[signal];
+        let mut columns: Vec<Series> = (0..wanted.len())
+            .map(|which| {
+                let mut out = vec![Vec::new(); s.q.len()];
+                derivative(
+                    &self.engine,
+                    robot.gravity,
+                    &self.chi,
+                    law,
+                    &Direction { variants: wanted, which, at },
+                    [&s.q, &s.dq, &s.ddq, &s.jerk],
+                    &mut out,
+                );
+                out.into_iter().enumerate().collect()
+            })
+            .collect();
+        if !at.is_empty() {
+            columns.extend(law.uncovered(robot, &s.q).into_iter().map(|column| vec![column]));
+        }
         columns
+    }
+
+    fn coupled(&self, signal: usize, [a, b]: [usize; 2], shape: &[f64]) -> Vec<Series> {
+        let s = &self.signals[signal];
+        let Some(&ratio) = shape.first() else { return Vec::new() };
+        let law = CoupledRotor { ratio };
+        let mut columns = vec![[vec![0.0; s.len()], vec![0.0; s.len()]]; 3];
+        for t in 0..s.len() {
+            let values = law.columns([s.dq[a][t], s.dq[b][t]], [s.ddq[a][t], s.ddq[b][t]]);
+            for (column, value) in columns.iter_mut().zip(values) {
+                column[0][t] = value[0];
+                column[1][t] = value[1];
+            }
+        }
+        columns.into_iter().map(|[x, y]| vec![(a, x), (b, y)]).collect()
     }
 
     fn body(&self, signal: usize, frame: usize) -> Vec<Series> {
@@ -218,17 +201,26 @@ impl<'a> Context<'a> {
         let t = self.transmission(j, shape);
         let links = self.links(signal);
         let own = &links.mass[j * n + j];
-        let inertia: Vec<f64> = own.iter().map(|m| (m - t.rotor).max(1e-3 * m.abs()).max(1e-9)).collect();
+        let inertia: Vec<f64> =
+            own.iter().map(|m| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9)).collect();
         let load: Vec<f64> = links.load[j].iter().zip(&links.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
-        let mut felt = vec![0.0; load.len()];
-        deflection(&load, &inertia, self.signals[signal].rate, &t, &mut felt);
+        let mut transmitted_torque = vec![0.0; load.len()];
+        deflection(&load, &inertia, self.signals[signal].rate, &t, &mut transmitted_torque);
         (0..n)
             .map(|i| {
                 if i == j {
-                    return (j, felt.clone());
+                    return (j, transmitted_torque.clone());
                 }
                 let other = &links.mass[i * n + j];
-                (i, felt.iter().zip(other).zip(&inertia).map(|((f, m), own)| f * m / own).collect())
+                (
+                    i,
+                    transmitted_torque
+                        .iter()
+                        .zip(other)
+                        .zip(&inertia)
+                        .map(|((f, m), own)| f * m / own)
+                        .collect(),
+                )
             })
             .collect()
     }
@@ -237,7 +229,7 @@ impl<'a> Context<'a> {
         self.links[signal].get_or_init(|| {
             let s = &self.signals[signal];
             let n = s.q.len();
-            let filter = Butterworth::low_pass(4, DRIVING_BAND.min(s.rate / 5.0), s.rate).ok();
+            let filter = Butterworth::low_pass(4, DRIVING_BAND.min(s.rate / RATE_PER_CUTOFF), s.rate).ok();
             let q: Vec<Vec<f64>> =
                 s.q.iter()
                     .map(|x| filter.as_ref().and_then(|f| f.zero_phase(x).ok()).unwrap_or_else(|| x.clone()))
@@ -275,7 +267,7 @@ impl<'a> Context<'a> {
 pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec<Scale> {
     let robot = model.robot();
     let n = robot.joints();
-    let kinds = joint_kinds(robot);
+    let kinds = robot.joint_kinds();
     let speeds = top_speeds(signals, n);
     let duration = signals.iter().map(|s| s.time(s.len().max(1) - 1)).fold(0.0, f64::max);
     let mut torque = vec![0.0_f64; n];
@@ -310,7 +302,7 @@ pub(in crate::diagnosis) fn top_speeds(signals: &[Signals], joints: usize) -> Ve
                 .map(|s| {
                     let mut v: Vec<f64> = s.dq[j].iter().map(|x| x.abs()).collect();
                     v.sort_by(f64::total_cmp);
-                    v.get(v.len() * 98 / 100).copied().unwrap_or(0.0)
+                    v.get(v.len() * TOP_SPEED_PERCENT / 100).copied().unwrap_or(0.0)
                 })
                 .fold(0.0, f64::max)
         })

@@ -1,19 +1,10 @@
 //! Weighted least squares from Gram matrices: on all segments of a design, or on some of them.
 
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::Gram;
 use crate::diagnosis::rules::{FIT_RIDGE, LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-
-/// The normal equations of a design have no solution, ridge and all: a column or a torque is not finite.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the normal equations of {columns} columns cannot be solved: a column or a torque is not a finite number"
-)]
-pub struct SingularDesign {
-    /// Columns of the design.
-    pub columns: usize,
-}
 
 /// A fit of the columns of a design on some of its segments, with weights 1 / sigma² per joint.
 #[derive(Clone)]

@@ -1,6 +1,7 @@
 //! Gram matrices: inner products of the columns of a design and of its torques, on one group of rows.
 //!
-//! Least squares, folds, candidates and held-out errors all follow from these products; rows are read only to make them.
+//! Least squares, folds, candidates and held-out errors all follow from these products; rows are read only to make
+//! them.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -18,7 +19,8 @@ impl Gram {
         Self { columns, products: vec![0.0; (columns + 1) * (columns + 1)] }
     }
 
-    /// Of columns and y on the same rows. The first `kept` columns are those of `before`, whose products are taken over.
+    /// Of columns and y on the same rows; `before`: a Gram matrix and how many of its first columns are the same, whose
+    /// products are taken over.
     pub fn new(columns: &[&[f64]], y: &[f64], before: Option<(&Gram, usize)>) -> Self {
         let p = columns.len();
         let mut gram = Self::zero(p);

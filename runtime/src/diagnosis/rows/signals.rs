@@ -1,8 +1,8 @@
 //! Motions at the full rate, ready for laws and models.
 
-use crate::diagnosis::DiagnosisError;
-use crate::diagnosis::rules::{PART_OF_NYQUIST, RATE_PER_CUTOFF, SAMPLES_PER_SECOND};
-use crate::model::{JointKind, Model, ParameterKind, Robot, States};
+use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::rules::{RATE_PER_CUTOFF, RECORDED_BAND, SAMPLES_PER_SECOND};
+use crate::model::{Model, ParameterKind, Robot, States};
 use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
 
@@ -155,11 +155,9 @@ impl Signals {
     /// slow, and it is the filtered torque.
     pub fn recorded_torque(&self, joint: usize) -> (Vec<f64>, f64) {
         match &self.recorded {
-            Some(r) if r.stride == 1 => {
-                (shifted(&r.torque[joint], r.delay * r.rate), PART_OF_NYQUIST * 0.5 * r.rate)
-            }
+            Some(r) if r.stride == 1 => (shifted(&r.torque[joint], r.delay * r.rate), RECORDED_BAND * r.rate),
             Some(r) => (self.torque[joint].clone(), r.cutoff),
-            None => (self.torque[joint].clone(), PART_OF_NYQUIST * 0.5 * self.rate),
+            None => (self.torque[joint].clone(), RECORDED_BAND * self.rate),
         }
     }
 
@@ -276,9 +274,4 @@ pub(in crate::diagnosis) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
         }
     }
     forms
-}
-
-/// Kind of each joint.
-pub(in crate::diagnosis) fn joint_kinds(robot: &Robot) -> Vec<JointKind> {
-    robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect()
 }

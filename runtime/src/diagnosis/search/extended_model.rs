@@ -1,15 +1,14 @@
 //! The standard model with accepted effects, fitted on the rows of both smoothing windows.
 
-use crate::diagnosis::DiagnosisError;
-use crate::diagnosis::candidates::candidate::SmoothingWindow;
 use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
+use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Regression, TermColumns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::Form;
+use crate::effects::SmoothingWindow;
 
 /// The standard model, the effects that were accepted, and both regressions with them.
 pub(in crate::diagnosis) struct ExtendedModel<'a> {
@@ -53,14 +52,14 @@ impl<'a> ExtendedModel<'a> {
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
-        let bent = self.terms.iter().any(|t| matches!(t.effect.form(), Form::Sensitivity(_)));
+        let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
         for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
             put_terms(&mut self.slow, &self.context, &self.terms, self.change)?;
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi);
             // An error that is not small bends its own column: derivatives are taken along the way to it.
             for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
-                if matches!(term.effect.form(), Form::Sensitivity(_)) {
+                if term.effect.form().shape_is_amplitude() {
                     term.shape = columns
                         .clone()
                         .map(|c| self.slow.fit.chi[c].clamp(-LARGEST_ERROR, LARGEST_ERROR))

@@ -3,7 +3,7 @@
 //! What one of them leaves makes the residual correlated and hides the other: on a short recording neither is certain
 //! alone. With one of them in the model, the other can be, and then the first beside it.
 
-use crate::diagnosis::rows::fit::SingularDesign;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rules::FIRST_OF_PAIR;
 use crate::diagnosis::search::select::Winner;
 use crate::diagnosis::search::state::Search;

@@ -3,19 +3,9 @@
 use crate::diagnosis::candidates::candidate::{Candidate, make};
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rules::{MOST_EVALUATIONS, SMALLEST_STEP};
 use crate::diagnosis::search::state::Search;
-use crate::effects::{EffectKind, Form, Place};
 use crate::parallel;
-
-/// Shapes that a refinement tries at most.
-const MOST_EVALUATIONS: usize = 80;
-
-/// How a shape parameter is varied.
-#[derive(Debug, Clone, Copy)]
-enum Step {
-    Times(f64),
-    Add(f64),
-}
 
 impl Search<'_> {
     /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
@@ -36,6 +26,7 @@ impl Search<'_> {
         }
     }
 
+    /// The shape near `start` that explains most of all motion.
     pub(in crate::diagnosis) fn refined(
         &self,
         regression: &Regression,
@@ -48,67 +39,18 @@ impl Search<'_> {
             let one = make(context, &regression.design, effect, place, &shape, self.model.change);
             regression.whole_gain(&one)
         };
-        let steps: Vec<Step> = match candidate.effect.form() {
-            Form::Joint(_) if candidate.effect == EffectKind::TorqueRipple => {
-                let Place::Joint(j) = candidate.place else { return start.to_vec() };
-                vec![Step::Add(std::f64::consts::PI / context.scales[j].range)]
-            }
-            Form::Joint(law) => law.refinement().iter().map(|&f| Step::Times(f)).collect(),
-            Form::Compliance(_) => {
-                vec![Step::Times(1.12), Step::Times(1.9), Step::Add(0.15), Step::Times(1.4)]
-            }
-            Form::Coupled => vec![Step::Times(1.4)],
-            _ => Vec::new(),
-        };
-        // A law of a joint stays within a step of its grid: a power of nearly 0 is a second Coulomb level.
-        let bounds: Vec<(f64, f64)> = match candidate.effect.form() {
-            Form::Joint(law) => law
-                .refinement()
-                .iter()
-                .enumerate()
-                .map(|(k, f)| {
-                    let values = candidate.trials.iter().filter_map(|t| t.shape.get(k));
-                    let (low, high) =
-                        values.fold((f64::INFINITY, 0.0_f64), |(low, high), &x| (low.min(x), high.max(x)));
-                    (low / f, high * f)
-                })
-                .collect(),
-            _ => Vec::new(),
-        };
-        // Pattern search (Hooke and Jeeves 1961): one parameter at a time, and frequency with rotor, which trade
-        // against each other along the ridge of one stiffness.
-        let mut moves: Vec<Vec<(usize, f64)>> = Vec::new();
-        for k in 0..steps.len().min(start.len()) {
-            moves.extend([vec![(k, 1.0)], vec![(k, -1.0)]]);
-        }
-        if matches!(candidate.effect.form(), Form::Compliance(_)) {
-            moves.extend([vec![(0, 0.4), (2, 1.0)], vec![(0, -0.4), (2, -1.0)]]);
-        }
+        let grid: Vec<&[f64]> = candidate.trials.iter().map(|t| t.shape.as_slice()).collect();
+        let search = candidate.effect.form().shape_search(candidate.place, &context.scales, &grid);
+        // Pattern search (Hooke and Jeeves 1961).
+        let moves = search.moves(start.len());
         let mut shape = start.to_vec();
         let mut value = gain(&shape);
         let mut size = 1.0;
         let mut evaluations = 0;
-        while size > 0.02 && evaluations < MOST_EVALUATIONS {
+        while size > SMALLEST_STEP && evaluations < MOST_EVALUATIONS {
             let mut better = false;
-            for directions in &moves {
-                let mut next = shape.clone();
-                for &(k, direction) in directions {
-                    match steps[k] {
-                        Step::Times(f) => {
-                            next[k] *= f.powf(direction * size);
-                            if let Some(&(low, high)) = bounds.get(k)
-                                && low < high
-                            {
-                                next[k] = next[k].clamp(low, high);
-                            }
-                        }
-                        Step::Add(d) => next[k] = (next[k] + d * direction * size).max(0.0),
-                    }
-                }
-                if matches!(candidate.effect.form(), Form::Compliance(_)) {
-                    // The rotor is a part of the inertia that the motor sees.
-                    next[2] = next[2].min(0.95);
-                }
+            for along in &moves {
+                let next = search.moved(&shape, along, size);
                 if next == shape {
                     continue;
                 }

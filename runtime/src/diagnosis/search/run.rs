@@ -2,9 +2,9 @@
 //!
 //! Every candidate is judged after all standard parameters have been refitted with it, on motion that was held out.
 
-use crate::diagnosis::candidates::candidate::{make, smoothing_window};
+use crate::diagnosis::candidates::candidate::make;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::StopReason;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::KEPT_FRACTION;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
@@ -12,7 +12,7 @@ use crate::diagnosis::search::select::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::{EffectKind, Form};
+use crate::effects::EffectKind;
 
 impl Search<'_> {
     /// Adds effects as long as one improves held-out motion; takes out what does not hold beside the others.
@@ -51,10 +51,7 @@ impl Search<'_> {
             }
             let found = match winner {
                 Some(winner) => vec![self.accept(&winner)],
-                None => match self.pair(settings)? {
-                    Some(pair) => pair.into(),
-                    None => self.next_line().into_iter().collect(),
-                },
+                None => self.pair(settings)?.map_or_else(Vec::new, Vec::from),
             };
             if found.is_empty() {
                 return Ok(StopReason::NoneAccepted);
@@ -72,10 +69,10 @@ impl Search<'_> {
     /// As [`Self::run`].
     pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) -> Result<SearchReport, SingularDesign> {
         for &(effect, joint) in known {
-            if matches!(effect.form(), Form::Compliance(_)) {
+            if effect.form().fixed_amplitude().is_some() {
                 self.polish(self.threads);
             }
-            let window = smoothing_window(effect);
+            let window = effect.properties().window;
             let regression = self.model.regression(window);
             let best = self
                 .candidates(window)
@@ -105,7 +102,6 @@ impl Search<'_> {
             let joint = (old.own.len() < self.model.slow.design.joints).then(|| old.own[0]);
             let replacement = self.best(settings, joint, 1)?.map(|w| self.accept(&w));
             let keep = match replacement {
-                None if self.is_line(&old) => Some(old.clone()),
                 Some(new) if new.effect == old.effect && new.place == old.place => Some(Accepted {
                     shape: new.shape,
                     explained_fraction: new.explained_fraction,
@@ -156,14 +152,13 @@ impl Search<'_> {
     ) -> Result<bool, SingularDesign> {
         let model = &self.model;
         let without = held_out_error(model, term)?;
-        let regression = model.regression(smoothing_window(term.effect));
+        let regression = model.regression(term.effect.properties().window);
         let shape = std::slice::from_ref(&term.shape);
         let candidate =
             make(&model.context, &regression.design, term.effect, term.place, shape, model.change);
-        let worth = regression.judge(&candidate).is_some_and(|v| {
-            let enough = v.explained_fraction >= KEPT_FRACTION * settings.least_share;
-            (enough || self.is_line(term)) && v.total() > 0.0
-        });
+        let worth = regression
+            .judge(&candidate)
+            .is_some_and(|v| v.explained_fraction >= KEPT_FRACTION * settings.least_share && v.total() > 0.0);
         let better = if regression.design.is_single_motion() {
             regression.holds_forward(&candidate, 0)?
         } else {
@@ -175,5 +170,5 @@ impl Search<'_> {
 
 /// Held-out error of the joints of a term.
 fn held_out_error(model: &ExtendedModel<'_>, term: &Accepted) -> Result<f64, SingularDesign> {
-    Ok(model.regression(smoothing_window(term.effect)).held_out(false)?.error_on(&term.own))
+    Ok(model.regression(term.effect.properties().window).held_out(false)?.error_on(&term.own))
 }

@@ -1,17 +1,17 @@
 //! Which candidate of a round holds.
 
-use crate::diagnosis::candidates::candidate::{Candidate, SmoothingWindow};
+use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::significance::Evidence;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::{
     FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, NESTED_CASE_SUFFICES, RIVALS, STRETCHES_PER_LOSS,
 };
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
-use crate::effects::EffectKind;
+use crate::effects::SmoothingWindow;
 use crate::parallel;
 
 /// What passed a round: the window of its rows, the candidate's index there, and its verdict.
@@ -152,7 +152,7 @@ impl Search<'_> {
 
     /// Whether the nested special case of a law explains nearly as much at the same place.
     fn nested_case_suffices(&self, ranked: &[Ranked], more: &Candidate, verdict: &Verdict) -> bool {
-        let Some(nested) = nested_case(more.effect) else { return false };
+        let Some(nested) = more.effect.special_case() else { return false };
         ranked.iter().any(|other| {
             let candidate = self.of(other).1;
             candidate.effect == nested
@@ -183,17 +183,6 @@ impl Search<'_> {
             explained_fraction: winner.verdict.explained_fraction,
             rivals: winner.rivals.clone(),
         }
-    }
-}
-
-/// The nested special case of an effect: backlash with zero gap is elasticity.
-fn nested_case(effect: EffectKind) -> Option<EffectKind> {
-    match effect {
-        // Play is one number more than a spring.
-        EffectKind::Backlash => Some(EffectKind::JointElasticity),
-        // A level that changes slowly, against one that has changed since the baseline.
-        EffectKind::FrictionDrift => Some(EffectKind::FrictionLevelChange),
-        _ => None,
     }
 }
 

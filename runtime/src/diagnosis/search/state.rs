@@ -1,16 +1,16 @@
 //! What a search works on: the model as it is, the candidates on the rows of both windows, and what was taken out.
 
-use crate::diagnosis::candidates::candidate::{Candidate, SmoothingWindow, build, proposals};
+use crate::diagnosis::candidates::candidate::{Candidate, build, proposals};
 use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
 use crate::diagnosis::candidates::trial::columns;
+use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::OrderSpectrum;
-use crate::diagnosis::rows::fit::SingularDesign;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::line::{JointLines, all_lines};
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::{EffectKind, Form};
+use crate::effects::SmoothingWindow;
 use crate::model::JointIndex;
 use crate::parallel;
 
@@ -31,17 +31,6 @@ pub(in crate::diagnosis) struct Search<'a> {
     pub threads: usize,
 }
 
-/// Effects whose columns follow the standard parameters.
-fn follows_parameters(effect: EffectKind) -> bool {
-    matches!(
-        effect,
-        EffectKind::LoadDependentFriction
-            | EffectKind::TorqueConstantError
-            | EffectKind::TorqueSaturation
-            | EffectKind::FrictionLevelChange
-    )
-}
-
 impl<'a> Search<'a> {
     /// Builds all candidates; `slowest` are the speeds of standstill, per joint.
     pub fn new(
@@ -60,7 +49,7 @@ impl<'a> Search<'a> {
         let mut fast = proposals(context, SmoothingWindow::Fast, change, &orders);
         if settings.fast_window >= settings.slow_window {
             // The recording is too slow to hold the ringing and the bursts of compliant transmissions.
-            fast.retain(|(effect, ..)| !matches!(effect.form(), Form::Compliance(_)));
+            fast.retain(|(effect, ..)| !effect.form().is_fast_only());
         }
         let tried = slow.iter().chain(&fast).map(|p| p.2.len()).sum();
         let mut slow = build(context, &model.slow.design, &slow, change, threads, &|done| {
@@ -104,7 +93,7 @@ impl<'a> Search<'a> {
                 }
                 let (effect, place) = (candidate.effect, candidate.place);
                 for trial in &mut candidate.trials {
-                    if follows_parameters(effect) {
+                    if effect.properties().follows_parameters {
                         trial.columns =
                             columns(&model.context, design, effect, place, &trial.shape, model.change);
                         trial.refresh(design);
@@ -124,7 +113,7 @@ impl<'a> Search<'a> {
     /// Whether a candidate is in the model already, or has been taken out of it.
     pub fn is_excluded(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
-        candidate.effect != EffectKind::TorqueRipple && self.model.terms.iter().any(same)
+        !candidate.effect.properties().repeats && self.model.terms.iter().any(same)
             || self.rejected.iter().any(same)
     }
 }

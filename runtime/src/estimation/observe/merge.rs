@@ -1,6 +1,8 @@
 //! Pieces of one trajectory, observed one after the other, as the trajectory.
 
-use super::{EquationFactor, LeftOut, Observation, ObserveError, TimeBlock};
+use super::error::ObserveError;
+use super::observation::{EquationFactor, Observation, TimeBlock};
+use super::select::LeftOut;
 
 /// Most blocks of time of one trajectory: their factors are kept in memory.
 const MOST_BLOCKS: usize = 128;

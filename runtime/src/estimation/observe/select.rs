@@ -1,27 +1,9 @@
 //! Which rows are used: standstill, joints that are fixed, windows of time.
 
-use super::{Equations, ObserveError, ObserveSettings, Prepared};
-use crate::signal::{Decimator, KeptRows, Motion, Standstill as DetectedStandstill};
-
-/// What is done with rows where the joint of the equation hardly moves.
-///
-/// At rest the sign of the speed is noise and friction takes any value below its break-away level, so that such
-/// rows pull Coulomb friction towards zero. The power model keeps all rows: what rests has no power.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Standstill {
-    /// Rows are left out where the joint is slower than 2 % of its fast speed or than the noise of its speed, or
-    /// turns within the reach of the row: [`crate::signal::Standstill`].
-    #[default]
-    Automatic,
-    /// The same with speeds that were detected before: on the first piece of a long recording.
-    Detected(DetectedStandstill),
-    /// Every row is used.
-    Keep,
-    /// Rows where the joint is slower than this share of its fastest speed in the motion are left out.
-    BelowShare(f64),
-    /// Rows where joint j is slower than the j-th value, rad/s or m/s, are left out.
-    Below(Vec<f64>),
-}
+use super::error::ObserveError;
+use super::settings::{Equations, ObserveSettings};
+use super::standstill::Standstill;
+use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// How many rows of one equation of one motion were used.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -54,7 +36,7 @@ pub(super) fn select(
     equations: Equations,
     decimator: &Decimator,
     grid: KeptRows,
-    detected: &DetectedStandstill,
+    detected: &StandstillSpeeds,
     settings: &ObserveSettings,
 ) -> Result<Vec<Selection>, ObserveError> {
     let n = motion.dq.len();
@@ -107,7 +89,7 @@ fn moving(
     motion: &Motion,
     grid: KeptRows,
     decimator: &Decimator,
-    detected: &DetectedStandstill,
+    detected: &StandstillSpeeds,
     policy: &Standstill,
 ) -> Result<Vec<Vec<bool>>, ObserveError> {
     let n = motion.dq.len();
@@ -133,16 +115,21 @@ fn moving(
     Ok(motion.dq.iter().zip(speeds).map(faster).collect())
 }
 
-/// What is to blame when no row is left.
-pub(super) fn why_nothing(prepared: &[Prepared<'_>], settings: &ObserveSettings) -> String {
+/// What is to blame when no row is left of motions of which the longest lasts `longest` seconds.
+pub(super) fn why_nothing<'a>(
+    left_out: impl Iterator<Item = &'a LeftOut>,
+    no_motion: bool,
+    longest: f64,
+    band: f64,
+) -> String {
     let mut total = LeftOut::default();
-    for selection in prepared.iter().flat_map(|p| &p.selection) {
-        total.standstill += selection.left_out.standstill;
-        total.fixed += selection.left_out.fixed;
-        total.windows += selection.left_out.windows;
-        total.edges += selection.left_out.edges;
+    for equation in left_out {
+        total.standstill += equation.standstill;
+        total.fixed += equation.fixed;
+        total.windows += equation.windows;
+        total.edges += equation.edges;
     }
-    if prepared.is_empty() {
+    if no_motion {
         return "there is no motion".to_owned();
     }
     if total.windows > 0 {
@@ -151,12 +138,7 @@ pub(super) fn why_nothing(prepared: &[Prepared<'_>], settings: &ObserveSettings)
     if total.standstill + total.fixed > 0 {
         return "no joint moves".to_owned();
     }
-    let longest = prepared
-        .iter()
-        .map(|p| p.motion.q.first().map_or(0, Vec::len) as f64 / p.motion.rate)
-        .fold(0.0, f64::max);
     format!(
-        "the longest motion lasts {longest:.3} s, which is less than the filters need for rows of {} Hz",
-        settings.band
+        "the longest motion lasts {longest:.3} s, which is less than the filters need for rows of {band} Hz"
     )
 }

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::stream::BLOCK;
-use super::{Equations, ExtraColumns, ObserveError};
+use super::block::BLOCK;
+use super::error::ObserveError;
+use super::settings::{Equations, ExtraColumns};
 use crate::model::{LINE, Lanes, Line, Model, ParameterKind, States};
 use crate::signal::Motion;
 
@@ -58,7 +59,7 @@ pub(super) fn source<'a>(
 ) -> Result<Box<dyn Source + 'a>, ObserveError> {
     let n = model.robot().joints();
     check(n, motion)?;
-    let signals = Signals::new(motion, n);
+    let signals = MotionOfMovingJoints::new(motion, n);
     Ok(match equations {
         Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
         Equations::Power { closed_form } => {
@@ -94,8 +95,8 @@ fn check(n: usize, motion: &Motion) -> Result<(), ObserveError> {
     Ok(())
 }
 
-/// A motion in which joints that are said to stand still have no speed.
-struct Signals<'a> {
+/// A motion in which the velocity and acceleration of joints that are said to stand still are zero.
+struct MotionOfMovingJoints<'a> {
     motion: &'a Motion,
     fixed: Vec<bool>,
     zeros: Vec<f64>,
@@ -103,10 +104,10 @@ struct Signals<'a> {
 
 type Slices<'s> = [[&'s [f64]; MAX_JOINTS]; 3];
 
-impl<'a> Signals<'a> {
-    fn new(motion: &'a Motion, n: usize) -> Signals<'a> {
+impl<'a> MotionOfMovingJoints<'a> {
+    fn new(motion: &'a Motion, n: usize) -> MotionOfMovingJoints<'a> {
         let fixed = (0..n).map(|j| motion.fixed.contains(&j)).collect();
-        Signals { motion, fixed, zeros: vec![0.0; STRIDE] }
+        MotionOfMovingJoints { motion, fixed, zeros: vec![0.0; STRIDE] }
     }
 
     /// Positions, velocities and accelerations of a range of at most [`BLOCK`] samples and one on each side.
@@ -130,7 +131,7 @@ fn states<'s>(slices: &'s Slices<'s>, n: usize) -> States<'s> {
 struct Torque<'a> {
     model: &'a dyn Model,
     trajectory: usize,
-    signals: Signals<'a>,
+    signals: MotionOfMovingJoints<'a>,
     extra: Option<&'a dyn ExtraColumns>,
     filtered: Vec<usize>,
     n: usize,
@@ -140,7 +141,7 @@ impl<'a> Torque<'a> {
     fn new(
         model: &'a dyn Model,
         trajectory: usize,
-        signals: Signals<'a>,
+        signals: MotionOfMovingJoints<'a>,
         extra: Option<&'a dyn ExtraColumns>,
         n: usize,
     ) -> Torque<'a> {
@@ -223,7 +224,7 @@ impl Source for Torque<'_> {
 /// (11): the columns of dh, then the power P = dqT tau (12).
 struct Power<'a> {
     model: &'a dyn Model,
-    signals: Signals<'a>,
+    signals: MotionOfMovingJoints<'a>,
     closed_form: bool,
     /// Columns that have an energy; the others are friction.
     inertial: Vec<bool>,

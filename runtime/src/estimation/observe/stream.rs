@@ -5,12 +5,11 @@ use std::ops::Range;
 
 use wide::f64x4;
 
+use super::block::BLOCK;
 use super::source::Source;
 use crate::model::{LINE, Line};
 use crate::signal::{Decimator, KeptRows};
 
-/// Samples that are evaluated at a time, a whole number of lines.
-pub(super) const BLOCK: usize = 64;
 /// Columns that are filtered together.
 const QUAD: usize = 4;
 /// Rows that are: twelve sums, three taps and a sample are what sixteen registers hold.

@@ -1,8 +1,10 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::estimation::Factor;
 use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot, StateSlices, torques};
 use nalgebra::DMatrix;
 use std::borrow::Cow;
+use std::ops::Range;
 
 const RATE: f64 = 500.0;
 

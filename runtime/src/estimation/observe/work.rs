@@ -4,9 +4,11 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::observation::{EquationFactor, TimeBlock};
+use super::prepared::Prepared;
 use super::rows::Rows;
+use super::settings::{ObserveSettings, Progress};
 use super::stream::decimate;
-use super::{EquationFactor, ObserveSettings, Prepared, Progress, TimeBlock};
 use crate::estimation::{BLOCK_ROWS, Factor};
 use crate::parallel;
 

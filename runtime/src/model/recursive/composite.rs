@@ -1,6 +1,6 @@
 //! Mass matrix by composite bodies and bias by Newton-Euler (Walker and Orin 1982).
 
-use super::MAX_FRAMES;
+use super::error::MAX_FRAMES;
 use super::kinematics::{Link, propagate};
 use super::vector::{Mat3, Vec3, add, apply, cross, multiply, scale};
 use crate::model::JointKind;

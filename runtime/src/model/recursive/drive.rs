@@ -1,6 +1,6 @@
 //! Columns of rotor inertias, friction and offsets, with any transmission matrix: (3), (9), (25) and (26).
 
-use super::RecursiveModelError;
+use super::error::RecursiveModelError;
 use crate::model::{Number, ParameterKind, Robot};
 use nalgebra::DMatrix;
 

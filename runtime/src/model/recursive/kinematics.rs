@@ -2,7 +2,7 @@
 //!
 //! Luh, Walker and Paul 1980 in the modified notation of Khalil and Kleinfinger 1986.
 
-use super::MAX_FRAMES;
+use super::error::MAX_FRAMES;
 use super::vector::{Mat3, Vec3, add, apply, apply_transposed, cross, dot, multiply, scale};
 use crate::model::{Frame, JointKind, Number};
 

@@ -2,7 +2,9 @@
 //! The recursive model against an independent engine, and against itself where physics says so.
 
 use super::*;
-use crate::model::{Drive, Frame, JointKind, Limits, Model, ParameterKind, Robot};
+use crate::model::{
+    Drive, Frame, JointKind, LANES, Lanes, Limits, Model, Number, ParameterKind, Robot, States,
+};
 use approx::assert_abs_diff_eq;
 use serde_json::Value;
 

@@ -1,0 +1,156 @@
+//! Partial regression, predictions and verdicts against explicit least squares on all rows.
+
+use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::candidates::trial::Trial;
+use crate::diagnosis::judging::prediction::Prediction;
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::Fit;
+use crate::effects::{EffectKind, Place};
+use nalgebra::{DMatrix, DVector};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const JOINTS: usize = 2;
+const ROWS: usize = 30;
+const SEGMENTS: [(usize, bool); 3] = [(0, true), (1, true), (2, true)];
+const ALL: usize = JOINTS * SEGMENTS.len() * ROWS;
+
+/// A random regression with four columns, and a candidate with two more, both on both joints.
+fn random(seed: u64) -> (Regression, Candidate) {
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let mut series =
+        |scale: f64| -> Vec<f64> { (0..ALL).map(|_| scale * rng.random_range(-1.0..1.0)).collect() };
+    let columns: Vec<Vec<f64>> = (0..4).map(|_| series(1.0)).collect();
+    // What the candidate shares with the columns is what partial regression must take out.
+    let own: Vec<Vec<f64>> = (0..2)
+        .map(|k| series(0.7).iter().zip(&columns[k]).map(|(own, shared)| own + 1.5 * shared).collect())
+        .collect();
+    let mut y = series(0.3);
+    for r in 0..ALL {
+        y[r] += 2.0 * columns[0][r] - columns[3][r] + 0.8 * own[0][r] - 0.4 * own[1][r];
+    }
+    let design = Design::made_up(JOINTS, &SEGMENTS, ROWS, columns, y);
+    let regression = Regression::new(design, Vec::new()).unwrap();
+    let half = ALL / JOINTS;
+    let sparse = own.iter().map(|c| (0..JOINTS).map(|j| (j, c[j * half..(j + 1) * half].to_vec())).collect());
+    let trial = Trial::new(&regression.design, vec![1.0], sparse.collect());
+    let candidate = Candidate {
+        effect: EffectKind::Spring,
+        place: Place::Joint(0),
+        own: vec![0, 1],
+        trials: vec![trial],
+        shapes: 1,
+        fixed: None,
+        only_positive: false,
+    };
+    (regression, candidate)
+}
+
+/// Weighted least squares over the rows of some segments: the solution and its squares.
+fn explicit(
+    regression: &Regression,
+    columns: &[Vec<f64>],
+    y: &[f64],
+    segments: &[bool],
+) -> (DVector<f64>, f64) {
+    let design = &regression.design;
+    let rows: Vec<(usize, f64)> = (0..JOINTS)
+        .flat_map(|j| {
+            let weight = 1.0 / regression.sigma[j];
+            let ranges = (0..segments.len()).filter(|&g| segments[g]).map(move |g| (j, g));
+            ranges
+                .flat_map(|(j, g)| design.ranges[j][g].clone())
+                .map(move |r| (r, weight))
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    let w = DMatrix::from_fn(rows.len(), columns.len(), |i, k| rows[i].1 * columns[k][rows[i].0]);
+    let b = DVector::from_fn(rows.len(), |i, _| rows[i].1 * y[rows[i].0]);
+    let x = w.clone().svd(true, true).solve(&b, 1e-14).unwrap();
+    let left = (b - w * &x).norm_squared();
+    (x, left)
+}
+
+#[test]
+fn amplitudes_and_gain_are_those_of_one_regression_on_all_columns() {
+    for seed in 0..5 {
+        let (regression, candidate) = random(seed);
+        let (design, trial) = (&regression.design, &candidate.trials[0]);
+        let everything = [true; 3];
+        let mut columns = design.columns.clone();
+        let (_, before) = explicit(&regression, &columns, &design.y, &everything);
+        columns.extend(trial.dense(design));
+        let (expected, after) = explicit(&regression, &columns, &design.y, &everything);
+
+        let part = regression.fit.project_out(trial).unwrap();
+        let (amplitude, gain) = part.solve(&candidate).unwrap();
+        let shift = -(&part.coefficients * &amplitude);
+        for k in 0..2 {
+            assert!((amplitude[k] - expected[4 + k]).abs() < 1e-5, "{seed}: {amplitude} {expected}");
+        }
+        for k in 0..4 {
+            assert!((regression.fit.chi[k] + shift[k] - expected[k]).abs() < 1e-5);
+        }
+        assert!((gain - (before - after)).abs() < 1e-4 * gain, "{seed}: {gain} {}", before - after);
+    }
+}
+
+#[test]
+fn a_prediction_gains_what_the_squares_of_the_held_out_rows_fall_by() {
+    let (regression, candidate) = random(7);
+    let (design, trial) = (&regression.design, &candidate.trials[0]);
+    let train = [true, true, false];
+    let fit = Fit::new(design, &regression.sigma, train.to_vec()).unwrap();
+    let part = fit.project_out(trial).unwrap();
+    let (amplitude, _) = part.solve(&candidate).unwrap();
+    let prediction = Prediction::new(&fit, trial, &part, amplitude);
+
+    let mut columns = design.columns.clone();
+    let (without, _) = explicit(&regression, &columns, &design.y, &train);
+    columns.extend(trial.dense(design));
+    let (with, _) = explicit(&regression, &columns, &design.y, &train);
+    for j in 0..JOINTS {
+        let left = |x: &DVector<f64>| -> f64 {
+            let fitted = |r: usize| (0..x.len()).map(|k| x[k] * columns[k][r]).sum::<f64>();
+            design.ranges[j][2].clone().map(|r| (design.y[r] - fitted(r)).powi(2)).sum()
+        };
+        let expected = left(&without) - left(&with);
+        let gain = prediction.gain(design, j, 2);
+        assert!((gain - expected).abs() < 1e-4 * expected.abs(), "{gain} {expected}");
+    }
+}
+
+#[test]
+fn on_some_segments_only_the_amplitude_is_fitted() {
+    let (regression, candidate) = random(8);
+    let (design, trial) = (&regression.design, &candidate.trials[0]);
+    let whole = regression.fit.project_out(trial).unwrap();
+    let train = [true, false, true];
+    let (amplitude, _) = regression.restricted(&whole, trial, &train).solve(&candidate).unwrap();
+    let columns = whole.columns(design, trial);
+    let (expected, _) = explicit(&regression, &columns, &regression.residual(), &train);
+    assert!((amplitude - expected).norm() < 1e-5);
+}
+
+#[test]
+fn what_the_columns_make_themselves_is_not_identifiable() {
+    let (regression, mut candidate) = random(9);
+    let design = &regression.design;
+    let half = ALL / JOINTS;
+    let made: Vec<f64> = (0..ALL).map(|r| design.columns[0][r] - 3.0 * design.columns[2][r]).collect();
+    let sparse = (0..JOINTS).map(|j| (j, made[j * half..(j + 1) * half].to_vec())).collect();
+    candidate.trials = vec![Trial::new(design, vec![1.0], vec![sparse])];
+    assert!(!regression.is_identifiable(&candidate));
+    assert_eq!(regression.whole_gain(&candidate), f64::NEG_INFINITY);
+    assert!(regression.judge(&candidate).is_none());
+}
+
+#[test]
+fn a_real_candidate_holds_on_held_out_motion() {
+    let (regression, candidate) = random(10);
+    let verdict = regression.judge(&candidate).unwrap();
+    assert_eq!(verdict.held_out.len(), SEGMENTS.len());
+    assert!(verdict.held_out.iter().all(|gain| *gain > 0.0), "{verdict:?}");
+    assert!(verdict.explained_fraction > 0.3 && verdict.explained_fraction < 1.0, "{verdict:?}");
+}

@@ -1,0 +1,98 @@
+//! The list of the effects. Each is one line here and one file in `catalogue/`.
+
+use super::effect::{Effect, Properties, Sought, Words};
+use super::form::Form;
+use serde::{Deserialize, Serialize};
+
+/// From lines `module: Type`, declares the modules and everything that is known by the name of an effect. The type is
+/// a unit struct of the module that implements [`Effect`]; the module is named by the effect's id in the JSON.
+macro_rules! catalogue {
+    ($($module:ident: $effect:ident,)*) => {
+        $(mod $module;)*
+
+        /// An effect of the catalogue.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum EffectKind {
+            $(
+                #[doc = concat!("`", stringify!($module), "`")]
+                $effect,
+            )*
+        }
+
+        impl EffectKind {
+            /// Every effect, in the order of the catalogue.
+            pub const ALL: [Self; [$(stringify!($module)),*].len()] = [$(Self::$effect),*];
+
+            /// Everything that is known of it.
+            pub fn effect(self) -> &'static dyn Effect {
+                match self {
+                    $(Self::$effect => &$module::$effect,)*
+                }
+            }
+        }
+    };
+}
+
+catalogue! {
+    stribeck: Stribeck,
+    nonlinear_viscous: NonlinearViscous,
+    load_dependent_friction: LoadDependentFriction,
+    position_dependent_friction: PositionDependentFriction,
+    asymmetric_friction: AsymmetricFriction,
+    presliding_hysteresis: PreslidingHysteresis,
+    friction_drift: FrictionDrift,
+    friction_level_change: FrictionLevelChange,
+    torque_ripple: TorqueRipple,
+    spring: Spring,
+    payload: Payload,
+    added_mass: AddedMass,
+    base_tilt: BaseTilt,
+    coupled_transmission: CoupledTransmission,
+    torque_constant_error: TorqueConstantError,
+    torque_saturation: TorqueSaturation,
+    joint_elasticity: JointElasticity,
+    backlash: Backlash,
+    time_delay: TimeDelay,
+    wrong_sample_rate: WrongSampleRate,
+    position_offset: PositionOffset,
+    geometry_error: GeometryError,
+    contact: Contact,
+}
+
+impl EffectKind {
+    /// The effect with a name of the JSON.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|k| k.id() == id)
+    }
+
+    /// Its name in the JSON.
+    pub fn id(self) -> &'static str {
+        self.words().id
+    }
+
+    /// Its words.
+    pub fn words(self) -> &'static Words {
+        self.effect().words()
+    }
+
+    /// Its properties.
+    pub fn properties(self) -> &'static Properties {
+        self.effect().properties()
+    }
+
+    /// How its torque is made.
+    pub fn form(self) -> Form {
+        self.effect().form()
+    }
+
+    /// Whether it can only be told against an earlier recording or a reference model.
+    pub fn needs_baseline(self) -> bool {
+        self.properties().sought == Sought::OnlyAgainstBaseline
+    }
+
+    /// Its nested special case (backlash with zero gap is elasticity).
+    pub fn special_case(self) -> Option<Self> {
+        self.properties().special_case.and_then(|effect| Self::from_id(effect.words().id))
+    }
+}

@@ -1,0 +1,56 @@
+//! A rotor that two joints drive: its speed is dq_b + ratio·dq_a.
+
+use crate::effects::{Abscissa, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Words};
+
+/// What a person is told.
+const WORDS: Words = Words {
+    id: "coupled_transmission",
+    title: "Coupled transmission",
+    what: "A motor turns with two joints at once, so that its friction and inertia act on both.",
+    looks_like: "friction of one joint that depends on the speed of its neighbour",
+    revealed_by: "speed of the neighbouring joint",
+    experiment: "move the two joints at the same time with all four combinations of directions",
+    source: "Gautier and Briot 2012, equations (25) and (26)",
+};
+
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Speed,
+    along_motion: false,
+};
+
+/// The effect.
+pub(super) struct CoupledTransmission;
+
+impl Effect for CoupledTransmission {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Coupled
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("its motor also turns with the neighbour, ratio {}", q.text("ratio"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!(
+            "{}·v + {}·sign(v) + {}·dv, v = dq_b + {}·dq_a",
+            q.value("viscous"),
+            q.value("coulomb"),
+            q.value("inertia"),
+            q.value("ratio")
+        )
+    }
+}

@@ -1,0 +1,112 @@
+//! Friction that changes with time as the joint warms up: (viscous, Coulomb)·exp(-t/tau).
+
+use crate::effects::{
+    Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
+    Sought, Step, Words,
+};
+
+/// What a person is told.
+const WORDS: Words = Words {
+    id: "friction_drift",
+    title: "Friction drift",
+    what: "Friction changes in the course of the motion: the joint warms up and its lubricant thins.",
+    looks_like: "a residual proportional to friction that fades with time in every motion",
+    revealed_by: "time",
+    experiment: "the same motion repeated for several minutes from a cold start",
+    source: "Bittencourt et al. 2010; Simoni et al. 2015",
+};
+
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: Some(&super::friction_level_change::FrictionLevelChange),
+    abscissa: Abscissa::Time,
+    along_motion: true,
+};
+
+/// The effect.
+pub(super) struct FrictionDrift;
+
+impl Effect for FrictionDrift {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Joint(&FrictionDrift)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("friction fades with a time constant of {}", q.text("tau"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        let viscous = q.has("viscous").then(|| format!("{}·dq", q.value("viscous")));
+        let coulomb = q.has("coulomb").then(|| format!("{}·sign(dq)", q.value("coulomb")));
+        let parts: Vec<String> = viscous.into_iter().chain(coulomb).collect();
+        format!("({})·exp(-t / {})", parts.join(" + "), q.value("tau"))
+    }
+}
+
+impl JointLaw for FrictionDrift {
+    /// The first shape parameter says what drifts: 0 viscous, 1 Coulomb, 2 both.
+    fn amplitudes(&self, shape: &[f64]) -> usize {
+        if shape[0] > 1.5 { 2 } else { 1 }
+    }
+
+    fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
+        let times = [0.2, 0.4, 0.8, 1.5, 4.0];
+        [0.0, 1.0, 2.0]
+            .iter()
+            .flat_map(|&what| times.iter().map(move |t| vec![what, t * scale.duration]))
+            .collect()
+    }
+
+    /// What drifts is one of three forms.
+    fn steps(&self, _: &Scale) -> Vec<Step> {
+        vec![Step::Keep, Step::Times(1.6)]
+    }
+
+    fn only_positive(&self) -> bool {
+        false
+    }
+
+    fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        let faded = (-at.time / shape[1]).exp();
+        let viscous = at.dq / scale.speed * faded;
+        let coulomb = at.sign * faded;
+        if shape[0] < 0.5 {
+            out[0] = viscous;
+        } else if shape[0] < 1.5 {
+            out[0] = coulomb;
+        } else {
+            out[0] = viscous;
+            out[1] = coulomb;
+        }
+    }
+
+    fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
+        AtRest::Dry
+    }
+
+    fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+        let unit = if scale.prismatic { "N.s/m" } else { "N.m.s/rad" };
+        let mut out = Vec::new();
+        if shape[0] < 0.5 || shape[0] > 1.5 {
+            out.push(Parameter::new("viscous", a[0] / scale.speed, s[0] / scale.speed, unit));
+        }
+        if shape[0] > 0.5 {
+            let last = a.len() - 1;
+            out.push(Parameter::new("coulomb", a[last], s[last], scale.torque_unit()));
+        }
+        out.push(Parameter::new("tau", shape[1], 0.0, "s"));
+        out
+    }
+}

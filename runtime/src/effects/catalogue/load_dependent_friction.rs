@@ -1,0 +1,83 @@
+//! Coulomb friction that grows with the transmitted torque: mu·|load|·sign v.
+
+use crate::effects::{
+    Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
+    Sought, Step, Words,
+};
+
+/// What a person is told.
+const WORDS: Words = Words {
+    id: "load_dependent_friction",
+    title: "Load-dependent friction",
+    what: "The friction level grows with the torque that the joint transmits: gear teeth and bearings are pressed harder.",
+    looks_like: "a residual with the sign of the speed whose size follows the load torque",
+    revealed_by: "load torque",
+    experiment: "the same strokes at low speed with the arm stretched out and folded, or with and without a payload",
+    source: "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2011",
+};
+
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Always,
+    follows_parameters: true,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Load,
+    along_motion: true,
+};
+
+/// The effect.
+pub(super) struct LoadDependentFriction;
+
+impl Effect for LoadDependentFriction {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Joint(&LoadDependentFriction)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("friction grows by {} of the load torque", q.text("mu"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!("{}·|load|·sign(dq)", q.value("mu"))
+    }
+}
+
+impl JointLaw for LoadDependentFriction {
+    fn amplitudes(&self, _: &[f64]) -> usize {
+        1
+    }
+
+    fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
+        vec![vec![]]
+    }
+
+    fn steps(&self, _: &Scale) -> Vec<Step> {
+        Vec::new()
+    }
+
+    fn only_positive(&self) -> bool {
+        true
+    }
+
+    fn law(&self, _: &Scale, _: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        out[0] = at.load.abs() * at.sign;
+    }
+
+    fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
+        AtRest::Dry
+    }
+
+    fn parameters(&self, _: &Scale, _: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+        vec![Parameter::new("mu", a[0], s[0], "1")]
+    }
+}

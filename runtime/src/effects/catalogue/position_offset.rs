@@ -1,0 +1,68 @@
+//! Encoder zero that is off on a joint: the derivative of the model with respect to q.
+
+use crate::effects::{
+    Abscissa, Effect, Form, Properties, Quantities, Seeds, Sensitivity, SmoothingWindow, Sought, Variant,
+    Words,
+};
+use crate::model::Robot;
+
+/// What a person is told.
+const WORDS: Words = Words {
+    id: "position_offset",
+    title: "Position offset",
+    what: "The zero of an encoder is off: the joint is not where the recording says.",
+    looks_like: "gravity and coupling torques of several joints that are turned by a constant angle",
+    revealed_by: "joint position",
+    experiment: "slow motion of the joints below and above it, with the arm stretched out",
+    source: "Hollerbach, Khalil and Gautier 2016",
+};
+
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Position,
+    along_motion: false,
+};
+
+/// The effect.
+pub(super) struct PositionOffset;
+
+impl Effect for PositionOffset {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Sensitivity(&PositionOffset)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("the encoder zero is off by {}", q.text("offset"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!("q + {}", q.value("offset"))
+    }
+}
+
+impl Sensitivity for PositionOffset {
+    fn variants(&self, robot: &Robot) -> Vec<Variant> {
+        (0..robot.joints()).map(|j| Variant::joint(j, "offset", "rad or m")).collect()
+    }
+
+    fn together(&self) -> bool {
+        false
+    }
+
+    fn seed(&self, variant: &Variant, seeds: &mut Seeds<'_>) {
+        seeds.q[variant.index].slope = 1.0;
+    }
+}

@@ -1,0 +1,87 @@
+//! Stribeck friction: the level falls as the joint leaves rest. fs·exp(-(v/vs)²)·sign v.
+
+use crate::effects::joint_law::geometric;
+use crate::effects::{
+    Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
+    Sought, Step, Words,
+};
+
+/// What a person is told.
+const WORDS: Words = Words {
+    id: "stribeck",
+    title: "Stribeck friction",
+    what: "Friction is higher close to rest and falls as the joint gathers speed, because a lubricant film builds up.",
+    looks_like: "a peak of the residual on both sides of zero speed, with the sign of the speed",
+    revealed_by: "joint speed",
+    experiment: "slow constant-speed strokes in both directions at several speeds between a hundredth and a fifth of the top speed",
+    source: "Stribeck 1902; Armstrong-Helouvry, Dupont and Canudas de Wit 1994",
+};
+
+/// How it is looked for and drawn.
+const PROPERTIES: Properties = Properties {
+    window: SmoothingWindow::Slow,
+    sought: Sought::Always,
+    follows_parameters: false,
+    repeats: false,
+    special_case: None,
+    abscissa: Abscissa::Speed,
+    along_motion: false,
+};
+
+/// The effect.
+pub(super) struct Stribeck;
+
+impl Effect for Stribeck {
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn properties(&self) -> &'static Properties {
+        &PROPERTIES
+    }
+
+    fn form(&self) -> Form {
+        Form::Joint(&Stribeck)
+    }
+
+    fn detail(&self, q: &Quantities) -> String {
+        format!("{} more friction close to rest, gone above about {}", q.text("fs"), q.text("vs"))
+    }
+
+    fn formula(&self, q: &Quantities) -> String {
+        format!("{}·exp(-(dq / {})²)·sign(dq)", q.value("fs"), q.value("vs"))
+    }
+}
+
+impl JointLaw for Stribeck {
+    fn amplitudes(&self, _: &[f64]) -> usize {
+        1
+    }
+
+    fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
+        geometric(0.012, 0.35, 10).iter().map(|x| vec![x * scale.speed]).collect()
+    }
+
+    fn steps(&self, _: &Scale) -> Vec<Step> {
+        vec![Step::Times(1.45)]
+    }
+
+    fn only_positive(&self) -> bool {
+        true
+    }
+
+    fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        out[0] = (-(at.dq / shape[0]).powi(2)).exp() * at.sign;
+    }
+
+    fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
+        AtRest::Dry
+    }
+
+    fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+        vec![
+            Parameter::new("fs", a[0], s[0], scale.torque_unit()),
+            Parameter::new("vs", shape[0], 0.0, scale.speed_unit()),
+        ]
+    }
+}

@@ -1,0 +1,143 @@
+//! Everything that is known of an effect, apart from how its torque is computed, which is its [`Form`].
+
+use super::form::Form;
+use super::quantity::Quantities;
+
+/// An effect of the catalogue.
+///
+/// Nothing has a default: what holds for most effects is wrong for some, and the compiler names what a new one has
+/// not answered.
+pub trait Effect: Sync {
+    /// What a person is told.
+    fn words(&self) -> &'static Words;
+
+    /// How it is looked for and drawn.
+    fn properties(&self) -> &'static Properties;
+
+    /// How its torque is made.
+    fn form(&self) -> Form;
+
+    /// What was found, as the middle of a sentence: `friction grows by 0.06 ± 0.004 of the load torque`.
+    fn detail(&self, q: &Quantities) -> String;
+
+    /// Its law with the numbers that were found; empty where no formula of one line says it.
+    fn formula(&self, q: &Quantities) -> String;
+}
+
+/// What a person is told about an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Words {
+    /// Name of the effect in the JSON.
+    pub id: &'static str,
+    /// A short title.
+    pub title: &'static str,
+    /// What it is, in one sentence.
+    pub what: &'static str,
+    /// Where it shows in the residual.
+    pub looks_like: &'static str,
+    /// The variable that reveals it, with its unit.
+    pub revealed_by: &'static str,
+    /// The motion that tells it from its imitators.
+    pub experiment: &'static str,
+    /// Literature.
+    pub source: &'static str,
+}
+
+/// How an effect is looked for and drawn.
+#[derive(Clone, Copy)]
+pub struct Properties {
+    /// The smoothing of the rows that shows it best.
+    pub window: SmoothingWindow,
+    /// In which recordings the search tries it.
+    pub sought: Sought,
+    /// Whether its columns are made from the standard parameters (load, model torque, friction of the model), so that
+    /// they change when those are refitted.
+    pub follows_parameters: bool,
+    /// Whether it may be found more than once at the same place, with other shapes.
+    pub repeats: bool,
+    /// The nested special case: what it comes back to where its own number vanishes. It must explain clearly more
+    /// than that one to be named.
+    pub special_case: Option<&'static dyn Effect>,
+    /// What it is drawn over.
+    pub abscissa: Abscissa,
+    /// Whether it is drawn along the motion, torque times the direction. Friction opposes the motion: over anything
+    /// but the speed, both directions would hide each other.
+    pub along_motion: bool,
+}
+
+/// How much rows are smoothed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SmoothingWindow {
+    /// As slow as the motion.
+    Slow,
+    /// Faster than the motion.
+    Fast,
+}
+
+/// In which recordings the search tries an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sought {
+    /// With and without a baseline.
+    Always,
+    /// Only against a baseline: it cannot be told from the standard parameters in one recording.
+    OnlyAgainstBaseline,
+    /// Only without a baseline: it is the same in both recordings.
+    NeverAgainstBaseline,
+    /// It has a search of its own.
+    Separately,
+}
+
+impl Sought {
+    /// Whether the search tries it, where there is a baseline (`change`) and where there is none.
+    pub fn with(self, change: bool) -> bool {
+        match self {
+            Self::Always => true,
+            Self::OnlyAgainstBaseline => change,
+            Self::NeverAgainstBaseline => !change,
+            Self::Separately => false,
+        }
+    }
+}
+
+/// The variable that an effect is drawn over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Abscissa {
+    /// Speed of the joint.
+    Speed,
+    /// Position of the joint.
+    Position,
+    /// Acceleration of the joint.
+    Acceleration,
+    /// Torque that the joint transmits to the links.
+    Load,
+    /// Torque of the standard model.
+    ModelTorque,
+    /// Time in the motion.
+    Time,
+    /// Distance since the joint last reversed.
+    SinceReversal,
+    /// Angle within one wave: order (the first number of the shape) times position.
+    WaveAngle,
+}
+
+impl Abscissa {
+    /// Its name with its unit on a prismatic or a revolute joint.
+    pub fn label(self, prismatic: bool) -> &'static str {
+        match (self, prismatic) {
+            (Self::Speed, false) => "joint speed, rad/s",
+            (Self::Speed, true) => "joint speed, m/s",
+            (Self::Position, false) => "joint position, rad",
+            (Self::Position, true) => "joint position, m",
+            (Self::Acceleration, false) => "acceleration, rad/s2",
+            (Self::Acceleration, true) => "acceleration, m/s2",
+            (Self::Load, false) => "load torque, N.m",
+            (Self::Load, true) => "load, N",
+            (Self::ModelTorque, false) => "model torque, N.m",
+            (Self::ModelTorque, true) => "model force, N",
+            (Self::Time, _) => "time, s",
+            (Self::SinceReversal, false) => "distance since reversal, rad",
+            (Self::SinceReversal, true) => "distance since reversal, m",
+            (Self::WaveAngle, _) => "angle within one wave, rad",
+        }
+    }
+}

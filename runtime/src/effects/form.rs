@@ -1,0 +1,133 @@
+//! The ways in which the torque of an effect is made, and what follows from them.
+
+use super::compliance::{self, Compliance};
+use super::coupled::CoupledRotor;
+use super::joint_law::{JointLaw, Scale};
+use super::place::Place;
+use super::rigid_body::BodyOnLink;
+use super::sensitivity::Sensitivity;
+use super::shape::ShapeSearch;
+use crate::model::Robot;
+
+/// How an effect's torque is made.
+#[derive(Clone, Copy)]
+pub enum Form {
+    /// A law of one joint.
+    Joint(&'static dyn JointLaw),
+    /// A derivative of the model with respect to one of its own numbers.
+    Sensitivity(&'static dyn Sensitivity),
+    /// A compliant or loose transmission.
+    Compliance(&'static dyn Compliance),
+    /// A rigid body added to a link.
+    Body(&'static dyn BodyOnLink),
+    /// A motor driven by two joints.
+    Coupled,
+    /// An outside force in time windows.
+    Window,
+}
+
+impl Form {
+    /// Everywhere in a robot that such an effect can be.
+    pub fn places(self, robot: &Robot) -> Vec<Place> {
+        let n = robot.joints();
+        match self {
+            Self::Joint(_) | Self::Compliance(_) => (0..n).map(Place::Joint).collect(),
+            Self::Sensitivity(law) => {
+                let count = if law.together() { 1 } else { law.variants(robot).len() };
+                (0..count).map(Place::Variant).collect()
+            }
+            Self::Body(law) => law.links(robot).into_iter().map(Place::Link).collect(),
+            Self::Coupled => CoupledRotor::places(robot),
+            Self::Window => Vec::new(),
+        }
+    }
+
+    /// Shapes to try at a place; `scales` are those of the joints.
+    pub fn shapes(self, place: Place, scales: &[Scale]) -> Vec<Vec<f64>> {
+        match self {
+            Self::Joint(law) => {
+                place.joint().and_then(|j| scales.get(j)).map_or_else(Vec::new, |scale| law.shapes(scale))
+            }
+            Self::Compliance(law) => law.shapes().iter().map(|s| s.to_vec()).collect(),
+            Self::Coupled => CoupledRotor::RATIOS.iter().map(|&ratio| vec![ratio]).collect(),
+            Self::Sensitivity(_) | Self::Body(_) => vec![Vec::new()],
+            Self::Window => Vec::new(),
+        }
+    }
+
+    /// Shapes to try besides where the residual of a joint has waves of these orders.
+    pub fn shapes_of_orders(self, orders: &[f64]) -> Vec<Vec<f64>> {
+        match self {
+            Self::Joint(law) => law.shapes_of_orders(orders),
+            Self::Sensitivity(_) | Self::Compliance(_) | Self::Body(_) | Self::Coupled | Self::Window => {
+                Vec::new()
+            }
+        }
+    }
+
+    /// How shapes between those of a grid are searched at a place.
+    pub fn shape_search(self, place: Place, scales: &[Scale], grid: &[&[f64]]) -> ShapeSearch {
+        match self {
+            Self::Joint(law) => match place.joint().and_then(|j| scales.get(j)) {
+                Some(scale) => ShapeSearch::within_a_step_of(grid, law.steps(scale)),
+                None => ShapeSearch::none(),
+            },
+            Self::Compliance(_) => compliance::shape_search(),
+            Self::Coupled => CoupledRotor::shape_search(),
+            Self::Sensitivity(_) | Self::Body(_) | Self::Window => ShapeSearch::none(),
+        }
+    }
+
+    /// The amplitude, where the law leaves none free.
+    pub fn fixed_amplitude(self) -> Option<f64> {
+        match self {
+            Self::Compliance(_) => Some(1.0),
+            Self::Joint(_) | Self::Sensitivity(_) | Self::Body(_) | Self::Coupled | Self::Window => None,
+        }
+    }
+
+    /// Whether a negative amplitude is something else.
+    pub fn only_positive(self) -> bool {
+        match self {
+            Self::Joint(law) => law.only_positive(),
+            Self::Sensitivity(_) | Self::Compliance(_) | Self::Body(_) | Self::Coupled | Self::Window => {
+                false
+            }
+        }
+    }
+
+    /// Whether its shape is its amplitude once more: an error that is not small bends its own column, so that the
+    /// derivative is taken along the way to it.
+    pub fn shape_is_amplitude(self) -> bool {
+        match self {
+            Self::Sensitivity(_) => true,
+            Self::Joint(_) | Self::Compliance(_) | Self::Body(_) | Self::Coupled | Self::Window => false,
+        }
+    }
+
+    /// Whether it rings or bursts faster than any motion, so that only rows that hold such frequencies show it.
+    pub fn is_fast_only(self) -> bool {
+        match self {
+            Self::Compliance(_) => true,
+            Self::Joint(_) | Self::Sensitivity(_) | Self::Body(_) | Self::Coupled | Self::Window => false,
+        }
+    }
+
+    /// Joints (0-based) that such an effect at a place is named on; empty for the whole robot.
+    pub fn named_joints(self, robot: &Robot, place: Place) -> Vec<usize> {
+        match self {
+            Self::Joint(_) | Self::Compliance(_) => place.joint().into_iter().collect(),
+            Self::Coupled => place.pair().into_iter().flatten().collect(),
+            Self::Sensitivity(law) if law.together() => Vec::new(),
+            Self::Sensitivity(law) => {
+                let variants = law.variants(robot);
+                let variant = place.variant().and_then(|v| variants.get(v));
+                variant.and_then(|x| x.joint).into_iter().collect()
+            }
+            Self::Body(law) => {
+                place.link().and_then(|frame| law.named_joint(robot, frame)).into_iter().collect()
+            }
+            Self::Window => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Where in a robot an effect acts.
+
+use serde::{Deserialize, Serialize};
+
+/// Where in the robot an effect acts; joints and frames are counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// A joint.
+    Joint(usize),
+    /// One of the numbers of a sensitivity, as its effect counts its variants.
+    Variant(usize),
+    /// A frame that carries a body.
+    Link(usize),
+    /// Two joints, the second one's motor turning with both.
+    Pair(usize, usize),
+    /// The whole robot.
+    Robot,
+}
+
+impl Place {
+    /// The joint, where it is one.
+    pub fn joint(self) -> Option<usize> {
+        if let Self::Joint(j) = self { Some(j) } else { None }
+    }
+
+    /// The number of the variant, where it is one.
+    pub fn variant(self) -> Option<usize> {
+        if let Self::Variant(v) = self { Some(v) } else { None }
+    }
+
+    /// The frame, where it is one.
+    pub fn link(self) -> Option<usize> {
+        if let Self::Link(k) = self { Some(k) } else { None }
+    }
+
+    /// The two joints, where there are two.
+    pub fn pair(self) -> Option<[usize; 2]> {
+        if let Self::Pair(a, b) = self { Some([a, b]) } else { None }
+    }
+
+    /// Joints, of `count`, whose residual something at this place must explain a share of.
+    pub fn joints(self, count: usize) -> Vec<usize> {
+        match self {
+            Self::Joint(j) => vec![j],
+            Self::Pair(a, b) => vec![a, b],
+            Self::Variant(_) | Self::Link(_) | Self::Robot => (0..count).collect(),
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! What an observation holds.
+
+use super::error::ObserveError;
+use super::rows::Rows;
+use super::select::LeftOut;
+use super::settings::Equations;
+use crate::estimation::Factor;
+
+/// The rows of one equation in one trajectory, or in one block of its time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EquationFactor {
+    /// Index of the motion.
+    pub trajectory: usize,
+    /// Joint, or 0 for the power model.
+    pub equation: usize,
+    /// Unknown of each column of the factor, ascending.
+    pub columns: Vec<usize>,
+    /// R of [W Y].
+    pub factor: Factor,
+}
+
+/// The equations of one stretch of one trajectory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeBlock {
+    /// Index of the motion.
+    pub trajectory: usize,
+    /// First and last row centre, s.
+    pub time: [f64; 2],
+    /// One per equation.
+    pub equations: Vec<EquationFactor>,
+}
+
+/// Motions as equations in the unknowns: nothing is kept but orthogonal factors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    /// What is observed.
+    pub equations: Equations,
+    /// Names of the base parameters, then of the extra unknowns.
+    pub unknowns: Vec<String>,
+    /// How many of the unknowns are base parameters.
+    pub base: usize,
+    /// Which unknowns have columns without measuring errors: constants, and the sign of the speed.
+    pub exact: Vec<bool>,
+    /// Name of each motion.
+    pub trajectories: Vec<String>,
+    /// Rows a second, for each motion, Hz.
+    pub rates: Vec<f64>,
+    /// Band of the rows, for each motion, Hz.
+    pub bands: Vec<f64>,
+    /// For each motion and equation, all its rows.
+    pub groups: Vec<EquationFactor>,
+    /// The same rows by blocks of time: for what residuals have in common over time, and for resampling.
+    pub blocks: Vec<TimeBlock>,
+    /// For each motion and equation, in the order of `groups`: what was used and what was not.
+    pub left_out: Vec<LeftOut>,
+    /// Samples of the motions that were read, all joints counted once.
+    pub samples: usize,
+    /// The decimated rows, in the order of `groups`, where they were asked for.
+    pub rows: Option<Vec<Rows>>,
+}
+
+impl Observation {
+    /// Takes in the motions of another observation of the same unknowns, behind its own: a recording that is too
+    /// long for the memory is read, observed and dropped piece by piece.
+    ///
+    /// # Errors
+    /// Another model, other equations, or other extra unknowns.
+    pub fn append(&mut self, mut other: Observation) -> Result<(), ObserveError> {
+        if other.equations != self.equations || other.unknowns != self.unknowns {
+            return Err(ObserveError::OtherUnknowns);
+        }
+        let before = self.trajectories.len();
+        let blocks = other.blocks.iter_mut().flat_map(|b| {
+            b.trajectory += before;
+            &mut b.equations
+        });
+        for equation in blocks.chain(&mut other.groups) {
+            equation.trajectory += before;
+        }
+        other.left_out.iter_mut().for_each(|l| l.trajectory += before);
+        other.rows.iter_mut().flatten().for_each(|r| r.trajectory += before);
+        self.trajectories.extend(other.trajectories);
+        self.rates.extend(other.rates);
+        self.bands.extend(other.bands);
+        self.groups.extend(other.groups);
+        self.blocks.extend(other.blocks);
+        self.left_out.extend(other.left_out);
+        self.samples += other.samples;
+        self.rows = match (self.rows.take(), other.rows) {
+            (Some(mut own), Some(theirs)) => {
+                own.extend(theirs);
+                Some(own)
+            }
+            _ => None,
+        };
+        Ok(())
+    }
+}

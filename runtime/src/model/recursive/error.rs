@@ -1,0 +1,42 @@
+//! Why a robot has no recursive model.
+
+/// Most frames, fixed ones included, that a table may have: scratch lives on the stack.
+pub const MAX_FRAMES: usize = 16;
+
+/// Why a robot has no recursive model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecursiveModelError {
+    /// The table is too long.
+    #[error("{found} frames: at most {MAX_FRAMES} are supported")]
+    TooManyFrames {
+        /// Frames in the table.
+        found: usize,
+    },
+    /// A parent that is not an earlier row.
+    #[error("frame {frame}: its parent must be an earlier row of the table")]
+    ParentOrder {
+        /// 1-based row.
+        frame: usize,
+    },
+    /// The gear matrix does not fit the joints.
+    #[error("the gear matrix has {found} entries: {joints} joints need {}", joints * joints)]
+    GearShape {
+        /// Entries found.
+        found: usize,
+        /// Joints n.
+        joints: usize,
+    },
+    /// A motor that does not turn with its own joint.
+    #[error("gear row {motor}: its diagonal entry must not be zero and all entries must be finite")]
+    GearDiagonal {
+        /// 1-based motor.
+        motor: usize,
+    },
+    /// A base or standard parameter that points outside its table.
+    #[error("base parameter {name}: it refers to a standard parameter or a frame that does not exist")]
+    Parameter {
+        /// Its name.
+        name: String,
+    },
+}

@@ -1,0 +1,286 @@
+//! A simulated robot with everything that is in it: the one place that puts effects into a plant.
+
+use super::SimulationError;
+use super::coupled_friction::CoupledFriction;
+use super::effect::EffectTorque;
+use super::extra::ExtraTorque;
+use super::less_friction::LessFriction;
+use super::plant::{ElasticJoint, Plant};
+use super::push::Push;
+use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, JointLaw};
+use crate::model::{Model, ParameterKind, RecursiveModel, RecursiveModelError, Robot};
+
+/// What is known of the robot's numbers.
+#[derive(Debug, Clone, PartialEq)]
+enum Parameters {
+    /// Base parameters chi, as an identification gives them.
+    Base(Vec<f64>),
+    /// Standard parameters chi_st.
+    Standard(Vec<f64>),
+}
+
+/// A robot and what is in it.
+///
+/// ```
+/// use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
+/// use dynid_runtime::model::Model;
+/// use dynid_runtime::simulation::World;
+///
+/// fn with_stribeck(model: &dyn Model, chi: &[f64]) -> Result<(), Box<dyn std::error::Error>> {
+///     let mut world = World::from_base(model, chi);
+///     world.put(&EffectTerm {
+///         effect: EffectKind::Stribeck,
+///         place: Place::Joint(0),
+///         joints: vec![1],
+///         shape: vec![0.1],
+///         amplitude: vec![2.0],
+///         sigma: vec![0.0],
+///         scale: Some(TermScale::UNIT),
+///         wrenches: Vec::new(),
+///     });
+///     assert!(world.left_out().is_empty());
+///     let plant = world.plant("motion 1")?;
+///     Ok(())
+/// }
+/// ```
+pub struct World<'m> {
+    nominal: &'m dyn Model,
+    /// The robot with another table or another gravity.
+    table: Option<RecursiveModel>,
+    parameters: Parameters,
+    laws: Vec<(&'static dyn JointLaw, usize, EffectTerm)>,
+    /// Elastic joints; the inertia of the rotor where base parameters do not tell it apart.
+    elastic: Vec<(ElasticJoint, Option<f64>)>,
+    coupled: Vec<CoupledFriction>,
+    pushes: Vec<ContactForce>,
+    less_friction: bool,
+    left_out: Vec<EffectKind>,
+}
+
+impl<'m> World<'m> {
+    /// A robot from base parameters.
+    pub fn from_base(model: &'m dyn Model, chi: &[f64]) -> Self {
+        Self::new(model, Parameters::Base(chi.to_vec()))
+    }
+
+    /// A robot from standard parameters.
+    pub fn from_standard(model: &'m dyn Model, standard: &[f64]) -> Self {
+        Self::new(model, Parameters::Standard(standard.to_vec()))
+    }
+
+    fn new(nominal: &'m dyn Model, parameters: Parameters) -> Self {
+        Self {
+            nominal,
+            table: None,
+            parameters,
+            laws: Vec::new(),
+            elastic: Vec::new(),
+            coupled: Vec::new(),
+            pushes: Vec::new(),
+            less_friction: false,
+            left_out: Vec::new(),
+        }
+    }
+
+    /// Takes friction parameters below zero as they are. Beside a law that was found they are part of a friction that
+    /// is positive all the same; by themselves no plant takes them.
+    #[must_use]
+    pub fn with_friction_as_identified(mut self) -> Self {
+        self.less_friction = true;
+        self
+    }
+
+    /// Puts effects in; see [`World::put`].
+    #[must_use]
+    pub fn with(mut self, terms: &[EffectTerm]) -> Self {
+        terms.iter().for_each(|term| self.put(term));
+        self
+    }
+
+    /// Puts an effect in. Bodies become part of the parameters, laws of a joint torques; transmissions become elastic
+    /// joints. What a plant does not have (errors of the table, skews of the recording, the inertia of a coupled rotor,
+    /// contacts, which belong to the recording they were seen in) or what does not fit the robot is left out and named.
+    pub fn put(&mut self, term: &EffectTerm) {
+        let n = self.nominal.robot().joints();
+        let is_in = match term.effect.form() {
+            Form::Joint(law) => match term.place.joint().filter(|j| *j < n && term.scale.is_some()) {
+                Some(j) => {
+                    self.laws.push((law, j, term.clone()));
+                    true
+                }
+                None => false,
+            },
+            Form::Body(_) => term.place.link().is_some_and(|frame| self.put_body(frame, &term.amplitude)),
+            Form::Compliance(_) => match term.transmission() {
+                Some((joint, t)) if joint < n && t.rotor > 0.0 => {
+                    let joint =
+                        ElasticJoint { joint, stiffness: t.stiffness, damping: t.damping, play: t.play };
+                    self.elastic.push((joint, Some(t.rotor)));
+                    true
+                }
+                _ => false,
+            },
+            Form::Coupled => match (term.place.pair(), term.shape.as_slice(), term.amplitude.as_slice()) {
+                (Some(joints), &[ratio], &[viscous, coulomb, 0.0]) if joints.iter().all(|j| *j < n) => {
+                    self.coupled.push(CoupledFriction { joints, ratio, viscous, coulomb });
+                    true
+                }
+                _ => false,
+            },
+            Form::Sensitivity(_) | Form::Window => false,
+        };
+        if !is_in {
+            self.left_out.push(term.effect);
+        }
+    }
+
+    /// Adds a joint's spring; its rotor is the one of the parameters.
+    pub fn put_spring(&mut self, joint: ElasticJoint) {
+        self.elastic.push((joint, None));
+    }
+
+    /// Adds a push from outside in the motion that it names: `force` is the largest, in the middle of the window.
+    pub fn put_push(&mut self, force: ContactForce) {
+        self.pushes.push(force);
+    }
+
+    /// Changes the table or gravity. Parameters keep their meaning where the world was made from standard ones; the
+    /// regrouping of the table as it was does not hold for another one, so that every standard parameter stands by
+    /// itself in the changed robot.
+    ///
+    /// # Errors
+    /// A table that no model can be made from.
+    pub fn change_table(&mut self, change: impl FnOnce(&mut Robot)) -> Result<(), RecursiveModelError> {
+        let mut changed = self.model().robot().clone();
+        change(&mut changed);
+        let every = Robot::with_standard_as_base(
+            &changed.name,
+            changed.gravity,
+            changed.frames.to_vec(),
+            changed.drive.clone(),
+            changed.limits.clone(),
+        );
+        changed.base = every.base;
+        changed.standard = every.standard;
+        self.table = Some(RecursiveModel::new(changed)?);
+        Ok(())
+    }
+
+    /// Changes viscous and Coulomb friction of a joint by a factor, where the world was made from standard parameters.
+    pub fn scale_friction(&mut self, joint: usize, factor: f64) {
+        let robot = self.nominal.robot();
+        let Parameters::Standard(standard) = &mut self.parameters else { return };
+        for kind in [ParameterKind::Fv, ParameterKind::Fc] {
+            if let Some(k) = standard_of_joint(robot, kind, joint) {
+                standard[k] *= factor;
+            }
+        }
+    }
+
+    /// The model that moves.
+    pub fn model(&self) -> &dyn Model {
+        self.table.as_ref().map_or(self.nominal, |table| table as &dyn Model)
+    }
+
+    /// Its base parameters, bodies that were put on it included.
+    pub fn chi(&self) -> Vec<f64> {
+        match &self.parameters {
+            Parameters::Base(chi) => chi.clone(),
+            Parameters::Standard(standard) => self.model().robot().base_from_standard(standard),
+        }
+    }
+
+    /// Whether a joint has a spring between motor and link.
+    pub fn has_elastic_joints(&self) -> bool {
+        !self.elastic.is_empty()
+    }
+
+    /// Effects that the plant does not have.
+    pub fn left_out(&self) -> &[EffectKind] {
+        &self.left_out
+    }
+
+    /// The robot for a motion: pushes act in the motion that they name.
+    ///
+    /// # Errors
+    /// As [`Plant::new`] and [`Plant::with_effects`].
+    pub fn plant(&self, motion: &str) -> Result<Plant<'_>, SimulationError> {
+        let model = self.model();
+        let robot = model.robot();
+        let mut chi = self.chi();
+        let mut torques = self.torques(&chi, motion);
+        if self.less_friction {
+            torques.push(Box::new(LessFriction::taken_from(robot, &mut chi)));
+        }
+        if self.elastic.is_empty() {
+            return Plant::with_torques(model, &chi, torques);
+        }
+        let joints: Vec<ElasticJoint> = self.elastic.iter().map(|(joint, _)| *joint).collect();
+        match &self.parameters {
+            Parameters::Standard(standard) => Plant::with_effects(model, standard, &joints, torques),
+            Parameters::Base(_) => {
+                Plant::with_effects(model, &self.with_rotors_apart(robot, &chi), &joints, torques)
+            }
+        }
+    }
+
+    /// Torques of what is in the robot, in a motion.
+    pub(super) fn torques(&self, chi: &[f64], motion: &str) -> Vec<Box<dyn ExtraTorque + '_>> {
+        let robot = self.model().robot();
+        let mut torques: Vec<Box<dyn ExtraTorque + '_>> = Vec::new();
+        for (law, joint, term) in &self.laws {
+            if let Some(torque) = EffectTorque::new(robot, chi, *law, *joint, term) {
+                torques.push(Box::new(torque));
+            }
+        }
+        for coupled in &self.coupled {
+            torques.push(Box::new(*coupled));
+        }
+        for force in self.pushes.iter().filter(|p| p.motion == motion) {
+            if let Some(push) = Push::new(robot, force) {
+                torques.push(Box::new(push));
+            }
+        }
+        torques
+    }
+
+    /// Adds the ten inertial parameters of a body on a frame.
+    fn put_body(&mut self, frame: usize, inertial: &[f64]) -> bool {
+        let robot = self.nominal.robot();
+        let mut body = vec![0.0; robot.standard.len()];
+        let own = (0..body.len())
+            .filter(|&k| robot.standard[k].frame == frame && robot.standard[k].kind <= ParameterKind::M);
+        for (k, value) in own.zip(inertial) {
+            body[k] = *value;
+        }
+        let (parameters, more) = match &mut self.parameters {
+            Parameters::Base(chi) => (chi, robot.base_from_standard(&body)),
+            Parameters::Standard(standard) => (standard, body),
+        };
+        parameters.iter_mut().zip(more).for_each(|(x, more)| *x += more);
+        frame < robot.frames.len()
+    }
+
+    /// Standard parameters that have these base parameters, with the rotors of the elastic joints apart.
+    fn with_rotors_apart(&self, robot: &Robot, chi: &[f64]) -> Vec<f64> {
+        let mut standard = vec![0.0; robot.standard.len()];
+        for (joint, rotor) in &self.elastic {
+            if let (Some(k), Some(rotor)) = (standard_of_joint(robot, ParameterKind::Ia, joint.joint), rotor)
+            {
+                standard[k] = *rotor;
+            }
+        }
+        let apart = robot.base_from_standard(&standard);
+        for ((base, value), apart) in robot.base.iter().zip(chi).zip(apart) {
+            // A rotor that is a base parameter of its own is known from the motion.
+            standard[base.standard] += value - apart;
+        }
+        standard
+    }
+}
+
+/// A joint's own parameter in chi_st.
+fn standard_of_joint(robot: &Robot, kind: ParameterKind, joint: usize) -> Option<usize> {
+    let joint_of = robot.joint_of_frame();
+    robot.standard.iter().position(|p| p.kind == kind && joint_of[p.frame] == Some(joint))
+}
