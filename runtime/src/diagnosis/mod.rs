@@ -200,7 +200,7 @@ fn run(
             contacts = None;
             continue;
         }
-        if !scanned || pushed.is_some() {
+        if settings.single_joint_contacts && (!scanned || pushed.is_some()) {
             let found = pushed_in_motion(model, &prepared, contacts.as_ref(), &search);
             if scanned {
                 pushed = pushed.and_then(|p| moving::still_there(p, found.as_ref()));

@@ -282,9 +282,6 @@ pub(super) const SCAN_STRETCH: f64 = 2.0;
 pub(super) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording. Statistics: size in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 0.01;
-/// Rows in which a joint is slower than this part of its top speed are not scanned: Stribeck's friction and presliding
-/// are there, and come back at every reversal. Mechanics; false contacts in `docs/concealment.md`.
-pub(super) const SCAN_SLOWEST: f64 = 0.2;
 /// Rows that a joint needs to be scanned. Statistics: for the autoregression of its residual.
 pub(super) const SCAN_LEAST_ROWS: usize = 150;
 /// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles.

@@ -6,7 +6,7 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::judging::ar1::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS, INNER_LINK_BETTER, SCAN_SLOWEST};
+use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS, INNER_LINK_BETTER};
 use crate::effects::{ContactForce, JointTorque};
 
 /// Looks for pushes in what a model leaves of the torques on the rows of a design; `sigma` is the residual's level on
@@ -22,17 +22,8 @@ pub(in crate::diagnosis) fn in_motion(
     let step = design.spacing(first) as f64 / signals[first].rate;
     let tracks: Vec<Track> = (0..design.joints)
         .map(|joint| {
-            // Around a reversal friction is neither Coulomb's nor viscous, whatever pushes.
-            let slowest = SCAN_SLOWEST * context.scales[joint].speed;
-            let fast = |r: usize| {
-                let at = design.rows[r];
-                signals[at.signal].dq[joint][at.centre].abs() >= slowest
-            };
             let of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
-                (
-                    signals[k].is_target,
-                    rows.iter().filter(|(_, r)| fast(*r)).map(|&(place, r)| (place, residual[r])).collect(),
-                )
+                (signals[k].is_target, rows.iter().map(|&(place, r)| (place, residual[r])).collect())
             };
             Track {
                 joint,

@@ -19,7 +19,8 @@ pub(in crate::diagnosis) struct JointLines {
     pub torque: f64,
 }
 
-/// Lines of every joint in the recording that is diagnosed, without those that its baseline has as well.
+/// Lines of every joint in the recording that is diagnosed. None where there is a baseline: whether a line is new would
+/// have to be shown in motion of the baseline that could show it.
 pub(in crate::diagnosis) fn all_lines(
     context: &Context<'_>,
     spectra: &[OrderSpectrum],
@@ -51,16 +52,15 @@ pub(in crate::diagnosis) fn all_lines(
                 })
                 .collect()
         };
-        let (now, before) = (strokes(true), strokes(false));
+        let now = strokes(true);
         let gear = spectra[j].gear;
         // Of a joint whose gear is not known there are no multiples to ask for.
         let known: Vec<f64> =
             if gear > 1.0 { LINE_MULTIPLES.iter().map(|k| k * gear).collect() } else { Vec::new() };
         let picked = peaks(&spectra[j], LINE_PICKED);
-        let old = lines(&before, &known, &picked, slowest[j]);
         let resolution = resolution(&now);
-        let mut new = lines(&now, &known, &picked, slowest[j]);
-        new.retain(|l| old.iter().all(|o| (o.order - l.order).abs() > resolution));
+        let alone = context.signals.iter().all(|s| s.is_target);
+        let new = if alone { lines(&now, &known, &picked, slowest[j]) } else { Vec::new() };
         let torques = context.signals.iter().filter(|s| s.is_target).flat_map(|s| &s.torque[j]);
         let (squares, count) = torques.fold((0.0, 0), |(sum, n), y| (sum + y * y, n + 1));
         JointLines {
