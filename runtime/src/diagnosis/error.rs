@@ -42,29 +42,29 @@ pub enum DiagnosisError {
     /// No motion at all.
     #[error("the recording has no motion")]
     NoMotion,
-    /// Too few usable rows on a joint.
+    /// No joint moves for long enough, and no baseline tells what the robot is like.
     #[error(
-        "joint {joint}: only {rows} usable rows of motion, {needed} are needed; it stands still or the recording is too short"
+        "no joint moves for long enough to conclude anything: joint {joint} moves most, in {rows} usable rows of the {needed} that a joint needs; let at least one joint move back and forth for ten seconds at two speeds, or give a baseline in which the robot moves"
     )]
-    TooLittleMotion {
-        /// Number j of the joint.
+    NothingMoves {
+        /// Number j of the joint that moves most.
         joint: usize,
-        /// Rows found.
+        /// Its rows.
         rows: usize,
-        /// Rows needed.
+        /// Rows that a joint needs.
         needed: usize,
     },
-    /// The standard model's own parameters are not determined.
+    /// Fewer rows than numbers.
     #[error(
-        "the motion does not excite the standard model: {free} of its {parameters} parameters are not determined ({names}); use a motion that moves all joints at different speeds"
+        "the motion is too short: {rows} usable rows for {parameters} parameters of the standard model that it determines; record at least {times} times as long"
     )]
-    NotExciting {
-        /// Parameters not determined.
-        free: usize,
-        /// All parameters.
+    TooShort {
+        /// Rows of all joints.
+        rows: usize,
+        /// Parameters that they determine.
         parameters: usize,
-        /// Their names.
-        names: String,
+        /// How much longer it should be.
+        times: usize,
     },
     /// The standard model does not describe the recording at all.
     #[error(

@@ -92,8 +92,9 @@ mod settings;
 
 pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
-    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
-    ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, StopReason, TorqueSeries, Unexplained,
+    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
+    OrderSpectrum, ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, StopReason,
+    TorqueSeries, Unexplained,
 };
 pub use predict::term_torques;
 pub use preparation::slowest_speeds;
@@ -103,9 +104,11 @@ use crate::effects::EffectKind;
 use crate::model::Model;
 use crate::recording::Trajectory;
 use contact::search::{self as contact_search, Contacts};
+use contact::{moving, standing};
 use explanation::explain::{Ended, explain};
 use explanation::standard_model::StandardModelFit;
-use preparation::Prepared;
+use explanation::standstill;
+use preparation::{Prepared, nothing_moves};
 use rows::fit::Fit;
 use search::extended_model::ExtendedModel;
 use search::state::Search;
@@ -161,15 +164,29 @@ fn run(
     let prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
     let change = !recordings.baseline.is_empty();
 
+    if !prepared.moving.judged.contains(&true) {
+        return at_rest(model, &prepared);
+    }
+
     // 2. Windows in which something outside pushed the robot.
     progress.at(0.05, "contacts");
     let signals = &prepared.motions.signals;
     let mut contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
 
+    // Pushes that single joints see, looked for in what is left when the search is done.
+    let mut pushed: Option<Contacts> = None;
+    let mut scanned = false;
+
     loop {
         // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
-        let (mut search, standard, sampling) = begin(model, &prepared, contacts.as_ref(), change, progress)?;
+        let (mut search, standard, sampling) = begin(
+            model,
+            &prepared,
+            Contacts::joined(contacts.clone(), pushed.clone()).as_ref(),
+            change,
+            progress,
+        )?;
         let settings = prepared.motions.settings();
         let report = match known {
             Some(known) => search.force(known)?,
@@ -183,6 +200,22 @@ fn run(
             contacts = None;
             continue;
         }
+        if settings.single_joint_contacts && (!scanned || pushed.is_some()) {
+            let found = pushed_in_motion(model, &prepared, contacts.as_ref(), &search);
+            if scanned {
+                pushed = pushed.and_then(|p| moving::still_there(p, found.as_ref()));
+            } else if found.is_some() {
+                // What was found with the pushes among the rows is looked for again without them.
+                (pushed, scanned) = (found, true);
+                continue;
+            }
+        }
+        let rest =
+            standing::at_rest(&search.model.context, &prepared.moving.fitted, &prepared.motions.slowest);
+        let contacts = Contacts::joined(
+            Contacts::joined(contacts, pushed),
+            rest.contacts(prepared.motions.signals.len()),
+        );
 
         // 5. Numbers, errors, curves, sentences.
         progress.at(0.92, "explanations");
@@ -193,10 +226,35 @@ fn run(
             delay: prepared.delay,
             sampling,
         };
-        let diagnosis = explain(&search, ended, settings)?;
+        let mut diagnosis = explain(&search, ended, settings)?;
+        standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
         progress.at(1.0, "done");
         return Ok(diagnosis);
     }
+}
+
+/// What can be said of a robot that holds still, beside a baseline in which it moves.
+fn at_rest(model: &dyn Model, prepared: &Prepared) -> Result<Diagnosis, DiagnosisError> {
+    let motions = &prepared.motions;
+    let context = prepared.context(model)?;
+    let rest = standing::at_rest(&context, &prepared.moving.fitted, &motions.slowest);
+    let sampling = motions.sampling(&motions.rows(model, None));
+    let mut diagnosis = standstill::explain(&context, &rest, &prepared.chi_sigma, sampling)
+        .ok_or_else(|| nothing_moves(model, &prepared.moving))?;
+    standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
+    Ok(diagnosis)
+}
+
+/// Pushes on single joints in what the model with its effects leaves, outside of the contacts that are known.
+fn pushed_in_motion(
+    model: &dyn Model,
+    prepared: &Prepared,
+    contacts: Option<&Contacts>,
+    search: &Search<'_>,
+) -> Option<Contacts> {
+    let rows = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
+    let residual = search.model.residual_on(&rows);
+    moving::in_motion(&search.model.context, &rows, &residual, &search.model.fast.sigma)
 }
 
 /// The standard model on the rows outside of contacts, and all candidates.
@@ -216,7 +274,12 @@ fn begin<'a>(
         context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
     }
     let extended = ExtendedModel::new(context, rows.slow, rows.fast, change)?;
-    let search = Search::new(extended, &motions.slowest, motions.settings(), progress);
+    let mut search = Search::new(extended, &motions.slowest, motions.settings(), progress);
+    // No law is tried where only joints that hardly move would show it.
+    let judged = &prepared.moving.judged;
+    for candidates in [&mut search.slow, &mut search.fast] {
+        candidates.retain(|c| c.own.iter().any(|&j| judged[j]));
+    }
     let standard = StandardModelFit::new(&search.model, &prepared.aligned)?;
     Ok((search, standard, sampling))
 }

@@ -328,6 +328,20 @@ pub struct Diagnosis {
     pub sampling: Sampling,
     /// How the search ended.
     pub search: SearchOutcome,
+    /// Joints about which the recording says nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_judged: Vec<NotJudged>,
+}
+
+/// A joint on which nothing could be looked for.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NotJudged {
+    /// Number j of the joint.
+    pub joint: usize,
+    /// Rows in which it moves.
+    pub rows: usize,
+    /// What would be needed, in words.
+    pub why: String,
 }
 
 impl Diagnosis {

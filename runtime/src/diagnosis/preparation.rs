@@ -7,6 +7,7 @@ use super::outcome::Sampling;
 use super::rows::context::{Context, scales, top_speeds};
 use super::rows::design::Design;
 use super::rows::fit::Fit;
+use super::rows::motion::{Moving, left_over};
 use super::rows::selection::RowSelection;
 use super::rows::signals::{Signals, directions};
 use super::rules;
@@ -26,6 +27,10 @@ pub(super) struct Motions {
     pub slowest: Vec<f64>,
     /// The same for fast rows.
     slowest_fast: Vec<f64>,
+    /// Those that the outcome tells: also of joints that hold still.
+    standstill_speeds: Vec<f64>,
+    /// Base parameters that nothing determines, and that are left out.
+    left_over: Vec<usize>,
     /// Linear forms of dq whose sign enters each joint's row.
     directions: Vec<Vec<Vec<f64>>>,
     /// Segments per motion of the recording that is diagnosed.
@@ -70,6 +75,8 @@ impl Motions {
             signals,
             settings,
             cutoff,
+            standstill_speeds: slowest.clone(),
+            left_over: Vec::new(),
             slowest,
             slowest_fast,
             directions: directions(model.robot()),
@@ -89,7 +96,20 @@ impl Motions {
             segments: self.segments,
             excluded: excluded.unwrap_or(&nothing),
         };
-        Design::new(model, &self.signals, &selection)
+        let mut design = Design::new(model, &self.signals, &selection);
+        if !self.left_over.is_empty() {
+            design.leave_out(&self.left_over);
+        }
+        design
+    }
+
+    /// Leaves out all rows of joints that do not move: what such a joint seems to do is noise.
+    fn hold_still(&mut self, moving: &[bool]) {
+        for speeds in [&mut self.slowest, &mut self.slowest_fast] {
+            for (speed, _) in speeds.iter_mut().zip(moving).filter(|(_, moving)| !**moving) {
+                *speed = f64::INFINITY;
+            }
+        }
     }
 
     /// Slow rows that leave nothing out but standstills.
@@ -120,7 +140,7 @@ impl Motions {
             cutoff: self.cutoff,
             fast_window,
             slow_window,
-            standstill_speeds: self.slowest.clone(),
+            standstill_speeds: self.standstill_speeds.clone(),
             fast_rows: rows.fast.rows.len(),
             slow_rows: rows.slow.rows.len(),
         }
@@ -138,6 +158,10 @@ pub(super) struct Prepared {
     pub delay: f64,
     /// Slow rows that leave nothing out but standstills.
     pub aligned: Design,
+    /// Standard deviations of the base parameters.
+    pub chi_sigma: Vec<f64>,
+    /// How much each joint moves.
+    pub moving: Moving,
 }
 
 impl Prepared {
@@ -155,14 +179,27 @@ impl Prepared {
         if trajectories.is_empty() {
             return Err(DiagnosisError::NoMotion);
         }
-        let motions = Motions::new(model, trajectories, baseline, settings)?;
-        let aligned = motions.aligned(model);
-        check_rows(model, &aligned)?;
-        let fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
-        check_fit(model, &aligned, &fit)?;
+        let mut motions = Motions::new(model, trajectories, baseline, settings)?;
+        let mut aligned = motions.aligned(model);
+        let moving = Moving::of(&aligned);
+        if moving.fitted.contains(&false) {
+            motions.hold_still(&moving.fitted);
+            aligned = motions.aligned(model);
+        }
+        let mut fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        motions.left_over = check_rows(model, &aligned, &fit, &moving)?;
+        if !motions.left_over.is_empty() {
+            aligned = motions.aligned(model);
+            fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        }
+        check_fit(&aligned, &fit)?;
         let chi = fit.chi.iter().take(aligned.parameters).copied().collect();
-        let mut prepared = Self { motions, chi, sigma: fit.sigma, delay: 0.0, aligned };
-        prepared.take_out_skew(model)?;
+        let chi_sigma = fit.variances().iter().take(aligned.parameters).map(|v| v.max(0.0).sqrt()).collect();
+        let mut prepared = Self { motions, chi, sigma: fit.sigma, delay: 0.0, aligned, chi_sigma, moving };
+        // Without motion there is no skew to be seen.
+        if prepared.moving.judged.contains(&true) {
+            prepared.take_out_skew(model)?;
+        }
         Ok(prepared)
     }
 
@@ -194,31 +231,42 @@ impl Prepared {
     }
 }
 
-/// Refuses motions that leave a joint without rows.
-fn check_rows(model: &dyn Model, design: &Design) -> Result<(), DiagnosisError> {
-    for j in 0..design.joints {
-        let rows = design.count(j, |g| design.segments[g].is_target);
-        if rows < rules::LEAST_ROWS {
-            return Err(DiagnosisError::TooLittleMotion {
-                joint: model.robot().joint_number(JointIndex(j)).0,
-                rows,
-                needed: rules::LEAST_ROWS,
-            });
-        }
+/// Refuses motions that tell nothing. Returns the base parameters that are left out because the motion does not
+/// determine them, where they are so many, or joints stand still, that small ones would be made up from noise.
+fn check_rows(
+    model: &dyn Model,
+    design: &Design,
+    fit: &Fit,
+    moving: &Moving,
+) -> Result<Vec<usize>, DiagnosisError> {
+    if !moving.fitted.contains(&true) {
+        return Err(nothing_moves(model, moving));
     }
-    Ok(())
+    let parameters = design.parameters;
+    let free = fit.undetermined(rules::UNDETERMINED).into_iter().filter(|&k| k < parameters).count();
+    let few = free * rules::PARAMETERS_PER_UNDETERMINED <= parameters && !moving.fitted.contains(&false);
+    let left_over = if few { Vec::new() } else { left_over(design, &fit.sigma) };
+    let (rows, fitted) = (design.rows.len(), parameters - if few { free } else { left_over.len() });
+    let needed = rules::ROWS_PER_PARAMETER * fitted;
+    if rows < needed {
+        return Err(DiagnosisError::TooShort {
+            rows,
+            parameters: fitted,
+            times: needed.div_ceil(rows.max(1)),
+        });
+    }
+    Ok(left_over)
 }
 
-/// Refuses motions that do not determine the standard model, and recordings that it has nothing to do with.
-fn check_fit(model: &dyn Model, design: &Design, fit: &Fit) -> Result<(), DiagnosisError> {
-    let parameters = design.parameters;
-    let free = fit.undetermined(rules::UNDETERMINED);
-    if free.len() * rules::PARAMETERS_PER_UNDETERMINED > parameters {
-        let base = &model.robot().base;
-        let names: Vec<String> =
-            free.iter().filter_map(|&k| base.get(k)).map(|b| b.name.to_string()).collect();
-        return Err(DiagnosisError::NotExciting { free: free.len(), parameters, names: names.join(", ") });
-    }
+/// What is said where nothing moves.
+pub(super) fn nothing_moves(model: &dyn Model, moving: &Moving) -> DiagnosisError {
+    let most = moving.rows.iter().enumerate().max_by_key(|(_, rows)| **rows);
+    let (joint, rows) = most.map_or((0, 0), |(j, rows)| (model.robot().joint_number(JointIndex(j)).0, *rows));
+    DiagnosisError::NothingMoves { joint, rows, needed: rules::LEAST_ROWS }
+}
+
+/// Refuses recordings that the standard model has nothing to do with.
+fn check_fit(design: &Design, fit: &Fit) -> Result<(), DiagnosisError> {
     let (mut left, mut all) = (0.0, 0.0);
     for (j, s) in fit.sigma.iter().enumerate() {
         let rows = design.of_joint(j);

@@ -47,13 +47,18 @@ pub(super) const SHORT_RECORDING: f64 = 12.0;
 pub(super) const SEGMENTS_OF_FEW_MOTIONS: usize = 8;
 /// From this many motions on, whole motions are held out: two remain to fit. Statistics.
 pub(super) const ENOUGH_MOTIONS: usize = 3;
-/// Least rows of a joint. Judgement: a few for each of the parameters in its row.
-pub(super) const LEAST_ROWS: usize = 40;
+/// Least rows of a joint that laws are looked for on. Statistics: three for each number that only its own rows can
+/// tell, viscous and Coulomb friction, offset, and a law.
+pub(super) const LEAST_ROWS: usize = 12;
+/// Least rows of all joints for each parameter that they determine. Statistics: as many degrees of freedom as
+/// parameters.
+pub(super) const ROWS_PER_PARAMETER: usize = 2;
 /// A column of which less than this fraction of its norm is its own counts as not determined. Judgement: its
 /// standard deviation is then 1e4 times that of a column by itself.
 pub(super) const UNDETERMINED: f64 = 1e-4;
-/// The recording is refused where more than one parameter out of this many is not determined. Judgement: with a few
-/// that are not, effects are still found (`docs/evidence.md`, UR10e).
+/// Where more than one parameter out of this many is not determined, or a joint holds still, columns that nothing
+/// determines are left out instead of being kept small. Judgement: with a few that are not, effects are still found
+/// (`docs/evidence.md`, UR10e).
 pub(super) const PARAMETERS_PER_UNDETERMINED: usize = 4;
 /// The recording is refused where the standard model explains less of the torque's squares, per cent. Judgement: far
 /// below any right model, above what wrong units or a wrong joint order leave; not measured.
@@ -243,6 +248,84 @@ pub(super) const ROBUST_RIDGE: f64 = 1e-11;
 pub(super) const FORCE_RIDGE: f64 = 1e-6;
 /// Absolute ridge of the same, for a pose in which no joint feels anything. Mechanics.
 pub(super) const FORCE_RIDGE_ABSOLUTE: f64 = 1e-12;
+
+// ---- Contact with a robot that holds still ------------------------------------------------------------------------
+
+/// Static friction is at most this many times the Coulomb friction of the moving joint, but for one joint in a
+/// hundred. Mechanics: dry gears break away at 1.1 to 1.3 times what they slide at.
+pub(super) const STICTION: f64 = 1.25;
+/// Standard normal deviate that is passed once in a hundred times: what ties [`STICTION`] to a spread. Statistics.
+pub(super) const ONE_IN_A_HUNDRED: f64 = 2.326_347_874;
+/// Shortest push against a robot at rest, s: what is shorter is an impact. Mechanics.
+pub(super) const SHORTEST_PUSH_AT_REST: f64 = 0.2;
+/// Torques at rest are averaged over this long, s. Mechanics: a hand does not push faster.
+pub(super) const AVERAGED_AT_REST: f64 = 0.1;
+/// Gaps of a push at rest shorter than this belong to it, s. Mechanics.
+pub(super) const GAP_AT_REST: f64 = 0.1;
+/// Shortest time of standing still that is looked at, s. Mechanics: twice a shortest push.
+pub(super) const SHORTEST_REST: f64 = 0.5;
+/// After a motion the robot has come to rest by this time, s, and pushes off by as much before it is seen to move.
+/// Mechanics: a few periods of a position loop.
+pub(super) const SETTLING: f64 = 0.3;
+/// Time from one instant of a push at rest to the next at which a force is looked for, s. Times only.
+pub(super) const FORCE_STEP_AT_REST: f64 = 0.02;
+
+// ---- Contact in motion, joint by joint ----------------------------------------------------------------------------
+
+/// Window lengths that means of a residual are taken over, s: pushes of 0.15 to 2.4 s, each length covered to 1.5
+/// times. Mechanics; power in the tests of `scan`.
+pub(super) const SCAN_LENGTHS: [f64; 9] = [0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.6, 2.4];
+/// Length of the stretches whose largest means the law is fitted to, s. Statistics: a dozen of them in a recording of
+/// half a minute, each with many independent means.
+pub(super) const SCAN_STRETCH: f64 = 2.0;
+/// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
+pub(super) const SCAN_PRESENT: f64 = 0.7;
+/// False alarms per recording. Statistics: size in the tests of `scan`.
+pub(super) const SCAN_LEVEL: f64 = 0.01;
+/// Rows that a joint needs to be scanned. Statistics: for the autoregression of its residual.
+pub(super) const SCAN_LEAST_ROWS: usize = 150;
+/// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles.
+pub(super) const SCAN_LEAST_STRETCHES: usize = 8;
+/// Stretches that count as much as all joints together for the law of one joint. Statistics: size against power in the
+/// tests of `scan`.
+pub(super) const SCAN_OWN_STRETCHES: f64 = 40.0;
+/// Least scale of the largest squares: that of normal deviates, whose squares fall as exp(-x/2) / sqrt(x), around
+/// x = 10, where the largest of a stretch are. Statistics.
+pub(super) const SCAN_NORMAL_SCALE: f64 = 2.0 / 1.1;
+/// Joints whose windows are this close together see the same push, s. Mechanics.
+pub(super) const SCAN_TOGETHER: f64 = 0.2;
+/// Values beyond so many standard deviations count as no more for the memory of a residual. Statistics.
+pub(super) const SCAN_CLIPPED: f64 = 2.5;
+/// Most coefficients of the autoregression of a residual. Statistics: a quarter of a second of fast rows.
+pub(super) const SCAN_MOST_ORDER: usize = 12;
+
+// ---- Lines of torque ripple ---------------------------------------------------------------------------------------
+
+/// Orders per motor turn that cogging, current offsets, gear teeth and wave generators have. Mechanics.
+pub(super) const LINE_MULTIPLES: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0];
+/// Part of the sampling rate up to which recorded torques are taken for what they say. Mechanics: four fifths of what
+/// can be sampled at all.
+pub(super) const RECORDED_BAND: f64 = 0.4;
+/// Orders of a spectrum that are looked at besides.
+pub(super) const LINE_PICKED: usize = 4;
+/// How far a known order must stand above the median of the orders around it. Statistics: an amplitude of noise does
+/// once in 2^16 orders.
+pub(super) const LINE_ABOVE: f64 = 4.0;
+/// The same for an order that was picked from a spectrum. Statistics: once in 2^25.
+pub(super) const LINE_PICKED_ABOVE: f64 = 5.0;
+/// Least fraction that one half of a motion predicts for the other. Judgement: a line worth its name; lines of noise
+/// stay below 0.012.
+pub(super) const LINE_LEAST_FRACTION: f64 = 0.02;
+/// What is slower than so many waves is not the line. Mechanics.
+pub(super) const LINE_SLOWER: f64 = 4.0;
+/// Waves that each half of a motion must pass. Statistics.
+pub(super) const LINE_LEAST_WAVES: f64 = 8.0;
+/// Samples that each half must have. Statistics.
+pub(super) const LINE_LEAST_SAMPLES: usize = 100;
+/// Orders on each side that a line is compared with. Statistics: a median of two dozen.
+pub(super) const LINE_AROUND: usize = 12;
+/// Steps of what the travel resolves that a line covers itself on each side. Mechanics: its main lobe.
+pub(super) const LINE_COVERED: usize = 3;
 
 // ---- Explanation --------------------------------------------------------------------------------------------------
 

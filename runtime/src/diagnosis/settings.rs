@@ -42,6 +42,9 @@ pub struct Settings {
     /// Speeds below which the joints count as standing still, one per joint, rad/s or m/s; used for all rows instead of
     /// `standstill`. Speed 0 keeps every row where a joint's speed does not change its sign within the window.
     pub standstill_speeds: Option<Vec<f64>>,
+    /// Whether pushes that a single joint sees while it moves are looked for in what the search leaves. Off unless asked
+    /// for: what a law near a reversal leaves still looks like a push.
+    pub single_joint_contacts: bool,
     /// Threads; 0: as many as the machine has. The outcome does not depend on them.
     pub threads: usize,
 }
@@ -99,6 +102,7 @@ impl Default for Settings {
             band: None,
             cutoff: None,
             standstill_speeds: None,
+            single_joint_contacts: false,
             threads: 2,
         }
     }

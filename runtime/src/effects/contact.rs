@@ -16,6 +16,26 @@ pub struct ContactForce {
     pub force: [f64; 3],
     /// Mean force over the window in frame 0, N.
     pub mean_force: [f64; 3],
+    /// Standard deviations of the first and the last instant, s, where known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edges: Option<[f64; 2]>,
+    /// Torques of the joints that the contact was seen on, where it was looked for joint by joint. Where only one
+    /// joint saw it there is no telling force and lever apart, and the force is left at zero.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joint_torques: Vec<JointTorque>,
+}
+
+/// What one joint feels of a contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JointTorque {
+    /// Number j of the joint.
+    pub joint: usize,
+    /// Mean over the window, N.m or N.
+    pub mean: f64,
+    /// Largest, N.m or N.
+    pub largest: f64,
+    /// Standard deviation of both.
+    pub sigma: f64,
 }
 
 /// Motor torques that a force of 1 N along x, y, z of frame 0 at the origin of `frame` asks for: `out[axis][joint]`.

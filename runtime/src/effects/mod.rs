@@ -34,7 +34,7 @@ mod term;
 pub use catalogue::EffectKind;
 pub use check::TermError;
 pub use compliance::{Compliance, Transmission, deflection};
-pub use contact::{ContactForce, unit_force_torques};
+pub use contact::{ContactForce, JointTorque, unit_force_torques};
 pub use coupled::CoupledRotor;
 pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, Words};
 pub use form::Form;

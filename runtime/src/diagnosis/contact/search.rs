@@ -7,14 +7,15 @@ use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{
-    CONTACT_MARGIN, FORCE_EXPLAINS, FORCE_PREDICTS, INNER_LINK_BETTER, LARGEST_PUSHED_FRACTION,
-    LEAST_INSTANTS, PUSHED, PUSHED_TOGETHER, REMAINING_FRACTION,
+    CONTACT_MARGIN, FORCE_EXPLAINS, FORCE_PREDICTS, HIGHEST_CONFIDENCE, INNER_LINK_BETTER,
+    LARGEST_PUSHED_FRACTION, LEAST_INSTANTS, PUSHED, PUSHED_TOGETHER, REMAINING_FRACTION,
 };
 use crate::effects::ContactForce;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 /// Windows with an outside force.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct Contacts {
     /// Times per signal that no other row may use.
     pub windows: Vec<Vec<[f64; 2]>>,
@@ -25,6 +26,27 @@ pub(in crate::diagnosis) struct Contacts {
     pub after: f64,
     /// Squares of the torque itself in the windows, same units.
     pub torque: f64,
+    /// Probability that the clearest of them is an accident.
+    pub doubt: f64,
+}
+
+impl Contacts {
+    /// Both together, where there are both.
+    pub fn joined(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        let (mut all, other) = match (one, other) {
+            (Some(one), Some(other)) => (one, other),
+            (one, other) => return one.or(other),
+        };
+        for (windows, more) in all.windows.iter_mut().zip(other.windows) {
+            windows.extend(more);
+        }
+        all.wrenches.extend(other.wrenches);
+        all.before += other.before;
+        all.after += other.after;
+        all.torque += other.torque;
+        all.doubt = all.doubt.min(other.doubt);
+        Some(all)
+    }
 }
 
 /// A window that one force explains, with squares in units of the noise.
@@ -57,6 +79,7 @@ pub(in crate::diagnosis) fn find(
         before: 0.0,
         after: 0.0,
         torque: 0.0,
+        doubt: 1.0 - HIGHEST_CONFIDENCE,
     };
     for (k, windows) in pushed.iter().enumerate() {
         for &w in windows {
@@ -151,6 +174,8 @@ fn explain(
         link: frame + 1,
         force: [largest[0], largest[1], largest[2]],
         mean_force: [mean[0], mean[1], mean[2]],
+        edges: None,
+        joint_torques: Vec::new(),
     };
     Some(Explained { wrench, before, after, torque: squares(&|row| row.y) })
 }

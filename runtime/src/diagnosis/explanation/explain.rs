@@ -4,7 +4,7 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
-use crate::diagnosis::explanation::{curves, delay, words};
+use crate::diagnosis::explanation::{curves, delay, line, words};
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::outcome::{
     CannotTell, Diagnosis, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling, SearchOutcome,
@@ -46,6 +46,7 @@ pub(in crate::diagnosis) fn explain(
     let cannot_tell = cannot_tell(model, &effects);
     let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
     findings.extend(effects);
+    findings.extend(line::findings(search));
     findings.extend(delay::finding(model, skew, settings)?);
 
     // 2. What it gains on motion that was held out.
@@ -82,6 +83,7 @@ pub(in crate::diagnosis) fn explain(
             stop: ended.report.stop,
             removed: ended.report.removed.iter().map(removed).collect(),
         },
+        not_judged: Vec::new(),
         findings,
     };
     diagnosis.verdict = words::verdict(&diagnosis);

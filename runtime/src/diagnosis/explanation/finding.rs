@@ -91,12 +91,18 @@ pub(in crate::diagnosis) fn of_contacts(contacts: &Contacts) -> Finding {
     let mut parameters = std::collections::BTreeMap::new();
     let value = |value: f64, unit: &str| ParameterValue { value, sigma: 0.0, unit: unit.into() };
     parameters.insert("windows".into(), value(contacts.wrenches.len() as f64, "1"));
-    if let Some(w) = largest {
+    if let Some(w) = largest.filter(|w| norm(w.force) > 0.0) {
         parameters.insert("largest_force".into(), value(norm(w.force), "N"));
         parameters.insert("link".into(), value(w.link as f64, "1"));
     }
+    let joints = contacts.wrenches.iter().flat_map(|w| &w.joint_torques);
+    if let Some(most) = joints.max_by(|a, b| a.largest.abs().total_cmp(&b.largest.abs())) {
+        let torque = ParameterValue { value: most.largest, sigma: most.sigma, unit: "N.m".into() };
+        parameters.insert("largest_joint_torque".into(), torque);
+        parameters.insert("joint".into(), value(most.joint as f64, "1"));
+    }
     let mut finding = Finding {
-        confidence: HIGHEST_CONFIDENCE,
+        confidence: (1.0 - contacts.doubt).clamp(0.0, HIGHEST_CONFIDENCE),
         parameters,
         held_out_before: (contacts.before / contacts.torque).sqrt(),
         held_out_after: (contacts.after / contacts.torque).sqrt(),

@@ -1,10 +1,10 @@
 //! Sentences for a person.
 
-use crate::diagnosis::outcome::{Diagnosis, Finding};
+use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
 use crate::diagnosis::rules;
 use crate::effects::{EffectKind, Parameter, Quantities};
 use crate::model::Robot;
-use crate::report::falls_or_rises;
+use crate::report::{falls_or_rises, significant};
 
 impl Finding {
     /// Its quantities by name.
@@ -52,13 +52,43 @@ pub(in crate::diagnosis) fn contact(f: &Finding) -> String {
     let windows: Vec<String> = f
         .contacts
         .iter()
-        .map(|w| format!("{} from {:.2} s to {:.2} s on link {}", w.motion, w.window[0], w.window[1], w.link))
+        .map(|w| {
+            let place = if w.force == [0.0; 3] {
+                let joints: Vec<String> = w
+                    .joint_torques
+                    .iter()
+                    .map(|t| format!("{} ({} N.m)", t.joint, significant(t.largest, 3)))
+                    .collect();
+                format!("joint {}", joints.join(" and "))
+            } else {
+                format!("link {}", w.link)
+            };
+            format!("{} from {:.2} s to {:.2} s on {place}", w.motion, w.window[0], w.window[1])
+        })
         .collect();
-    format!(
-        "Something pushed the robot, with up to {}: {}. Several joints jump together in the ratio of one force on one link.",
-        f.quantities().text("largest_force"),
-        windows.join("; ")
-    )
+    let much = if f.parameters.contains_key("largest_force") {
+        f.quantities().text("largest_force")
+    } else {
+        f.quantities().text("largest_joint_torque")
+    };
+    let why = if f.contacts.iter().any(|w| w.force != [0.0; 3]) {
+        " Several joints jump together in the ratio of one force on one link."
+    } else {
+        ""
+    };
+    format!("Something pushed the robot, with up to {much}: {}.{why}", windows.join("; "))
+}
+
+/// Joints about which nothing is said.
+pub(in crate::diagnosis) fn not_judged(joints: &[NotJudged]) -> Option<String> {
+    let list: Vec<String> = joints.iter().map(|j| j.joint.to_string()).collect();
+    match list.as_slice() {
+        [] => None,
+        [one] => Some(format!("Joint {one} hardly moves: nothing is said about it.")),
+        [most @ .., last] => {
+            Some(format!("Joints {} and {last} hardly move: nothing is said about them.", most.join(", ")))
+        }
+    }
 }
 
 /// The verdict first.

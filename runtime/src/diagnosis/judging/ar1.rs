@@ -18,6 +18,11 @@ impl Places {
         };
         Self((0..motions).map(motion).collect())
     }
+
+    /// Motion by motion: place and row.
+    pub fn motions(&self) -> &[Vec<(usize, usize)>] {
+        &self.0
+    }
 }
 
 /// The lag, in rows, from which on values are uncorrelated; `longest` where they never are.

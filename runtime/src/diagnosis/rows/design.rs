@@ -204,6 +204,14 @@ impl Design {
         }
     }
 
+    /// Leaves out columns that nothing determines.
+    pub fn leave_out(&mut self, columns: &[usize]) {
+        for &k in columns {
+            self.columns[k].fill(0.0);
+        }
+        self.refresh();
+    }
+
     /// Adds a column given per row.
     pub fn push(&mut self, column: Vec<f64>) {
         self.columns.push(column);

@@ -1,7 +1,7 @@
 //! Motions at the full rate, ready for laws and models.
 
 use crate::diagnosis::error::DiagnosisError;
-use crate::diagnosis::rules::{RATE_PER_CUTOFF, SAMPLES_PER_SECOND};
+use crate::diagnosis::rules::{RATE_PER_CUTOFF, RECORDED_BAND, SAMPLES_PER_SECOND};
 use crate::model::{Model, ParameterKind, Robot, States};
 use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
@@ -31,6 +31,10 @@ struct Recorded {
     /// Every so many samples are kept.
     stride: usize,
     filter: Butterworth,
+    /// Of the filter, Hz.
+    cutoff: f64,
+    /// Skew that has been taken out, s.
+    delay: f64,
 }
 
 impl Recorded {
@@ -70,13 +74,19 @@ impl Signals {
         let rate = if span > 0.0 { stamps as f64 / span } else { 1.0 };
         let settings =
             Preparation { cutoff: Some((rate / RATE_PER_CUTOFF).min(cutoff)), ..Preparation::default() };
-        let motion = prepare(trajectory, &settings)?;
+        let mut motion = prepare(trajectory, &settings)?;
+        // What a joint that is declared to stand still seems to do is noise.
+        for &j in &motion.fixed {
+            motion.dq[j].fill(0.0);
+            motion.ddq[j].fill(0.0);
+        }
         let rate = motion.rate;
         // All signals are limited to the cut-off: more samples a second say nothing more.
         let stride = (rate / SAMPLES_PER_SECOND).floor().max(1.0) as usize;
-        let filter = Butterworth::low_pass(settings.order, (rate / RATE_PER_CUTOFF).min(cutoff), rate)?;
+        let cutoff = (rate / RATE_PER_CUTOFF).min(cutoff);
+        let filter = Butterworth::low_pass(settings.order, cutoff, rate)?;
         let jerk = motion.ddq.iter().map(|x| differentiated(x, rate)).collect();
-        let recorded = Recorded { torque: motion.torque, rate, stride, filter };
+        let recorded = Recorded { torque: motion.torque, rate, stride, filter, cutoff, delay };
         Ok(Self {
             name: motion.name,
             is_target,
@@ -97,7 +107,8 @@ impl Signals {
     /// # Errors
     /// [`DiagnosisError::Signal`] where the motion is too short for the filter.
     pub fn set_delay(&mut self, delay: f64) -> Result<(), DiagnosisError> {
-        if let Some(recorded) = &self.recorded {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.delay = delay;
             self.torque = recorded.delayed(delay)?;
         }
         Ok(())
@@ -118,6 +129,35 @@ impl Signals {
             torque: motion.torque.clone(),
             edge_samples: motion.spoiled,
             recorded: None,
+        }
+    }
+
+    /// The same instants at other positions, speeds and accelerations, without torques: what a model makes of them.
+    pub fn without_torque(name: &str, rate: f64, start: f64, [q, dq, ddq]: [Vec<Vec<f64>>; 3]) -> Self {
+        let nothing: Vec<Vec<f64>> = q.iter().map(|x| vec![0.0; x.len()]).collect();
+        Self {
+            name: name.to_owned(),
+            is_target: true,
+            rate,
+            start,
+            q,
+            dq,
+            ddq,
+            jerk: nothing.clone(),
+            torque: nothing,
+            edge_samples: 0,
+            recorded: None,
+        }
+    }
+
+    /// The torque of a joint as it was recorded, and the highest frequency that it holds, Hz: what is faster than the
+    /// filter lets through still shows in it. Where samples are left out, what is fast would be folded into what is
+    /// slow, and it is the filtered torque.
+    pub fn recorded_torque(&self, joint: usize) -> (Vec<f64>, f64) {
+        match &self.recorded {
+            Some(r) if r.stride == 1 => (shifted(&r.torque[joint], r.delay * r.rate), RECORDED_BAND * r.rate),
+            Some(r) => (self.torque[joint].clone(), r.cutoff),
+            None => (self.torque[joint].clone(), RECORDED_BAND * self.rate),
         }
     }
 

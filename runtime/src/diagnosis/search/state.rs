@@ -7,6 +7,7 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::line::{JointLines, all_lines};
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::SmoothingWindow;
@@ -23,6 +24,8 @@ pub(in crate::diagnosis) struct Search<'a> {
     /// What was taken out again.
     pub rejected: Vec<Accepted>,
     pub spectra: Vec<OrderSpectrum>,
+    /// Ripple that stands out as a line, per joint.
+    pub lines: Vec<JointLines>,
     /// Effects at places, with all of their shapes.
     pub tried: usize,
     pub threads: usize,
@@ -39,6 +42,7 @@ impl<'a> Search<'a> {
         progress.at(0.15, "order spectra");
         let (threads, change) = (settings.threads, model.change);
         let spectra = order_spectra(&model, slowest, threads);
+        let lines = all_lines(&model.context, &spectra, slowest, threads);
         let orders: Vec<Vec<f64>> = spectra.iter().map(|s| peaks(s, PEAKS)).collect();
         let context = &model.context;
         let slow = proposals(context, SmoothingWindow::Slow, change, &orders);
@@ -57,7 +61,7 @@ impl<'a> Search<'a> {
         // What this motion cannot show is not tried.
         slow.retain(|c| model.slow.is_identifiable(c));
         fast.retain(|c| model.fast.is_identifiable(c));
-        Self { model, slow, fast, rejected: Vec::new(), spectra, tried, threads }
+        Self { model, slow, fast, rejected: Vec::new(), spectra, lines, tried, threads }
     }
 
     /// The candidates on the rows of a window.

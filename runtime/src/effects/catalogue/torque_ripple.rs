@@ -58,8 +58,8 @@ impl Effect for TorqueRipple {
 }
 
 impl JointLaw for TorqueRipple {
-    fn amplitudes(&self, _: &[f64]) -> usize {
-        2
+    fn amplitudes(&self, shape: &[f64]) -> usize {
+        2 * shape.len()
     }
 
     /// The orders of a motor turn that cogging, current offsets and wave generators have. A wave must pass four times
@@ -88,9 +88,11 @@ impl JointLaw for TorqueRipple {
     }
 
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        let (s, c) = (shape[0] * at.q).sin_cos();
-        out[0] = c;
-        out[1] = s;
+        for (order, wave) in shape.iter().zip(out.chunks_exact_mut(2)) {
+            let (s, c) = (order * at.q).sin_cos();
+            wave[0] = c;
+            wave[1] = s;
+        }
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
@@ -99,12 +101,19 @@ impl JointLaw for TorqueRipple {
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
         let per = if scale.prismatic { "1/m" } else { "1/rad" };
-        vec![
-            Parameter::new("amplitude", a[0].hypot(a[1]), s[0].max(s[1]), scale.torque_unit()),
-            Parameter::new("order", shape[0], 0.0, per),
-            Parameter::new("order_per_motor_turn", shape[0] / scale.gear, 0.0, "1"),
-            // c cos x + s sin x = amplitude sin(x + phase)
-            Parameter::new("phase", a[0].atan2(a[1]), 0.0, "rad"),
-        ]
+        let waves = a.chunks_exact(2).zip(s.chunks_exact(2)).zip(shape).enumerate();
+        waves
+            .flat_map(|(k, ((a, s), order))| {
+                // The first wave has the plain names.
+                let name = |name: &str| if k == 0 { name.to_owned() } else { format!("{name}_{}", k + 1) };
+                [
+                    Parameter::new(&name("amplitude"), a[0].hypot(a[1]), s[0].max(s[1]), scale.torque_unit()),
+                    Parameter::new(&name("order"), *order, 0.0, per),
+                    Parameter::new(&name("order_per_motor_turn"), order / scale.gear, 0.0, "1"),
+                    // c cos x + s sin x = amplitude sin(x + phase)
+                    Parameter::new(&name("phase"), a[0].atan2(a[1]), 0.0, "rad"),
+                ]
+            })
+            .collect()
     }
 }

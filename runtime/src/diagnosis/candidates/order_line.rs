@@ -1,0 +1,245 @@
+//! Torque ripple by its line: a wave over the joint's angle that stands out of the orders around it, and that one half
+//! of a motion predicts for the other.
+//!
+//! A line has few per cent of a residual's variance and all of it in one order, so that a share of the variance
+//! dilutes it. How far it stands out is not enough either: the foot of a strong line, or of what is left of friction,
+//! reaches far. Both are asked for, motion by motion, at the full rate, of the residual without what is slower than a few
+//! waves.
+
+use crate::diagnosis::rules::{
+    LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
+    LINE_PICKED_ABOVE, LINE_SLOWER,
+};
+use std::f64::consts::TAU;
+
+/// A joint in one motion, at the full rate.
+pub(in crate::diagnosis) struct Stroke<'a> {
+    pub q: &'a [f64],
+    pub dq: &'a [f64],
+    /// Measured torque less that of the model.
+    pub residual: &'a [f64],
+    /// Highest frequency that the residual holds, Hz.
+    pub band: f64,
+}
+
+/// A line in the order spectrum of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct Line {
+    /// Angle of the wave per angle of the joint.
+    pub order: f64,
+    /// Amplitudes of cosine and sine, N.m or N, all motions together, and their standard deviation from the orders
+    /// around it.
+    pub cosine: f64,
+    pub sine: f64,
+    pub sigma: f64,
+    /// Rms of the residual without what is slower, N.m or N, the median of the motions.
+    pub rms: f64,
+    /// Its amplitude against the median of the orders around it, the median of the motions.
+    pub above: f64,
+    /// Share of the residual that one half of a motion predicts for the other, the median of the motions.
+    pub share: f64,
+}
+
+/// The lines of a joint among `known` orders and those that were `picked` from a spectrum, strongest first.
+///
+/// `slowest` is the speed below which the joint stands. A line must show in more than half of the motions that could
+/// show it.
+pub(in crate::diagnosis) fn lines(
+    strokes: &[Stroke<'_>],
+    known: &[f64],
+    picked: &[f64],
+    slowest: f64,
+) -> Vec<Line> {
+    let known = known.iter().map(|&o| (o, LINE_ABOVE));
+    let picked = picked.iter().map(|&o| (o, LINE_PICKED_ABOVE));
+    let mut found: Vec<Line> = Vec::new();
+    for (order, above) in known.chain(picked) {
+        let seen: Vec<Line> = strokes.iter().filter_map(|s| line(s, order, slowest)).collect();
+        let shown: Vec<&Line> =
+            seen.iter().filter(|l| l.above >= above && l.share >= LINE_LEAST_FRACTION).collect();
+        if shown.is_empty() || 2 * shown.len() <= seen.len() {
+            continue;
+        }
+        let median = |value: fn(&Line) -> f64| {
+            let mut values: Vec<f64> = shown.iter().map(|l| value(l)).collect();
+            values.sort_by(f64::total_cmp);
+            values[values.len() / 2]
+        };
+        let order = median(|l| l.order);
+        let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
+        let wave = wave(&all, order);
+        found.push(Line {
+            order,
+            cosine: wave.c,
+            sine: wave.s,
+            sigma: median(|l| l.sigma) / (shown.len() as f64).sqrt(),
+            rms: median(|l| l.rms),
+            above: median(|l| l.above),
+            share: median(|l| l.share),
+        });
+    }
+    found.sort_by(|a, b| b.share.total_cmp(&a.share));
+    // The same line may have been asked for twice: what the travel cannot resolve is one.
+    let resolved = resolution(strokes);
+    let mut apart: Vec<Line> = Vec::new();
+    for line in found {
+        if apart.iter().all(|a| (a.order - line.order).abs() > LINE_COVERED as f64 * resolved) {
+            apart.push(line);
+        }
+    }
+    apart
+}
+
+/// Step between orders that the longest travel tells apart.
+pub(in crate::diagnosis) fn resolution(strokes: &[Stroke<'_>]) -> f64 {
+    TAU / strokes.iter().map(|s| travel(s.q)).fold(1e-9, f64::max)
+}
+
+fn travel(q: &[f64]) -> f64 {
+    let (low, high) = q.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
+    (high - low).max(0.0)
+}
+
+/// A sample that can hold a line: its angle and the residual without what is slower.
+struct Sample {
+    q: f64,
+    r: f64,
+}
+
+/// One order in one motion; `None` where the motion cannot show it.
+fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
+    let samples = samples(stroke, order, slowest);
+    let half = samples.len() / 2;
+    let (first, second) = samples.split_at(half);
+    let waves = |part: &[Sample]| {
+        part.windows(2).map(|w| (w[1].q - w[0].q).abs()).filter(|d| d * order < 3.0).sum::<f64>() * order
+            / TAU
+    };
+    if half < LINE_LEAST_SAMPLES || waves(first) < LINE_LEAST_WAVES || waves(second) < LINE_LEAST_WAVES {
+        return None;
+    }
+    let step = TAU / travel(stroke.q).max(1e-9);
+    // Where exactly the line is, as far as the travel tells.
+    let order = (-4..=4)
+        .map(|k| order + 0.125 * step * f64::from(k))
+        .max_by(|a, b| wave(&samples, *a).norm().total_cmp(&wave(&samples, *b).norm()))?;
+    let fitted = wave(&samples, order);
+    let mut around: Vec<f64> = (LINE_COVERED..LINE_COVERED + LINE_AROUND)
+        .flat_map(|k| [order - k as f64 * step, order + k as f64 * step])
+        .filter(|o| *o > step)
+        .map(|o| wave(&samples, o).norm())
+        .collect();
+    if around.len() < LINE_AROUND {
+        return None;
+    }
+    around.sort_by(f64::total_cmp);
+    let median = around[around.len() / 2].max(1e-300);
+    let predicted = |fit: &[Sample], test: &[Sample]| {
+        let w = wave(fit, order);
+        let (mut left, mut whole) = (0.0, 0.0);
+        for s in test {
+            left += (s.r - w.at(order * s.q)).powi(2);
+            whole += s.r * s.r;
+        }
+        (left, whole)
+    };
+    let (a, b) = (predicted(first, second), predicted(second, first));
+    Some(Line {
+        order,
+        cosine: fitted.c,
+        sine: fitted.s,
+        rms: (samples.iter().map(|s| s.r * s.r).sum::<f64>() / samples.len() as f64).sqrt(),
+        // The median of amplitudes of noise is sqrt(2 ln 2) of the deviation of their parts.
+        sigma: median / (2.0 * std::f64::consts::LN_2).sqrt(),
+        above: fitted.norm() / median,
+        share: 1.0 - (a.0 + b.0) / (a.1 + b.1).max(1e-300),
+    })
+}
+
+/// Samples at which the joint moves slowly enough for the band to hold the wave.
+fn samples(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Vec<Sample> {
+    let fastest = 0.9 * stroke.band * TAU / order;
+    let usable = |t: usize| stroke.dq[t].abs() > slowest && stroke.dq[t].abs() < fastest;
+    let reach = 0.5 * LINE_SLOWER * TAU / order;
+    let mut out = Vec::new();
+    let mut t = 0;
+    while t < stroke.q.len() {
+        if !usable(t) {
+            t += 1;
+            continue;
+        }
+        // A run in one direction.
+        let sign = stroke.dq[t].signum();
+        let end = (t..stroke.q.len())
+            .find(|&k| !usable(k) || stroke.dq[k].signum() != sign)
+            .unwrap_or(stroke.q.len());
+        let (q, r) = (&stroke.q[t..end], &stroke.residual[t..end]);
+        let mut sums = vec![0.0];
+        for x in r {
+            sums.push(sums[sums.len() - 1] + x);
+        }
+        let (mut a, mut b) = (0, 0);
+        for k in 0..q.len() {
+            while (q[k] - q[a]).abs() > reach {
+                a += 1;
+            }
+            while b < q.len() && (q[b] - q[k]).abs() <= reach {
+                b += 1;
+            }
+            // As far to both sides, and at least two waves, or the mean holds the wave itself.
+            let side = (k - a).min(b - 1 - k);
+            let (low, high) = (k - side, k + side + 1);
+            if (q[high - 1] - q[low]).abs() * order / TAU > 0.5 * LINE_SLOWER {
+                out.push(Sample { q: q[k], r: r[k] - (sums[high] - sums[low]) / (high - low) as f64 });
+            }
+        }
+        t = end;
+    }
+    out
+}
+
+/// c cos kq + s sin kq.
+struct Wave {
+    c: f64,
+    s: f64,
+}
+
+impl Line {
+    /// Of the wave, N.m or N.
+    pub fn amplitude(&self) -> f64 {
+        self.cosine.hypot(self.sine)
+    }
+}
+
+impl Wave {
+    fn norm(&self) -> f64 {
+        self.c.hypot(self.s)
+    }
+
+    fn at(&self, angle: f64) -> f64 {
+        let (sine, cosine) = angle.sin_cos();
+        self.c * cosine + self.s * sine
+    }
+}
+
+/// The wave of an order by least squares.
+fn wave(samples: &[Sample], order: f64) -> Wave {
+    let (mut cc, mut cs, mut ss, mut rc, mut rs) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for x in samples {
+        let (sine, cosine) = (order * x.q).sin_cos();
+        cc += cosine * cosine;
+        cs += cosine * sine;
+        ss += sine * sine;
+        rc += x.r * cosine;
+        rs += x.r * sine;
+    }
+    let determinant = cc * ss - cs * cs;
+    if determinant <= 1e-9 * cc * ss {
+        return Wave { c: 0.0, s: 0.0 };
+    }
+    Wave { c: (rc * ss - rs * cs) / determinant, s: (rs * cc - rc * cs) / determinant }
+}
+
+#[cfg(test)]
+#[path = "order_line_tests.rs"]
+mod tests;

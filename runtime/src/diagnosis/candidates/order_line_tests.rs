@@ -1,0 +1,155 @@
+use super::*;
+use crate::diagnosis::rules::LINE_MULTIPLES;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const RATE: f64 = 250.0;
+/// Gear of the motor.
+const GEAR: f64 = 101.0;
+
+/// Positions, speeds and residual of one motion.
+struct Motion {
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    residual: Vec<f64>,
+}
+
+fn normal(rng: &mut Pcg64) -> f64 {
+    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
+}
+
+/// 12 s over 2 rad at up to `speed` rad/s, with unit noise of which a part is slow, a friction that was not fitted
+/// right, and a wave of an amplitude at an order.
+fn motion(rng: &mut Pcg64, speed: f64, order: f64, amplitude: f64) -> Motion {
+    let (phase, angle) = (rng.random_range(0.0..TAU), rng.random_range(0.0..TAU));
+    let slow_share: f64 = rng.random_range(0.0..0.6);
+    let mut slow = normal(rng);
+    let fading = (-1.0 / (0.05 * RATE)).exp();
+    let level = rng.random_range(-0.3..0.3);
+    let mut out = Motion { q: vec![], dq: vec![], residual: vec![] };
+    for k in 0..(12.0 * RATE) as usize {
+        let at = speed * k as f64 / RATE + phase;
+        let (q, dq) = (at.sin(), speed * at.cos());
+        slow = fading * slow + (1.0 - fading * fading).sqrt() * normal(rng);
+        let noise = (1.0 - slow_share).sqrt() * normal(rng) + slow_share.sqrt() * slow;
+        out.q.push(q);
+        out.dq.push(dq);
+        out.residual.push(noise + level * dq.signum() + amplitude * (order * q + angle).sin());
+    }
+    out
+}
+
+fn found(motions: &[Motion]) -> Vec<Line> {
+    let strokes: Vec<Stroke<'_>> = motions
+        .iter()
+        .map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE })
+        .collect();
+    let known: Vec<f64> = LINE_MULTIPLES.iter().map(|k| k * GEAR).collect();
+    lines(&strokes, &known, &[], 0.05)
+}
+
+/// Amplitude of a wave with this share of unit noise.
+fn amplitude(share: f64) -> f64 {
+    (2.0 * share).sqrt()
+}
+
+#[test]
+fn noise_has_no_line() {
+    let mut rng = Pcg64::seed_from_u64(21);
+    let mut false_lines = 0;
+    for _ in 0..300 {
+        let motions: Vec<Motion> = (0..rng.random_range(1..4))
+            .map(|_| {
+                let speed = rng.random_range(0.3..2.0);
+                motion(&mut rng, speed, 1.0, 0.0)
+            })
+            .collect();
+        false_lines += found(&motions).len();
+    }
+    assert_eq!(false_lines, 0);
+}
+
+#[test]
+fn a_line_with_four_per_cent_of_the_variance_is_found_at_any_speed() {
+    let mut rng = Pcg64::seed_from_u64(22);
+    for speed in [0.3, 0.6, 1.0, 1.6] {
+        let mut hits = 0;
+        for _ in 0..40 {
+            let motions = [motion(&mut rng, speed, 2.0 * GEAR, amplitude(0.04))];
+            let lines = found(&motions);
+            hits += usize::from(lines.iter().any(|l| (l.order - 202.0).abs() < 1.0));
+            assert!(lines.iter().all(|l| (l.order - 202.0).abs() < 1.0), "{lines:?}");
+        }
+        println!("{speed} rad/s: {hits} of 40");
+        assert!(hits >= 34, "{speed} rad/s: {hits} of 40");
+    }
+}
+
+#[test]
+fn a_line_with_three_per_cent_is_mostly_found_where_several_motions_show_it() {
+    let mut rng = Pcg64::seed_from_u64(23);
+    let mut hits = 0;
+    for _ in 0..60 {
+        let motions: Vec<Motion> =
+            [0.4, 0.8, 1.2].iter().map(|&v| motion(&mut rng, v, 202.0, amplitude(0.03))).collect();
+        hits += usize::from(!found(&motions).is_empty());
+    }
+    println!("{hits} of 60");
+    assert!(hits >= 42, "{hits} of 60");
+}
+
+#[test]
+fn several_lines_of_a_motor_are_told_apart_and_measured() {
+    let mut rng = Pcg64::seed_from_u64(24);
+    let mut m = motion(&mut rng, 0.8, 202.0, 0.6);
+    for (r, q) in m.residual.iter_mut().zip(&m.q) {
+        *r += 0.4 * (101.0 * q).cos();
+    }
+    let lines = found(&[m]);
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    for (line, (order, height)) in lines.iter().zip([(202.0, 0.6), (101.0, 0.4)]) {
+        assert!((line.order - order).abs() < 0.5, "{lines:?}");
+        assert!((line.amplitude() - height).abs() < 4.0 * line.sigma, "{lines:?}");
+    }
+}
+
+#[test]
+fn the_foot_of_a_strong_line_is_no_line() {
+    let mut rng = Pcg64::seed_from_u64(25);
+    for _ in 0..40 {
+        // A wave that is no multiple of a motor turn, thirty times as strong as the noise.
+        let order = 101.0 * rng.random_range(1.15..1.85);
+        let lines = found(&[motion(&mut rng, 0.7, order, 30.0)]);
+        assert!(lines.is_empty(), "{order}: {lines:?}");
+    }
+}
+
+#[test]
+fn friction_that_was_not_fitted_has_no_line() {
+    let mut rng = Pcg64::seed_from_u64(26);
+    for _ in 0..40 {
+        let mut m = motion(&mut rng, 0.8, 1.0, 0.0);
+        for (r, v) in m.residual.iter_mut().zip(&m.dq) {
+            *r += 8.0 * (v / 0.1).tanh() + 5.0 * v * v * v;
+        }
+        assert!(found(&[m]).is_empty());
+    }
+}
+
+#[test]
+fn an_order_that_nobody_knew_is_found_among_picked_ones() {
+    let mut rng = Pcg64::seed_from_u64(27);
+    let m = motion(&mut rng, 0.8, 77.7, amplitude(0.05));
+    let stroke = Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE };
+    let lines = lines(&[stroke], &[], &[30.0, 78.0, 140.0], 0.05);
+    assert_eq!(lines.len(), 1);
+    assert!((lines[0].order - 77.7).abs() < 1.0);
+}
+
+#[test]
+fn a_joint_that_hardly_moves_shows_nothing() {
+    let still = vec![0.0; 1000];
+    let stroke = Stroke { q: &still, dq: &still, residual: &still, band: 100.0 };
+    assert!(lines(&[stroke], &[202.0], &[100.0], 0.05).is_empty());
+    assert!(lines(&[], &[202.0], &[], 0.05).is_empty());
+}

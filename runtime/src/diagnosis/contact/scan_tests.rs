@@ -1,0 +1,150 @@
+use super::*;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Time between rows, s.
+const STEP: f64 = 0.02;
+/// Rows of 24 s.
+const ROWS: usize = 1200;
+const JOINTS: usize = 4;
+
+fn normal(rng: &mut Pcg64) -> f64 {
+    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
+}
+
+/// 24 s of noise of unit variance, 30 % of it remembered for 0.1 s; every joint reverses every 2 to 4 s.
+fn noise(rng: &mut Pcg64) -> Vec<Track> {
+    let fading = (-STEP / 0.1_f64).exp();
+    (0..JOINTS)
+        .map(|joint| {
+            let mut slow = normal(rng);
+            let (period, phase) = (rng.random_range(100..200), rng.random_range(0..100));
+            let rows = (0..ROWS)
+                .map(|k| {
+                    slow = fading * slow + (1.0 - fading * fading).sqrt() * normal(rng);
+                    (k, 0.7_f64.sqrt() * normal(rng) + 0.3_f64.sqrt() * slow)
+                })
+                .filter(|(k, _)| (k + phase) % period > 4)
+                .collect();
+            Track { joint, motions: vec![(true, rows)] }
+        })
+        .collect()
+}
+
+/// Adds half a sine wave of an rms of `visible` on one joint.
+fn push(track: &mut Track, from: f64, lasts: f64, visible: f64) {
+    for (place, x) in &mut track.motions[0].1 {
+        let at = (*place as f64 * STEP - from) / lasts;
+        if (0.0..1.0).contains(&at) {
+            *x += visible * 2.0_f64.sqrt() * (std::f64::consts::PI * at).sin();
+        }
+    }
+}
+
+#[test]
+fn about_one_recording_in_a_hundred_has_a_push_that_is_none() {
+    let mut rng = Pcg64::seed_from_u64(11);
+    let runs = 600;
+    let false_alarms = (0..runs).filter(|_| !scan(&noise(&mut rng), STEP).is_empty()).count();
+    println!("{false_alarms} of {runs}");
+    assert!(false_alarms <= 12, "{false_alarms} of {runs}");
+}
+
+/// Share of pushes of `lasts` seconds that are found on their joint at their time, and recordings with any other.
+fn found(lasts: f64, visible: f64, seed: u64) -> (f64, usize) {
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let runs = 200;
+    let (mut hits, mut others) = (0, 0);
+    for _ in 0..runs {
+        let mut tracks = noise(&mut rng);
+        let joint = rng.random_range(0..JOINTS);
+        let from = rng.random_range(1.0..22.0);
+        push(&mut tracks[joint], from, lasts, visible);
+        let pushed = scan(&tracks, STEP);
+        let right = |p: &Pushed| {
+            let [a, b] = p.places.map(|k| k as f64 * STEP);
+            p.joint == joint && a < from + lasts && b > from
+        };
+        hits += usize::from(pushed.iter().any(right));
+        others += usize::from(pushed.iter().any(|p| !right(p)));
+    }
+    println!("{lasts} s, {visible}: {hits} of {runs}, others in {others}");
+    (hits as f64 / runs as f64, others)
+}
+
+#[test]
+fn medium_pushes_of_half_a_second_are_found() {
+    let (share, others) = found(0.5, 2.5, 12);
+    assert!(share >= 0.93, "{share}");
+    assert!(others <= 6, "{others}");
+}
+
+#[test]
+fn most_medium_pushes_of_a_quarter_of_a_second_are_found() {
+    let (share, _) = found(0.25, 2.5, 13);
+    assert!(share >= 0.7, "{share}");
+}
+
+#[test]
+fn slow_pushes_are_found_although_they_are_weaker() {
+    let (share, _) = found(1.5, 1.5, 14);
+    assert!(share >= 0.8, "{share}");
+}
+
+#[test]
+fn a_joint_whose_residual_always_wanders_is_not_pushed() {
+    let mut rng = Pcg64::seed_from_u64(15);
+    for _ in 0..100 {
+        let mut tracks = noise(&mut rng);
+        let phase = rng.random_range(0.0..6.0);
+        for (place, x) in &mut tracks[1].motions[0].1 {
+            *x += 2.0 * (2.0 * *place as f64 * STEP + phase).sin();
+        }
+        assert!(scan(&tracks, STEP).iter().all(|p| p.joint != 1));
+    }
+}
+
+#[test]
+fn pushes_of_several_joints_at_a_time_are_one() {
+    let mut tracks = noise(&mut Pcg64::seed_from_u64(16));
+    push(&mut tracks[0], 10.0, 0.6, 4.0);
+    push(&mut tracks[2], 10.05, 0.6, 4.0);
+    push(&mut tracks[3], 17.0, 0.6, 4.0);
+    let groups = together(scan(&tracks, STEP), STEP);
+    let joints: Vec<Vec<usize>> = groups
+        .iter()
+        .map(|g| {
+            let mut joints: Vec<usize> = g.iter().map(|p| p.joint).collect();
+            joints.sort_unstable();
+            joints
+        })
+        .collect();
+    assert_eq!(joints, vec![vec![0, 2], vec![3]]);
+}
+
+#[test]
+fn edges_are_as_uncertain_as_they_say() {
+    let mut rng = Pcg64::seed_from_u64(17);
+    let mut outside = 0;
+    for _ in 0..100 {
+        let mut tracks = noise(&mut rng);
+        let from = rng.random_range(4.0..20.0);
+        for (place, x) in &mut tracks[0].motions[0].1 {
+            if (0.0..0.6).contains(&(*place as f64 * STEP - from)) {
+                *x += 3.0;
+            }
+        }
+        let pushed = scan(&tracks, STEP);
+        let Some(p) = pushed.iter().find(|p| p.joint == 0) else { continue };
+        let error = (p.places[0] as f64 * STEP - from).abs();
+        outside += usize::from(error > 2.0 * p.edges[0].max(1.0) * STEP + STEP);
+    }
+    assert!(outside <= 15, "{outside}");
+}
+
+#[test]
+fn few_rows_are_not_scanned() {
+    let short = Track { joint: 0, motions: vec![(true, (0..50).map(|k| (k, 1.0)).collect())] };
+    assert!(scan(&[short], STEP).is_empty());
+    assert!(scan(&[], STEP).is_empty());
+}

@@ -1,0 +1,236 @@
+//! Pushes against a robot that holds still, from a model that its motion has told.
+
+use crate::diagnosis::contact::force::{JointRow, UnitForces};
+use crate::diagnosis::contact::rest::{Load, Push, Seen, Standing, look, stretches};
+use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::signals::{ModelTorques, Signals};
+use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, INNER_LINK_BETTER, STICTION};
+use crate::effects::{ContactForce, JointTorque};
+use nalgebra::Vector3;
+
+/// What is seen of the outside while the robot holds still.
+pub(in crate::diagnosis) struct AtRest {
+    pub wrenches: Vec<ContactForce>,
+    /// Squares beyond gravity, what the neighbouring instants leave of them, and of the torque, while pushed.
+    pub squares: [f64; 3],
+    /// Least probability that static friction explains a push.
+    pub doubt: f64,
+    /// Torques that are off for as long as the robot stands, with the index of their motion.
+    pub loads: Vec<(usize, Load)>,
+    /// Time of standing that was looked at, s.
+    pub time: f64,
+    /// Coulomb friction of each joint that can be judged.
+    pub coulomb: Vec<Option<f64>>,
+    /// Squares per joint of the torque beyond gravity and static friction, of the same outside of pushes, and of the
+    /// torque itself, while the robot stands.
+    pub by_joint: [Vec<f64>; 3],
+}
+
+impl AtRest {
+    /// The pushes; rows that are at rest are not used for anything else anyway.
+    pub fn contacts(&self, motions: usize) -> Option<Contacts> {
+        let [before, after, torque] = self.squares;
+        (!self.wrenches.is_empty()).then(|| Contacts {
+            windows: vec![Vec::new(); motions],
+            wrenches: self.wrenches.clone(),
+            before,
+            after,
+            torque,
+            doubt: self.doubt,
+        })
+    }
+}
+
+/// Looks at all motions of the recording that is diagnosed. `fitted` are the joints whose friction the model knows;
+/// below the speeds of `slowest` a joint stands.
+pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, fitted: &[bool], slowest: &[f64]) -> AtRest {
+    let coulomb: Vec<Option<f64>> = coulomb(context)
+        .into_iter()
+        .zip(fitted)
+        .map(|(c, fitted)| Some(c).filter(|c| *fitted && c.is_finite() && *c > 0.0))
+        .collect();
+    let mut found = AtRest {
+        wrenches: Vec::new(),
+        squares: [0.0; 3],
+        doubt: 1.0,
+        loads: Vec::new(),
+        time: 0.0,
+        coulomb: coulomb.clone(),
+        by_joint: std::array::from_fn(|_| vec![0.0; coulomb.len()]),
+    };
+    for (k, s) in context.signals.iter().enumerate().filter(|(_, s)| s.is_target) {
+        let inside = s.edge_samples.min(s.len())
+            ..s.len().saturating_sub(s.edge_samples).max(s.edge_samples.min(s.len()));
+        let still: Vec<bool> = inside
+            .clone()
+            .map(|t| s.dq.iter().zip(slowest).all(|(dq, least)| dq[t].abs() < *least))
+            .collect();
+        if !still.contains(&true) {
+            continue;
+        }
+        let beyond: Vec<Vec<f64>> =
+            beyond_gravity(context, s).into_iter().map(|x| x[inside.clone()].to_vec()).collect();
+        let standing = Standing {
+            rate: s.rate,
+            start: s.time(inside.start),
+            beyond: &beyond,
+            still: &still,
+            coulomb: &coulomb,
+        };
+        let Seen { pushes, loads, time } = look(&standing);
+        found.time += time;
+        found.loads.extend(loads.into_iter().map(|load| (k, load)));
+        for t in stretches(&standing).into_iter().flat_map(|[a, b]| a..b) {
+            let time = standing.start + t as f64 / s.rate;
+            let pushed = pushes.iter().any(|p| (p.window[0]..=p.window[1]).contains(&time));
+            for (j, c) in coulomb.iter().enumerate() {
+                let Some(c) = c else { continue };
+                let out = (beyond[j][t].abs() - STICTION * c).max(0.0).powi(2);
+                found.by_joint[0][j] += out;
+                found.by_joint[1][j] += if pushed { 0.0 } else { out };
+                found.by_joint[2][j] += s.torque[j][t + inside.start].powi(2);
+            }
+        }
+        for push in &pushes {
+            found.doubt = found.doubt.min(push.doubt);
+            let wrench = wrench(context, s, inside.start, &standing, push, &mut found.squares);
+            found.wrenches.push(wrench);
+        }
+    }
+    found
+}
+
+/// Torque beyond gravity and offset, `[j][t]`, as if nothing moved: at rest speeds and accelerations are noise.
+fn beyond_gravity(context: &Context<'_>, s: &Signals) -> Vec<Vec<f64>> {
+    let model = ModelTorques::new(context.model, &context.chi, &resting(s, s.q.clone(), 0.0));
+    (0..s.q.len())
+        .map(|j| {
+            s.torque[j]
+                .iter()
+                .zip(model.total[j].iter().zip(&model.friction[j]))
+                .map(|(y, (total, friction))| y - (total - friction))
+                .collect()
+        })
+        .collect()
+}
+
+/// Dry friction of each joint: the most that any joints may have together where they turn a common motor.
+fn coulomb(context: &Context<'_>) -> Vec<f64> {
+    let n = context.model.robot().joints();
+    let Some(s) = context.signals.first() else { return vec![0.0; n] };
+    let mut most = vec![0.0_f64; n];
+    // All joints one way, and each one against the others.
+    for against in 0..=n {
+        let mut one =
+            resting(s, s.q.iter().map(|q| q.first().copied().into_iter().collect()).collect(), SLOW);
+        if let Some(dq) = one.dq.get_mut(against) {
+            dq.iter_mut().for_each(|v| *v = -*v);
+        }
+        let torques = ModelTorques::new(context.model, &context.chi, &one);
+        for (most, friction) in most.iter_mut().zip(&torques.friction) {
+            *most = most.max(friction.first().map_or(0.0, |f| f.abs()));
+        }
+    }
+    most
+}
+
+/// A speed at which only dry friction is felt, rad/s or m/s.
+const SLOW: f64 = 1e-9;
+
+/// Positions at which all joints have one speed and no acceleration.
+fn resting(s: &Signals, q: Vec<Vec<f64>>, speed: f64) -> Signals {
+    let like = |value: f64| -> Vec<Vec<f64>> { q.iter().map(|x| vec![value; x.len()]).collect() };
+    Signals::without_torque(&s.name, s.rate, s.start, [q.clone(), like(speed), like(0.0)])
+}
+
+/// A push as a force on a link where at least two joints see it and one force explains them; else as joint torques.
+fn wrench(
+    context: &Context<'_>,
+    s: &Signals,
+    offset: usize,
+    standing: &Standing<'_>,
+    push: &Push,
+    squares: &mut [f64; 3],
+) -> ContactForce {
+    let robot = context.model.robot();
+    let sample = |time: f64| (((time - standing.start) * standing.rate).round().max(0.0)) as usize;
+    let last = standing.still.len().saturating_sub(1);
+    let (from, to) = (sample(push.window[0]).min(last), sample(push.window[1]).min(last));
+    let step = ((FORCE_STEP_AT_REST * standing.rate) as usize).max(1);
+    let instants: Vec<usize> = (from..=to).step_by(step).collect();
+    let sigma: Vec<f64> = standing.coulomb.iter().map(|c| c.unwrap_or(1.0) / 3.0_f64.sqrt()).collect();
+    let rows = |t: usize| -> Vec<JointRow> {
+        let known = standing.coulomb.iter().enumerate().filter(|(_, c)| c.is_some());
+        known
+            .map(|(joint, _)| JointRow {
+                joint,
+                residual: standing.beyond[joint][t],
+                y: s.torque[joint][t + offset],
+                sigma: sigma[joint],
+            })
+            .collect()
+    };
+    for (i, &t) in instants.iter().enumerate() {
+        for JointRow { joint: j, residual: beyond, y: torque, sigma } in rows(t) {
+            let neighbours: Vec<f64> = [i.checked_sub(1), Some(i + 1)]
+                .into_iter()
+                .flatten()
+                .filter_map(|k| instants.get(k))
+                .map(|&k| standing.beyond[j][k])
+                .collect();
+            let mean = neighbours.iter().sum::<f64>() / neighbours.len().max(1) as f64;
+            for (sum, x) in squares.iter_mut().zip([beyond, beyond - mean, torque]) {
+                *sum += (x / sigma).powi(2);
+            }
+        }
+    }
+    let joint_of_frame = robot.joint_of_frame();
+    let innermost = push.joints.iter().map(|p| p.joint).min().unwrap_or(0);
+    let frame_of = |joint: usize| joint_of_frame.iter().position(|f| *f == Some(joint)).unwrap_or(joint);
+    let mut wrench = ContactForce {
+        motion: s.name.clone(),
+        window: push.window,
+        link: frame_of(innermost) + 1,
+        force: [0.0; 3],
+        mean_force: [0.0; 3],
+        edges: Some(push.edges),
+        joint_torques: push
+            .joints
+            .iter()
+            .map(|p| JointTorque {
+                joint: frame_of(p.joint) + 1,
+                mean: p.mean,
+                largest: p.largest,
+                sigma: p.sigma,
+            })
+            .collect(),
+    };
+    if push.joints.len() < 2 {
+        return wrench;
+    }
+    let whole: f64 =
+        instants.iter().flat_map(|&t| rows(t)).map(|row| (row.residual / row.sigma).powi(2)).sum();
+    let mut best: Option<(f64, usize, Vec<Vector3<f64>>)> = None;
+    for frame in (0..robot.frames.len()).filter(|&f| joint_of_frame[f].is_some()).rev() {
+        let (mut left, mut forces) = (0.0, Vec::new());
+        for &t in &instants {
+            let (unit, rows) = (UnitForces::at(context, frame, s, t + offset), rows(t));
+            let f = unit.force(&rows);
+            left += unit.left(&rows, &f);
+            forces.push(f);
+        }
+        // A link further in must be clearly better: the same force seen from the next link is nearly as good.
+        if best.as_ref().is_none_or(|b| left < INNER_LINK_BETTER * b.0) {
+            best = Some((left, frame, forces));
+        }
+    }
+    if let Some((_, frame, forces)) = best.filter(|b| 1.0 - b.0 / whole >= FORCE_EXPLAINS) {
+        let mean = forces.iter().sum::<Vector3<f64>>() / forces.len().max(1) as f64;
+        let largest = forces.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied().unwrap_or(mean);
+        wrench.link = frame + 1;
+        wrench.force = [largest[0], largest[1], largest[2]];
+        wrench.mean_force = [mean[0], mean[1], mean[2]];
+    }
+    wrench
+}

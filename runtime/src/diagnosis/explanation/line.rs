@@ -1,0 +1,58 @@
+//! Torque ripple that was seen as lines, as findings.
+
+use crate::diagnosis::candidates::order_line::Line;
+use crate::diagnosis::explanation::finding::{named_on, unit_term};
+use crate::diagnosis::explanation::words;
+use crate::diagnosis::outcome::Finding;
+use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, LINE_COVERED};
+use crate::diagnosis::search::line::JointLines;
+use crate::diagnosis::search::state::Search;
+use crate::effects::{EffectKind, EffectTerm, Form, Place};
+
+/// One finding per joint with lines that are not in the model already, with all of their orders.
+///
+/// The amplitudes are those of the full rate: rows may be smoothed or filtered more than the wave can take.
+pub(in crate::diagnosis) fn findings(search: &Search<'_>) -> Vec<Finding> {
+    let tried: usize = search.lines.iter().map(|l| l.tried).sum();
+    let of_joint = |(j, found): (usize, &JointLines)| finding(search, j, found, tried);
+    search.lines.iter().enumerate().filter_map(of_joint).collect()
+}
+
+fn finding(search: &Search<'_>, joint: usize, found: &JointLines, tried: usize) -> Option<Finding> {
+    let model = &search.model;
+    let (effect, place) = (EffectKind::TorqueRipple, Place::Joint(joint));
+    let near = LINE_COVERED as f64 * found.resolution;
+    let in_model = |line: &Line| {
+        let same = model.terms.iter().filter(|t| t.effect == effect && t.place == place);
+        same.flat_map(|t| &t.shape).any(|order| (order - line.order).abs() <= near)
+    };
+    let lines: Vec<&Line> = found.lines.iter().filter(|l| !in_model(l)).collect();
+    let strongest = lines.first()?;
+    let shape: Vec<f64> = lines.iter().map(|l| l.order).collect();
+    let amplitude: Vec<f64> = lines.iter().flat_map(|l| [l.cosine, l.sine]).collect();
+    let sigma: Vec<f64> = lines.iter().flat_map(|l| [l.sigma; 2]).collect();
+    let scale = &model.context.scales[joint];
+    let Form::Joint(law) = effect.form() else { return None };
+    let parameters = law.parameters(scale, &shape, &amplitude, &sigma);
+    // Amplitudes of noise pass their median so many times once in 2^(square) orders.
+    let doubt = tried as f64 * (-strongest.above * strongest.above).exp2();
+    let share: f64 = lines.iter().map(|l| l.share).sum::<f64>().min(1.0);
+    let before = strongest.rms / found.torque.max(1e-300);
+    let mut finding = Finding {
+        confidence: (1.0 - doubt).clamp(0.0, HIGHEST_CONFIDENCE),
+        significance: strongest.amplitude() / strongest.sigma.max(1e-300),
+        parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
+        held_out_before: before,
+        held_out_after: before * (1.0 - share).sqrt(),
+        share,
+        ..Finding::of(EffectTerm {
+            joints: named_on(model.context.model.robot(), effect, place),
+            amplitude,
+            sigma,
+            scale: Some(model.context.scales[joint].into()),
+            ..unit_term(effect, place, shape)
+        })
+    };
+    finding.sentence = words::sentence(model.context.model.robot(), effect, &finding);
+    Some(finding)
+}

@@ -1,0 +1,73 @@
+//! Torque ripple that stands out as a line in the orders of a joint: looked for beside the laws that explain a share of
+//! the rows, which a line of a few per cent, or one that is faster than the rows, never does.
+
+use crate::diagnosis::candidates::order_line::{Line, Stroke, lines, resolution};
+use crate::diagnosis::candidates::spectrum::peaks;
+use crate::diagnosis::outcome::OrderSpectrum;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rules::{LINE_MULTIPLES, LINE_PICKED};
+use crate::parallel;
+
+/// The lines of one joint, and how close two orders are one.
+#[derive(Debug, Clone, Default)]
+pub(in crate::diagnosis) struct JointLines {
+    pub lines: Vec<Line>,
+    pub resolution: f64,
+    /// Orders that were tried.
+    pub tried: usize,
+    /// Rms of the torque, N.m or N.
+    pub torque: f64,
+}
+
+/// Lines of every joint in the recording that is diagnosed. None where there is a baseline: whether a line is new would
+/// have to be shown in motion of the baseline that could show it.
+pub(in crate::diagnosis) fn all_lines(
+    context: &Context<'_>,
+    spectra: &[OrderSpectrum],
+    slowest: &[f64],
+    threads: usize,
+) -> Vec<JointLines> {
+    parallel::map(threads, spectra.len(), |j| {
+        let residuals: Vec<(Vec<f64>, f64)> = context
+            .signals
+            .iter()
+            .zip(&context.torques)
+            .map(|(s, m)| {
+                let (torque, band) = s.recorded_torque(j);
+                (torque.iter().zip(&m.total[j]).map(|(y, t)| y - t).collect(), band)
+            })
+            .collect();
+        let strokes = |target: bool| -> Vec<Stroke<'_>> {
+            let wanted = context.signals.iter().zip(&residuals).filter(|(s, _)| s.is_target == target);
+            wanted
+                .map(|(s, (r, band))| {
+                    let end = s.len().saturating_sub(s.edge_samples);
+                    let inside = s.edge_samples.min(end)..end.min(r.len());
+                    Stroke {
+                        q: &s.q[j][inside.clone()],
+                        dq: &s.dq[j][inside.clone()],
+                        residual: &r[inside],
+                        band: *band,
+                    }
+                })
+                .collect()
+        };
+        let now = strokes(true);
+        let gear = spectra[j].gear;
+        // Of a joint whose gear is not known there are no multiples to ask for.
+        let known: Vec<f64> =
+            if gear > 1.0 { LINE_MULTIPLES.iter().map(|k| k * gear).collect() } else { Vec::new() };
+        let picked = peaks(&spectra[j], LINE_PICKED);
+        let resolution = resolution(&now);
+        let alone = context.signals.iter().all(|s| s.is_target);
+        let new = if alone { lines(&now, &known, &picked, slowest[j]) } else { Vec::new() };
+        let torques = context.signals.iter().filter(|s| s.is_target).flat_map(|s| &s.torque[j]);
+        let (squares, count) = torques.fold((0.0, 0), |(sum, n), y| (sum + y * y, n + 1));
+        JointLines {
+            lines: new,
+            resolution,
+            tried: known.len() + spectra[j].order.len(),
+            torque: (squares / f64::from(count.max(1))).sqrt(),
+        }
+    })
+}

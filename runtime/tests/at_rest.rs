@@ -1,0 +1,125 @@
+//! Recordings in which joints, or the whole robot, hold still.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Hidden, SimulatedRobot, planar, scara};
+use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Settings, Silent, diagnose};
+use dynid_runtime::model::Model;
+use dynid_runtime::recording::Trajectory;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Samples a second.
+const RATE: f64 = 500.0;
+
+/// A motion by inverse dynamics: `state(t)` are q, dq, ddq per joint, `outside(t)` what is added to the torques.
+fn recorded(
+    robot: &SimulatedRobot,
+    seconds: f64,
+    seed: u64,
+    state: impl Fn(f64) -> [Vec<f64>; 3],
+    outside: impl Fn(f64) -> Vec<f64>,
+) -> Trajectory {
+    let model = &robot.model;
+    let chi = model.robot().base_from_standard(&robot.standard);
+    let pattern = model.pattern().clone();
+    let joints = model.robot().joints();
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let mut entries = vec![0.0; pattern.columns.len()];
+    let (mut time, mut position, mut torque) =
+        (Vec::new(), vec![Vec::new(); joints], vec![Vec::new(); joints]);
+    for k in 0..(seconds * RATE) as usize {
+        let t = k as f64 / RATE;
+        let [q, dq, ddq] = state(t);
+        model.idm(&q, &dq, &ddq, &mut entries);
+        let outside = outside(t);
+        time.push(t);
+        for j in 0..joints {
+            let row = pattern.rows[j]..pattern.rows[j + 1];
+            let ideal: f64 = row.map(|e| entries[e] * chi[pattern.columns[e]]).sum();
+            position[j].push(q[j] + 1e-6 * rng.random_range(-1.0..1.0));
+            torque[j].push(ideal + outside[j] + 0.2 * rng.random_range(-1.0..1.0));
+        }
+    }
+    Trajectory { name: format!("seed {seed}"), time, position, velocity: None, torque, fixed: vec![] }
+}
+
+fn diagnosed(
+    robot: &SimulatedRobot,
+    recording: Trajectory,
+    baseline: &[Trajectory],
+) -> Result<Diagnosis, DiagnosisError> {
+    let mut settings = Settings::default();
+    settings.threads = 1;
+    diagnose(&robot.model, &[recording], baseline, &settings, &Silent)
+}
+
+/// The planar robot holding still with part of its static friction in its motors, and pushes.
+fn standing(pushes: &[(usize, f64, f64)]) -> Diagnosis {
+    let robot = planar();
+    let baseline = robot.record(&robot.motions(2, 8.0, 51), &Hidden::nothing(), 51);
+    let rest = |_: f64| [vec![0.4, 0.5], vec![0.0; 2], vec![0.0; 2]];
+    let outside = |t: f64| {
+        let mut torque = vec![1.5, -0.8];
+        for &(joint, from, height) in pushes {
+            if (0.0..1.0).contains(&(t - from)) {
+                torque[joint] += height * (std::f64::consts::PI * (t - from)).sin();
+            }
+        }
+        torque
+    };
+    diagnosed(&robot, recorded(&robot, 10.0, 1, rest, outside), &baseline).unwrap()
+}
+
+#[test]
+fn pushes_against_a_robot_that_holds_still_are_found_at_their_times() {
+    // Coulomb friction is 3 and 1.5 N.m.
+    let diagnosis = standing(&[(0, 2.0, 9.0), (1, 6.0, -6.0)]);
+    assert_eq!(diagnosis.findings.len(), 1, "{:?}", diagnosis.verdict);
+    let contact = &diagnosis.findings[0];
+    assert_eq!(contact.effect, "contact");
+    assert_eq!(contact.contacts.len(), 2, "{:?}", contact.contacts);
+    for (seen, (joint, from)) in contact.contacts.iter().zip([(1, 2.0), (2, 6.0)]) {
+        assert!(seen.window[0] < from + 0.4 && seen.window[1] > from + 0.6, "{seen:?}");
+        assert!(seen.window[0] > from - 0.2 && seen.window[1] < from + 1.2, "{seen:?}");
+        assert_eq!(seen.joint_torques.iter().map(|t| t.joint).collect::<Vec<_>>(), [joint]);
+    }
+    assert!(contact.confidence > 0.99);
+    assert_eq!(diagnosis.not_judged.len(), 2);
+}
+
+#[test]
+fn a_robot_that_holds_still_within_its_friction_shows_nothing() {
+    let diagnosis = standing(&[(0, 2.0, 1.5)]);
+    assert!(diagnosis.findings.is_empty(), "{:?}", diagnosis.verdict);
+    assert!(diagnosis.cannot_tell.is_empty());
+}
+
+#[test]
+fn without_a_baseline_a_robot_that_holds_still_is_refused_in_words() {
+    let robot = planar();
+    let rest = |_: f64| [vec![0.4, 0.5], vec![0.0; 2], vec![0.0; 2]];
+    let refused = diagnosed(&robot, recorded(&robot, 10.0, 2, rest, |_| vec![0.0; 2]), &[]).unwrap_err();
+    assert!(matches!(refused, DiagnosisError::NothingMoves { .. }), "{refused}");
+}
+
+#[test]
+fn strokes_of_one_joint_name_what_that_joint_has_and_say_that_the_others_are_not_judged() {
+    let robot = scara();
+    let (w, v) = (2.1, 5.3);
+    let stroke = |t: f64| {
+        let q = 0.8 * (w * t).sin() + 0.2 * (v * t).sin();
+        let dq = 0.8 * w * (w * t).cos() + 0.2 * v * (v * t).cos();
+        let ddq = -0.8 * w * w * (w * t).sin() - 0.2 * v * v * (v * t).sin();
+        [vec![0.3, q, 0.05], vec![0.0, dq, 0.0], vec![0.0, ddq, 0.0]]
+    };
+    let spring = |t: f64| vec![0.0, 4.0 * stroke(t)[0][1], 0.0];
+    let diagnosis = diagnosed(&robot, recorded(&robot, 24.0, 3, stroke, spring), &[]).unwrap();
+    let named: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.as_slice())).collect();
+    assert!(named.contains(&("spring", [2].as_slice())), "{:?}", diagnosis.verdict);
+    // An inverse dynamics without compliance jumps at reversals: what filters make of that may be named besides.
+    assert!(named.iter().all(|(_, joints)| *joints == [2]), "{named:?}");
+    let not_judged: Vec<usize> = diagnosis.not_judged.iter().map(|j| j.joint).collect();
+    assert_eq!(not_judged, [1, 3]);
+}
