@@ -169,7 +169,8 @@ fn run(
     loop {
         // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
-        let (mut search, standard, sampling) = begin(model, &prepared, contacts.as_ref(), change, progress)?;
+        let Begun { mut search, standard, sampling } =
+            begin(model, &prepared, contacts.as_ref(), change, progress)?;
         let settings = prepared.motions.settings();
         let report = match known {
             Some(known) => search.force(known)?,
@@ -199,6 +200,16 @@ fn run(
     }
 }
 
+/// What a search begins with.
+struct Begun<'a> {
+    /// All candidates, none of them in the model yet.
+    search: Search<'a>,
+    /// The standard model fitted alone.
+    standard: StandardModelFit,
+    /// How the rows were sampled.
+    sampling: Sampling,
+}
+
 /// The standard model on the rows outside of contacts, and all candidates.
 fn begin<'a>(
     model: &'a dyn Model,
@@ -206,7 +217,7 @@ fn begin<'a>(
     contacts: Option<&Contacts>,
     change: bool,
     progress: &dyn Progress,
-) -> Result<(Search<'a>, StandardModelFit, Sampling), DiagnosisError> {
+) -> Result<Begun<'a>, DiagnosisError> {
     let motions = &prepared.motions;
     let rows = motions.rows(model, contacts.map(|c| c.windows.as_slice()));
     let sampling = motions.sampling(&rows);
@@ -218,7 +229,7 @@ fn begin<'a>(
     let extended = ExtendedModel::new(context, rows.slow, rows.fast, change)?;
     let search = Search::new(extended, &motions.slowest, motions.settings(), progress);
     let standard = StandardModelFit::new(&search.model, &prepared.aligned)?;
-    Ok((search, standard, sampling))
+    Ok(Begun { search, standard, sampling })
 }
 
 /// Whether contacts still stand out of what the model with its effects leaves.
