@@ -96,7 +96,6 @@ pub use outcome::{
     ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, StopReason, TorqueSeries, Unexplained,
 };
 pub use predict::term_torques;
-pub use preparation::slowest_speeds;
 pub use settings::{Progress, Settings, Silent};
 
 use crate::effects::EffectKind;
