@@ -1,7 +1,7 @@
 //! The report of `diagnose`: the verdict first, then for every finding where it was seen and what it changed.
 
 use dynid_runtime::diagnosis::Diagnosis;
-use dynid_runtime::prediction::Prediction;
+use dynid_runtime::prediction::{Evaluation, Prediction};
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use super::extras::Extras;
