@@ -38,7 +38,7 @@ fn run() -> io::Result<Vec<String>> {
         Ok(collection) => collection,
         Err(mistakes) => return Ok(mistakes.iter().map(ToString::to_string).collect()),
     };
-    collection.doubts.iter().for_each(|doubt| println!("cargo::warning={doubt}"));
+    collection.warnings.iter().for_each(|warning| println!("cargo::warning={warning}"));
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("OUT_DIR is not set"))?);
     let generator = generator()?;
     let mut modules = Vec::new();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use dynid_codegen::base::base_set;
 use dynid_codegen::numeric_robot;
-use dynid_codegen::robot::parse_with_doubts;
+use dynid_codegen::robot::parse_with_warnings;
 use dynid_runtime::model::{Model, RecursiveModel, Robot};
 
 use crate::failure::{Failure, file_failure};
@@ -84,10 +84,10 @@ pub fn found_again(dynamics: &Dynamics, name: &str, beside: Option<&Path>) -> St
 /// [`Failure::Input`] with every mistake, one a line.
 pub fn read(path: &Path) -> Result<Robot, Failure> {
     let text = std::fs::read(path).map_err(|error| file_failure("read the robot", path, &error))?;
-    let (table, doubts) = parse_with_doubts(&path.display().to_string(), &text).map_err(|mistakes| {
+    let (table, warnings) = parse_with_warnings(&path.display().to_string(), &text).map_err(|mistakes| {
         Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
     })?;
-    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
+    warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
     Ok(numeric_robot(&table, &base_set(&table)))
 }
 

@@ -177,7 +177,7 @@ fn a_model_of_a_robot_given_by_path_is_validated_from_any_folder() {
 
 #[test]
 fn an_angle_that_is_nearly_a_right_one_is_warned_of() {
-    let folder = Folder::new("doubt");
+    let folder = Folder::new("rounded");
     folder.write(
         "arm.yaml",
         "name: arm\nframes:\n  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n  \

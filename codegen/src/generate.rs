@@ -3,7 +3,7 @@
 use crate::base::BaseSet;
 use crate::emit;
 use crate::mechanics::{Equations, ModelCounts, ModelError};
-use crate::robot::{Diagnostic, RobotTable, at_name, parse_with_doubts};
+use crate::robot::{Diagnostic, RobotTable, at_name, parse_with_warnings};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -68,14 +68,14 @@ pub fn registry(modules: &[(&str, &Path)]) -> String {
     source
 }
 
-/// The robots of several YAMLs, and what is doubtful about them.
+/// The robots of several YAMLs, and what is allowed but probably not meant.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Collection {
     /// In the order of the files.
     pub robots: Vec<RobotTable>,
     /// What is allowed in the files but probably not meant.
-    pub doubts: Vec<Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// Reads several robot YAMLs, given as path and bytes, that go into one registry.
@@ -84,12 +84,12 @@ pub struct Collection {
 /// Every mistake of every file, and every name that is taken already.
 pub fn read_all(files: &[(String, Vec<u8>)]) -> Result<Collection, Vec<Diagnostic>> {
     let mut mistakes = Vec::new();
-    let mut collection = Collection { robots: Vec::new(), doubts: Vec::new() };
+    let mut collection = Collection { robots: Vec::new(), warnings: Vec::new() };
     let mut paths: Vec<&str> = Vec::new();
     for (path, bytes) in files {
-        match parse_with_doubts(path, bytes) {
+        match parse_with_warnings(path, bytes) {
             Err(found) => mistakes.extend(found),
-            Ok((robot, doubts)) => {
+            Ok((robot, warnings)) => {
                 match collection.robots.iter().position(|known| known.name == robot.name) {
                     Some(first) => {
                         let message = format!("the name {} is already that of {}", robot.name, paths[first]);
@@ -97,7 +97,7 @@ pub fn read_all(files: &[(String, Vec<u8>)]) -> Result<Collection, Vec<Diagnosti
                     }
                     None => {
                         collection.robots.push(robot);
-                        collection.doubts.extend(doubts);
+                        collection.warnings.extend(warnings);
                         paths.push(path);
                     }
                 }

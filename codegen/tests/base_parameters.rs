@@ -258,32 +258,35 @@ fn the_tx40_has_the_sixty_base_parameters_of_table_ii() {
     let set = base_set(&with_payload);
     assert_eq!(set.base.len(), 60);
     with_payload.frames.pop();
-    let bare = base_set(&with_payload);
+    let without_payload = base_set(&with_payload);
     let expected = "ZZ1R Fv1 Fc1 off1 XX2R XY2 XZ2R YZ2 ZZ2R MX2R MY2 Fv2 Fc2 off2 XX3R XY3 XZ3 YZ3 ZZ3R MX3 MY3R Ia3 \
                     Fv3 Fc3 off3 XX4R XY4 XZ4 YZ4 ZZ4R MX4 MY4R Ia4 Fv4 Fc4 off4 XX5R XY5 XZ5 YZ5 ZZ5R MX5 MY5R Ia5 Fv5 \
                     Fc5 off5 XX6R XY6 XZ6 YZ6 ZZ6 MX6 MY6 Ia6 Fv6 Fc6 off6 Fvm6 Fcm6";
-    assert_eq!(names(&bare).join(" "), expected);
+    assert_eq!(names(&without_payload).join(" "), expected);
     // The payload stands on link 6, so that it is regrouped into all of that link.
     let payload = ["XY6R", "XZ6R", "YZ6R", "ZZ6R", "MX6R", "MY6R"];
     let expected = expected.split(' ').map(str::to_owned).collect::<Vec<_>>();
-    for (name, bare_name) in names(&set).into_iter().zip(expected) {
-        assert!(
-            name == bare_name || payload.contains(&name) && name == format!("{bare_name}R"),
-            "{name} {bare_name}"
-        );
+    for (name, own) in names(&set).into_iter().zip(expected) {
+        assert!(name == own || payload.contains(&name) && name == format!("{own}R"), "{name} {own}");
     }
     assert_eq!(
-        relation(&bare, "ZZ1R"),
+        relation(&without_payload, "ZZ1R"),
         "ZZ1 + Ia1 + YY2 + YY3 + 2*rl3*MZ3 + (rl3^2 + d3^2)*M3 + (rl3^2 + d3^2)*M4 + (rl3^2 + d3^2)*M5 + (rl3^2 + d3^2)*M6"
     );
-    assert_eq!(relation(&bare, "ZZ2R"), "ZZ2 + Ia2 + d3^2*M3 + d3^2*M4 + d3^2*M5 + d3^2*M6");
-    assert_eq!(relation(&bare, "MX2R"), "MX2 + d3*M3 + d3*M4 + d3*M5 + d3*M6");
-    assert_eq!(relation(&bare, "XZ2R"), "XZ2 - d3*MZ3 - d3*rl3*M3 - d3*rl3*M4 - d3*rl3*M5 - d3*rl3*M6");
-    assert_eq!(relation(&bare, "MY3R"), "MY3 - MZ4 - rl4*M4 - rl4*M5 - rl4*M6");
-    assert_eq!(relation(&bare, "XX6R"), "XX6 - YY6");
-    let held = |k: usize| bare.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
-    let without: Vec<&str> =
-        (0..bare.standard.len()).filter(|&k| !held(k)).map(|k| bare.standard[k].name.as_ref()).collect();
+    assert_eq!(relation(&without_payload, "ZZ2R"), "ZZ2 + Ia2 + d3^2*M3 + d3^2*M4 + d3^2*M5 + d3^2*M6");
+    assert_eq!(relation(&without_payload, "MX2R"), "MX2 + d3*M3 + d3*M4 + d3*M5 + d3*M6");
+    assert_eq!(
+        relation(&without_payload, "XZ2R"),
+        "XZ2 - d3*MZ3 - d3*rl3*M3 - d3*rl3*M4 - d3*rl3*M5 - d3*rl3*M6"
+    );
+    assert_eq!(relation(&without_payload, "MY3R"), "MY3 - MZ4 - rl4*M4 - rl4*M5 - rl4*M6");
+    assert_eq!(relation(&without_payload, "XX6R"), "XX6 - YY6");
+    let held =
+        |k: usize| without_payload.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
+    let without: Vec<&str> = (0..without_payload.standard.len())
+        .filter(|&k| !held(k))
+        .map(|k| without_payload.standard[k].name.as_ref())
+        .collect();
     assert_eq!(without.join(" "), "XX1 XY1 XZ1 YY1 YZ1 MX1 MY1 MZ1 M1 MZ2 M2");
 }
 

@@ -1,6 +1,6 @@
 //! Every mistake in a robot's YAML is reported at its place, all of them at once.
 
-use dynid_codegen::robot::{RobotTable, parse, parse_with_doubts};
+use dynid_codegen::robot::{RobotTable, parse, parse_with_warnings};
 use dynid_description::JointKind;
 use proptest::prelude::*;
 
@@ -87,17 +87,18 @@ fn an_unknown_key_names_the_nearest_known_one() {
     one_mistake(&arm("nominal: {parameters: {ZZ3: 1}}"), "5:24", &["ZZ3", "standard parameter"]);
 }
 
-/// What is doubted in a text without mistakes, as `line:column: message`.
-fn doubts(text: &str) -> Vec<String> {
-    let (_, doubts) = parse_with_doubts("arm.yaml", text.as_bytes()).unwrap_or_else(|m| panic!("{}", m[0]));
-    doubts
+/// The warnings of a text without mistakes, as `line:column: message`.
+fn warnings(text: &str) -> Vec<String> {
+    let (_, warnings) =
+        parse_with_warnings("arm.yaml", text.as_bytes()).unwrap_or_else(|m| panic!("{}", m[0]));
+    warnings
         .iter()
         .map(|d| d.to_string().strip_prefix("arm.yaml:").expect("names the file").to_owned())
         .collect()
 }
 
 #[test]
-fn an_angle_that_is_a_rounded_multiple_of_45_degrees_is_doubted_at_its_place() {
+fn an_angle_that_is_a_rounded_multiple_of_45_degrees_gets_a_warning_at_its_place() {
     for (row, place, meant) in [
         ("j: 2, sigma: 0, alpha: 1.5708, d: 0.5, theta: q2, r: 0", "5:29", "pi/2"),
         ("j: 2, sigma: 0, alpha: -1.57, d: 0.5, theta: q2, r: 0", "5:29", "pi/2"),
@@ -107,14 +108,14 @@ fn an_angle_that_is_a_rounded_multiple_of_45_degrees_is_doubted_at_its_place() {
         ("j: 2, sigma: 0, alpha: 90*3.14159/180, d: 0.5, theta: q2, r: 0", "5:29", "pi/2"),
         ("j: 2, sigma: 2, alpha: 0, d: 0.5, theta: 6.2832, r: 0", "5:47", "2*pi"),
     ] {
-        let found = doubts(&arm_with_row(row));
+        let found = warnings(&arm_with_row(row));
         assert_eq!(found.len(), 1, "{row}: {found:?}");
         assert!(found[0].starts_with(&format!("{place}: ")) && found[0].contains(meant), "{found:?}");
     }
 }
 
 #[test]
-fn exact_and_general_angles_and_lengths_are_not_doubted() {
+fn exact_and_general_angles_and_lengths_get_no_warning() {
     for row in [
         "j: 2, sigma: 0, alpha: -pi/2, d: 1.5708, theta: q2 + 3*pi/4, r: 0.785",
         "j: 2, sigma: 0, alpha: 1.5712, d: 0.5, theta: q2 - 0.3, r: 0",
@@ -122,7 +123,7 @@ fn exact_and_general_angles_and_lengths_are_not_doubted() {
         "j: 2, sigma: 0, alpha: 0.00005, d: 0.5, theta: q2 + pi - 2*pi, r: 0",
         "j: 2, sigma: 0, alpha: 1.5707963267948966, d: 0.5, theta: q2, r: 0",
     ] {
-        assert_eq!(doubts(&arm_with_row(row)), Vec::<String>::new(), "{row}");
+        assert_eq!(warnings(&arm_with_row(row)), Vec::<String>::new(), "{row}");
     }
 }
 

@@ -86,7 +86,7 @@ pub fn inertias(model: &dyn Model, joint: usize) -> [f64; 2] {
     [rotor, mass[joint * (n + 1)] - rotor]
 }
 
-/// Behind a spring, a link that is light beside its rotor is not felt.
+/// Behind a spring, a link that is light beside its rotor does not show in the torques.
 fn swings(model: &dyn Model, joint: usize) -> bool {
     let [rotor, link] = inertias(model, joint);
     rotor > 0.0 && link > 0.3 * rotor

@@ -54,12 +54,12 @@ fn decimation(c: &mut Criterion) {
     group.sample_size(20);
     for factor in [5, 10, 50, 100] {
         let decimator = Decimator::new(factor).expect("a positive factor");
-        // Blocks as the observation makes them: some kept rows' worth of fresh samples and the overlap.
-        let fresh = 8 * factor;
-        let stride = decimator.overlap() + fresh;
+        // Blocks as the observation makes them: the new samples of some kept rows, and the overlap.
+        let new_samples = 8 * factor;
+        let stride = decimator.overlap() + new_samples;
         let block: Vec<f64> = (0..145 * stride).map(|k| (k as f64 * 0.01).sin()).collect();
         let mut out = vec![0.0; 145 * decimator.kept_rows(0..stride).count];
-        let blocks = 37_000 / fresh;
+        let blocks = 37_000 / new_samples;
         group.bench_function(format!("factor {factor}"), |b| {
             b.iter(|| {
                 for _ in 0..blocks {

@@ -4,7 +4,7 @@
 //! regressor that depends on others is left out and its parameter regrouped into those (Gautier and Khalil 1990,
 //! Khalil and Dombre 2002, for trees Khalil and Bennis 1995). The closed-form rules are what moving a body from a link
 //! to its parent gives, so they come out in symbols of the table; where gravity, parallel axes, prismatic joints or a
-//! special geometry leave more unseen, the spaces of attainable velocities and energies tell, in exact arithmetic.
+//! special geometry leave more undetermined, the spaces of attainable velocities and energies tell, in exact arithmetic.
 //!
 //! ```
 //! use dynid_codegen::{base::base_set, robot::parse};

@@ -65,8 +65,8 @@ fn row(frame: &TableRow) -> String {
             (true, _) => match constant.strip_prefix('-') {
                 Some(rest) => {
                     let inner = rest.strip_prefix('(').and_then(|r| r.strip_suffix(')')).unwrap_or(rest);
-                    let bare = if inner.contains(['+', '-', '(']) { rest } else { inner };
-                    format!("q{} - {bare}", frame.j)
+                    let inside = if inner.contains(['+', '-', '(']) { rest } else { inner };
+                    format!("q{} - {inside}", frame.j)
                 }
                 None => format!("q{} + {constant}", frame.j),
             },

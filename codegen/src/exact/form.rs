@@ -179,11 +179,11 @@ impl Form {
         if with_cosines(&self.terms).len() > 1 {
             return ('+', format!("({text})*{what}"));
         }
-        let (sign, bare) = match text.strip_prefix('-') {
-            Some(bare) => ('-', bare),
+        let (sign, rest) = match text.strip_prefix('-') {
+            Some(rest) => ('-', rest),
             None => ('+', text.as_str()),
         };
-        (sign, if bare == "1" { what.to_owned() } else { format!("{bare}*{what}") })
+        (sign, if rest == "1" { what.to_owned() } else { format!("{rest}*{what}") })
     }
 }
 
@@ -197,7 +197,7 @@ impl fmt::Display for Form {
             let text = written(monomial, *coefficient);
             match (k, text.strip_prefix('-')) {
                 (0, _) => f.write_str(&text)?,
-                (_, Some(bare)) => write!(f, " - {bare}")?,
+                (_, Some(rest)) => write!(f, " - {rest}")?,
                 (_, None) => write!(f, " + {text}")?,
             }
         }
@@ -212,20 +212,20 @@ fn with_cosines(terms: &BTreeMap<Monomial, Number>) -> BTreeMap<Monomial, Number
         terms.iter().find_map(|(monomial, &coefficient)| {
             monomial.iter().enumerate().find_map(|(k, (symbol, power))| {
                 let Symbol::Sin(angle) = symbol else { return None };
-                let mut bare = monomial.clone();
-                bare[k].1 -= 2;
-                bare.retain(|(_, power)| *power != 0);
-                let opposite = *power >= 2 && terms.get(&bare) == Some(&-coefficient);
-                let mut cosine = bare.clone();
+                let mut rest = monomial.clone();
+                rest[k].1 -= 2;
+                rest.retain(|(_, power)| *power != 0);
+                let opposite = *power >= 2 && terms.get(&rest) == Some(&-coefficient);
+                let mut cosine = rest.clone();
                 cosine.push((Symbol::Cos(angle.clone()), 2));
                 cosine.sort();
-                opposite.then(|| (monomial.clone(), bare, cosine))
+                opposite.then(|| (monomial.clone(), rest, cosine))
             })
         })
     };
-    while let Some((sine, bare, cosine)) = pair(&terms) {
+    while let Some((sine, rest, cosine)) = pair(&terms) {
         terms.remove(&sine);
-        if let Some(coefficient) = terms.remove(&bare) {
+        if let Some(coefficient) = terms.remove(&rest) {
             terms.insert(cosine, coefficient);
         }
     }

@@ -26,7 +26,7 @@ pub enum Expression {
 
 /// A multiple of pi/4 that is meant to be one, rad: the rounding of an expression.
 const EXACT: f64 = 1e-12;
-/// An angle this close to a multiple of pi/4 without being one is doubted, rad.
+/// An angle this close to a multiple of pi/4 without being one gets a warning, rad.
 const NEAR: f64 = 1e-4;
 /// The coarsest rounding that is taken for one, rad: 1.57 and 3.14, but not 0.79.
 const COARSEST: f64 = 2e-3;

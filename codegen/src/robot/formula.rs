@@ -224,8 +224,8 @@ impl Parser<'_> {
     }
 
     fn unknown(&self, name: &str) -> String {
-        let bare = name.trim_start_matches('.').to_ascii_lowercase();
-        if ["nan", "inf", "infinity"].contains(&bare.as_str()) {
+        let word = name.trim_start_matches('.').to_ascii_lowercase();
+        if ["nan", "inf", "infinity"].contains(&word.as_str()) {
             return format!("'{name}' is not a finite number");
         }
         let known = self.constants.iter().map(|(known, _)| known.as_str()).chain(["pi"]);

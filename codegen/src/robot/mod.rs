@@ -58,5 +58,5 @@ pub use diagnostic::Diagnostic;
 pub use drive_table::DriveTable;
 pub use expression::Expression;
 pub(crate) use parse::at_name;
-pub use parse::{parse, parse_with_doubts};
+pub use parse::{parse, parse_with_warnings};
 pub use table::{NominalValues, RobotTable, TableRow};

@@ -23,21 +23,24 @@ const KEYS: [&str; 8] =
 /// # Errors
 /// Every mistake of the file.
 pub fn parse(path: &str, bytes: &[u8]) -> Result<RobotTable, Vec<Diagnostic>> {
-    parse_with_doubts(path, bytes).map(|(robot, _)| robot)
+    parse_with_warnings(path, bytes).map(|(robot, _)| robot)
 }
 
 /// [`parse`], with what is allowed in the file but probably not meant.
 ///
 /// # Errors
 /// As [`parse`].
-pub fn parse_with_doubts(path: &str, bytes: &[u8]) -> Result<(RobotTable, Vec<Diagnostic>), Vec<Diagnostic>> {
+pub fn parse_with_warnings(
+    path: &str,
+    bytes: &[u8],
+) -> Result<(RobotTable, Vec<Diagnostic>), Vec<Diagnostic>> {
     let root = read_document(path, bytes).map_err(|diagnostic| vec![diagnostic])?;
     let mut reader = Reader::new(path);
     let robot = read_robot(&mut reader, &root);
     let mut diagnostics = reader.diagnostics;
     diagnostics.sort_by_key(|d| (d.line, d.column));
     match robot {
-        Some(robot) if diagnostics.is_empty() => Ok((robot, reader.doubts)),
+        Some(robot) if diagnostics.is_empty() => Ok((robot, reader.warnings)),
         _ => Err(diagnostics),
     }
 }

@@ -10,7 +10,7 @@ pub(super) struct Reader {
     path: String,
     pub diagnostics: Vec<Diagnostic>,
     /// What is allowed but probably not meant.
-    pub doubts: Vec<Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// The keys of one mapping, checked against those that are known.
@@ -33,7 +33,7 @@ fn count(n: usize, what: &str) -> String {
 
 impl Reader {
     pub fn new(path: &str) -> Self {
-        Reader { path: path.to_owned(), diagnostics: Vec::new(), doubts: Vec::new() }
+        Reader { path: path.to_owned(), diagnostics: Vec::new(), warnings: Vec::new() }
     }
 
     pub fn report(&mut self, place: Place, message: impl Into<String>) {
@@ -41,9 +41,9 @@ impl Reader {
         self.diagnostics.push(Diagnostic { path: self.path.clone(), line, column, message: message.into() });
     }
 
-    pub fn doubt(&mut self, place: Place, message: impl Into<String>) {
+    pub fn warn(&mut self, place: Place, message: impl Into<String>) {
         let Place { line, column } = place;
-        self.doubts.push(Diagnostic { path: self.path.clone(), line, column, message: message.into() });
+        self.warnings.push(Diagnostic { path: self.path.clone(), line, column, message: message.into() });
     }
 
     /// The keys of a mapping. Unknown and repeated keys are reported; the first of a repeated key counts.

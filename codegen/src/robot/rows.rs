@@ -77,7 +77,7 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
         let Some(node) = node else { return Expression::ZERO };
         let value = reader.constant(node, key, constants).unwrap_or(Expression::ZERO);
         if matches!(key, "alpha" | "gamma") {
-            doubt_rounded(reader, node, key, &value);
+            warn_of_rounded(reader, node, key, &value);
         }
         value
     };
@@ -92,7 +92,7 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
             reader.report(node.place, message);
         }
         if let Some(angle) = formula.constant.as_ref().filter(|_| key == "theta") {
-            doubt_rounded(reader, node, key, angle);
+            warn_of_rounded(reader, node, key, angle);
         }
         formula.constant
     };
@@ -102,8 +102,8 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
     Some(Row { frame, parent_place })
 }
 
-/// Doubts an angle that is written as a rounded multiple of pi/4: it is taken as it stands, as a general angle.
-fn doubt_rounded(reader: &mut Reader, node: &Node, key: &str, angle: &Expression) {
+/// Warns of an angle that is written as a rounded multiple of pi/4: it is taken as it stands, as a general angle.
+fn warn_of_rounded(reader: &mut Reader, node: &Node, key: &str, angle: &Expression) {
     if let Some((written, eighths)) = angle.rounded_multiple() {
         let meant = match eighths {
             4 => "pi".to_owned(),
@@ -113,7 +113,7 @@ fn doubt_rounded(reader: &mut Reader, node: &Node, key: &str, angle: &Expression
             1 => "pi/4".to_owned(),
             _ => format!("{eighths}*pi/4"),
         };
-        reader.doubt(
+        reader.warn(
             node.place,
             format!(
                 "{key}: {written} is a general angle, {:.1e} rad from {meant}; write {meant} if that is meant: only then \

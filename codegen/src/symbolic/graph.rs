@@ -188,13 +188,13 @@ impl Graph {
             return (self.constant(s), self.constant(c));
         }
         let turns = angle.constant.quarter_turns;
-        let mut bare = angle.clone();
-        bare.constant = ConstantAngle { quarter_turns: 0, rest: angle.constant.rest };
-        let flipped = bare.terms[0].1 < 0;
+        let mut canonical = angle.clone();
+        canonical.constant = ConstantAngle { quarter_turns: 0, rest: angle.constant.rest };
+        let flipped = canonical.terms[0].1 < 0;
         if flipped {
-            bare = -&bare;
+            canonical = -&canonical;
         }
-        let (s, c) = self.variable_sin_cos(bare);
+        let (s, c) = self.variable_sin_cos(canonical);
         let s = s.signed(flipped);
         match turns {
             0 => (s, c),
@@ -205,9 +205,9 @@ impl Graph {
     }
 
     /// Sine and cosine of an angle in canonical form.
-    fn variable_sin_cos(&mut self, bare: Angle) -> (Expr, Expr) {
-        let known = self.angles.iter().position(|known| *known == bare);
-        let parts = if known.is_none() && self.compose_angles { self.parts_of(&bare) } else { None };
+    fn variable_sin_cos(&mut self, canonical: Angle) -> (Expr, Expr) {
+        let known = self.angles.iter().position(|known| *known == canonical);
+        let parts = if known.is_none() && self.compose_angles { self.parts_of(&canonical) } else { None };
         if let Some((a, b, sign)) = parts {
             let (sa, ca) = (self.intern(Node::Sine(a)), self.intern(Node::Cosine(a)));
             let (sb, cb) = (self.intern(Node::Sine(b)).signed(sign < 0), self.intern(Node::Cosine(b)));
@@ -217,7 +217,7 @@ impl Graph {
             return (sine, self.sub(left, right));
         }
         let at = known.unwrap_or_else(|| {
-            self.angles.push(bare);
+            self.angles.push(canonical);
             self.angles.len() - 1
         });
         (self.intern(Node::Sine(at)), self.intern(Node::Cosine(at)))

@@ -97,7 +97,6 @@ pub use outcome::{
     TorqueSeries, Unexplained,
 };
 pub use predict::term_torques;
-pub use preparation::slowest_speeds;
 pub use settings::{Progress, Settings, Silent};
 
 use crate::effects::EffectKind;
@@ -180,13 +179,9 @@ fn run(
     loop {
         // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
-        let (mut search, standard, sampling) = begin(
-            model,
-            &prepared,
-            Contacts::joined(contacts.clone(), pushed.clone()).as_ref(),
-            change,
-            progress,
-        )?;
+        let known_contacts = Contacts::joined(contacts.clone(), pushed.clone());
+        let Begun { mut search, standard, sampling } =
+            begin(model, &prepared, known_contacts.as_ref(), change, progress)?;
         let settings = prepared.motions.settings();
         let report = match known {
             Some(known) => search.force(known)?,
@@ -257,6 +252,16 @@ fn pushed_in_motion(
     moving::in_motion(&search.model.context, &rows, &residual, &search.model.fast.sigma)
 }
 
+/// What a search begins with.
+struct Begun<'a> {
+    /// All candidates, none of them in the model yet.
+    search: Search<'a>,
+    /// The standard model fitted alone.
+    standard: StandardModelFit,
+    /// How the rows were sampled.
+    sampling: Sampling,
+}
+
 /// The standard model on the rows outside of contacts, and all candidates.
 fn begin<'a>(
     model: &'a dyn Model,
@@ -264,7 +269,7 @@ fn begin<'a>(
     contacts: Option<&Contacts>,
     change: bool,
     progress: &dyn Progress,
-) -> Result<(Search<'a>, StandardModelFit, Sampling), DiagnosisError> {
+) -> Result<Begun<'a>, DiagnosisError> {
     let motions = &prepared.motions;
     let rows = motions.rows(model, contacts.map(|c| c.windows.as_slice()));
     let sampling = motions.sampling(&rows);
@@ -281,7 +286,7 @@ fn begin<'a>(
         candidates.retain(|c| c.own.iter().any(|&j| judged[j]));
     }
     let standard = StandardModelFit::new(&search.model, &prepared.aligned)?;
-    Ok((search, standard, sampling))
+    Ok(Begun { search, standard, sampling })
 }
 
 /// Whether contacts still stand out of what the model with its effects leaves.

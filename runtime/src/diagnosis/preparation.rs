@@ -279,24 +279,3 @@ fn check_fit(design: &Design, fit: &Fit) -> Result<(), DiagnosisError> {
     }
     Ok(())
 }
-
-/// Speeds below which a joint counts as standing still in a recording, rad/s or m/s, one per joint.
-///
-/// # Errors
-/// [`DiagnosisError`] where a signal cannot be prepared or the settings cannot be.
-pub fn slowest_speeds(
-    model: &dyn Model,
-    trajectories: &[Trajectory],
-    settings: &Settings,
-) -> Result<Vec<f64>, DiagnosisError> {
-    let (cutoff, settings) = fitted_to(settings, trajectories)?;
-    let n = model.robot().joints();
-    if let Some(speeds) = given_speeds(&settings, n)? {
-        return Ok(speeds);
-    }
-    let motions = trajectories
-        .iter()
-        .map(|t| Signals::new(t, true, 0.0, cutoff))
-        .collect::<Result<Vec<Signals>, _>>()?;
-    Ok(top_speeds(&motions, n).iter().map(|v| settings.standstill * v).collect())
-}

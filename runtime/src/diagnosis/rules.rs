@@ -171,7 +171,7 @@ pub(super) const KEPT_FRACTION: f64 = 0.6;
 /// Largest error, in units of its number, along the way to which derivatives are taken: an exponential factor of two.
 /// Judgement.
 pub(super) const LARGEST_ERROR: f64 = 0.7;
-/// Refits after which columns that follow the standard parameters have settled. Judgement; not measured.
+/// Refits after which columns that follow the standard parameters have converged. Judgement; not measured.
 pub(super) const REFITS: usize = 2;
 /// The same where a term changes the number that its own column is the derivative by. Judgement; not measured.
 pub(super) const REFITS_OF_BENT_COLUMNS: usize = 4;
@@ -194,9 +194,9 @@ pub(super) const MOST_ORDERS: usize = 600;
 pub(super) const LEAST_PERIODS: f64 = 4.0;
 /// Orders are this many waves over the travel apart: 2.5 within the width of a peak. Statistics.
 pub(super) const ORDER_STEP: f64 = 0.4;
-/// Part of half of the sampling rate up to which a wave is looked at. Mechanics.
+/// Part of half of the sampling rate up to which a wave is fitted. Mechanics.
 pub(super) const PART_OF_NYQUIST: f64 = 0.6;
-/// Samples a second that a spectrum looks at. Times only.
+/// Samples a second that a spectrum uses. Times only.
 pub(super) const SPECTRUM_RATE: f64 = 1000.0;
 /// Fewest samples of a spectrum's value. Statistics.
 pub(super) const LEAST_SAMPLES: f64 = 100.0;

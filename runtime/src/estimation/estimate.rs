@@ -65,7 +65,8 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
     // What is solved; errors are always those of the observation as it is.
     let counted = robust.as_ref().map_or(observation, |r| &r.observation);
     let first = if robust.is_some() { from_own_fits(counted) } else { first };
-    let weights = if settings.weighted { settle(counted, &active, first, &mut warnings) } else { first };
+    let weights =
+        if settings.weighted { choose_weights(counted, &active, first, &mut warnings) } else { first };
     let stacked = stack(counted, &weights.sigma).select(&active);
     let mut solution = stacked.solve();
     if settings.solver == Solver::Total {
@@ -132,7 +133,12 @@ fn method_of(observation: &Observation, settings: &EstimateSettings) -> Method {
 }
 
 /// Iterated weights, or those of the equations' own fits where the iteration gives up on an equation.
-fn settle(observation: &Observation, active: &[usize], own: Weights, warnings: &mut Vec<Warning>) -> Weights {
+fn choose_weights(
+    observation: &Observation,
+    active: &[usize],
+    own: Weights,
+    warnings: &mut Vec<Warning>,
+) -> Weights {
     let iterated = iterate(observation, active, &own);
     let before = per_equation(observation, &solve_active(observation, active, &own.sigma));
     let after = per_equation(observation, &solve_active(observation, active, &iterated.sigma));

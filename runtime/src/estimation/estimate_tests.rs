@@ -299,7 +299,7 @@ fn perfect_data_have_finite_weights_and_the_exact_parameters() {
 }
 
 #[test]
-fn a_spoiled_block_of_time_counts_less_and_does_not_move_the_robust_estimate() {
+fn a_disturbed_block_of_time_counts_less_and_does_not_move_the_robust_estimate() {
     let mut dense = made(11, 400, [[0.1, 0.1]; 2], 0.0);
     dense.truncate(1);
     // Somebody leans on the joint for one block in ten.

@@ -207,7 +207,7 @@ mod tests {
             ddq: vec![ddq],
             torque: vec![torque],
             fixed: vec![],
-            spoiled: 0,
+            edge_samples: 0,
         };
         let mut measured = clean.clone();
         for a in &mut measured.ddq[0] {

@@ -175,7 +175,7 @@ pub enum Warning {
     },
     /// Total least squares has no solution here; that of least squares is given.
     NoTotalSolution,
-    /// The weights had not settled.
+    /// The iteration of the weights had not converged.
     NotConverged {
         /// Iterations made.
         iterations: usize,
@@ -224,7 +224,7 @@ impl std::fmt::Display for Warning {
                 write!(f, "total least squares has no solution here: the values are those of least squares")
             }
             Warning::NotConverged { iterations } => {
-                write!(f, "the weights had not settled after {iterations} iterations")
+                write!(f, "the weights had not converged after {iterations} iterations")
             }
         }
     }

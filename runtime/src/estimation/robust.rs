@@ -7,8 +7,8 @@ use super::weights::{from_own_fits, iterate, residual_norm, solve_active};
 
 /// A block may deviate this many times as much as the typical one at full weight (Huber's constant).
 const HUBER: f64 = 1.5;
-/// Largest change of a weight at which the iteration has settled.
-const SETTLED: f64 = 1e-3;
+/// Largest change of a weight at which the iteration has converged.
+const CONVERGED: f64 = 1e-3;
 /// Most iterations.
 const ITERATIONS: usize = 50;
 
@@ -22,7 +22,7 @@ pub(super) struct Reweighted {
 }
 
 /// Huber's M-estimator (Huber 1964; Holland and Welsch 1977) with a block of time of one equation as the unit: a
-/// contact, a stall or a burst of noise spoils rows that follow each other. The residual of a block is its root
+/// contact, a stall or a burst of noise disturbs rows that follow each other. The residual of a block is its root
 /// mean square; the scale is the median over the equation's blocks.
 pub(super) fn reweight(observation: &Observation, active: &[usize]) -> Reweighted {
     let mut weights: Vec<Vec<f64>> =
@@ -35,7 +35,7 @@ pub(super) fn reweight(observation: &Observation, active: &[usize]) -> Reweighte
         let chi = solve_active(&scaled, active, &sigma);
         let new = huber(&observation.blocks, &chi);
         let change = new.iter().flatten().zip(weights.iter().flatten()).map(|(a, b)| (a - b).abs());
-        converged = change.fold(0.0, f64::max) < SETTLED;
+        converged = change.fold(0.0, f64::max) < CONVERGED;
         weights = new;
         scaled = scale(observation, &weights);
         iterations += 1;

@@ -4,8 +4,8 @@ use super::observe::{EquationFactor, Observation};
 use super::solve::back_substitute;
 use super::{Factor, RANK_TOLERANCE};
 
-/// Largest relative change of a sigma at which the weights have settled.
-const SETTLED: f64 = 1e-4;
+/// Largest relative change of a sigma at which the weights have converged.
+const CONVERGED: f64 = 1e-4;
 /// Most iterations.
 const ITERATIONS: usize = 100;
 /// A sigma is at least this share of the root mean square of its Y, so that weights of perfect data stay finite.
@@ -83,7 +83,7 @@ pub(super) fn iterate(observation: &Observation, active: &[usize], start: &Weigh
             *sigma = new;
         }
         weights.iterations += 1;
-        weights.converged = change < SETTLED;
+        weights.converged = change < CONVERGED;
     }
     weights
 }

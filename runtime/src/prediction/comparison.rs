@@ -42,7 +42,7 @@ impl Comparison {
     /// Band in which models are compared where nothing else is asked for, Hz.
     pub const BAND: f64 = 25.0;
 
-    /// Filters the motions of a recording and settles the band.
+    /// Filters the motions of a recording and chooses the band.
     ///
     /// # Errors
     /// A band that is not positive, stamps or values that cannot be right, or motions that are all too short for the

@@ -203,8 +203,8 @@ impl Sums {
         // Every model has the same noise: what the best of them leaves shows it most clearly.
         let levels = predicted.iter().map(|predicted| {
             let residual: Vec<f64> = motion.torque[j].iter().zip(*predicted).map(|(y, p)| y - p).collect();
-            let end = residual.len().saturating_sub(motion.spoiled);
-            variance(&residual[motion.spoiled.min(end)..end], motion.rate, plan.band)
+            let end = residual.len().saturating_sub(motion.edge_samples);
+            variance(&residual[motion.edge_samples.min(end)..end], motion.rate, plan.band)
         });
         let least = levels.flatten().min_by(f64::total_cmp);
         match (&mut self.noise, least) {

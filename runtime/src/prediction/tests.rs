@@ -64,7 +64,17 @@ fn swinging(model: &dyn Model, chi: &[f64], late: f64, noise: f64) -> Motion {
         *value += noise * (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
     }
     let [q, dq, ddq] = signals(0.0);
-    Motion { name: "swing".into(), rate: RATE, start: 0.0, q, dq, ddq, torque, fixed: vec![], spoiled: 20 }
+    Motion {
+        name: "swing".into(),
+        rate: RATE,
+        start: 0.0,
+        q,
+        dq,
+        ddq,
+        torque,
+        fixed: vec![],
+        edge_samples: 20,
+    }
 }
 
 fn settings(band: f64) -> ObserveSettings {

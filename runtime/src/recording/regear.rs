@@ -54,7 +54,7 @@ mod tests {
             ddq: vec![vec![0.0, 1.0], vec![3.0, 4.0]],
             torque: vec![vec![10.0, -20.0], vec![5.0, 8.0]],
             fixed: Vec::new(),
-            spoiled: 0,
+            edge_samples: 0,
         };
         let (own, other) = (drive([32.0, 0.0, 32.0, 32.0]), drive([50.0, 10.0, 0.0, -20.0]));
         let moved = regear(&motion, &own, &other).expect("both have an inverse");

@@ -21,8 +21,8 @@ pub struct Motion {
     pub torque: Vec<Vec<f64>>,
     /// Joints (0-based) that stand still in this motion.
     pub fixed: Vec<usize>,
-    /// Samples at each end that the position filter has spoiled and that no row may use.
-    pub spoiled: usize,
+    /// Samples at each end that the filters' edge effects reach; no row uses them.
+    pub edge_samples: usize,
 }
 
 impl Motion {

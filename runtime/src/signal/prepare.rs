@@ -59,14 +59,14 @@ impl Preparation {
     }
 }
 
-/// A mode of the filter counts as died out when it is down to this.
-const SETTLED: f64 = 1e-4;
+/// A mode of the filter counts as decayed when it is down to this.
+const DECAYED: f64 = 1e-4;
 
 /// Lays a trajectory on a uniform grid, filters its positions without phase shift, and differentiates them twice.
 ///
 /// Torques are put on the same grid and not filtered: the parallel decimation filters them together with the
-/// columns of W. The samples at each end that the filter and the differences have spoiled are counted in
-/// `Motion::spoiled`.
+/// columns of W. The samples at each end that the edge effects of the filter and of the differences
+/// reach are counted in `Motion::edge_samples`.
 ///
 /// # Errors
 /// Channels of unequal length, stamps that do not increase, values that are not finite, a motion too
@@ -80,9 +80,9 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
     let filter = Butterworth::low_pass(settings.order, cutoff, rate)?;
     let stencil = settings.stencil.unwrap_or_else(|| Stencil::accurate_to(0.25 * cutoff / rate, 0.005));
     // A pass starts at rest; padding until that start has died out leaves only the kink of the reflected end.
-    let padding = filter.padding().max(filter.settling(SETTLED));
-    let spoiled = padding + 2 * stencil.half_width();
-    let needed = 2 * spoiled + 1;
+    let padding = filter.padding().max(filter.settling(DECAYED));
+    let edge_samples = padding + 2 * stencil.half_width();
+    let needed = 2 * edge_samples + 1;
     if grid.len < needed {
         return Err(SignalError::TooShort {
             name: name.clone(),
@@ -100,7 +100,7 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
         central_difference(values, rate, stencil, &mut out);
         out
     };
-    let inside = spoiled..grid.len - spoiled;
+    let inside = edge_samples..grid.len - edge_samples;
     let speed = |j: usize, q: &[f64]| {
         let recorded = match trajectory.velocity.as_ref().and_then(|velocity| velocity.get(j)) {
             Some(velocity) if settings.velocity != VelocitySource::Positions => grid.resample(velocity),
@@ -137,7 +137,7 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
         ddq,
         torque: trajectory.torque.iter().map(|t| grid.resample(t)).collect(),
         fixed: trajectory.fixed.clone(),
-        spoiled,
+        edge_samples,
     })
 }
 

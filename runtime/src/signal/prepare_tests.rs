@@ -17,15 +17,15 @@ fn sine(rate: f64, n: usize, jitter: f64) -> Trajectory {
 }
 
 #[test]
-fn positions_and_derivatives_of_a_slow_sine_are_exact_between_the_spoiled_ends() {
+fn positions_and_derivatives_of_a_slow_sine_are_exact_between_the_edge_samples() {
     for (rate, n, jitter) in
         [(5000.0, 20000, 0.0), (500.0, 2000, 0.0), (100.0, 1000, 0.0), (100.0, 1000, 0.1)]
     {
         for velocity in [VelocitySource::Positions, VelocitySource::Recorded] {
             let settings = Preparation { velocity, ..Preparation::default() };
             let motion = prepare(&sine(rate, n, jitter), &settings).expect("a valid motion");
-            assert!(motion.spoiled > 2 && motion.spoiled < n / 10);
-            for k in motion.spoiled..motion.q[0].len() - motion.spoiled {
+            assert!(motion.edge_samples > 2 && motion.edge_samples < n / 10);
+            for k in motion.edge_samples..motion.q[0].len() - motion.edge_samples {
                 let t = motion.start + k as f64 / motion.rate;
                 assert!((motion.q[0][k] - (6.0 * t).sin()).abs() < 2e-4);
                 assert!((motion.dq[0][k] - 6.0 * (6.0 * t).cos()).abs() < 3e-3);

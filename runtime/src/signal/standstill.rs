@@ -36,8 +36,8 @@ impl StandstillSpeeds {
             let mut quietest = f64::INFINITY;
             for motion in motions {
                 let Some(dq) = motion.dq.get(j) else { continue };
-                let start = motion.spoiled.min(dq.len());
-                let dq = &dq[start..dq.len().saturating_sub(motion.spoiled).max(start)];
+                let start = motion.edge_samples.min(dq.len());
+                let dq = &dq[start..dq.len().saturating_sub(motion.edge_samples).max(start)];
                 speeds.extend(dq.iter().map(|v| v.abs()));
                 quietest = quietest.min(quietest_stretch(dq, motion.rate));
             }
@@ -109,7 +109,7 @@ mod tests {
             torque: zero,
             dq,
             fixed: vec![],
-            spoiled: 10,
+            edge_samples: 10,
         }
     }
 

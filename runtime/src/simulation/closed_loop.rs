@@ -218,7 +218,7 @@ impl Log {
             ddq: self.ddq,
             torque: self.true_torque,
             fixed: fixed.clone(),
-            spoiled: 0,
+            edge_samples: 0,
         };
         let recorded = Trajectory {
             name,

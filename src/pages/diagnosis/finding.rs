@@ -24,7 +24,7 @@ pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
             page.plot(&orders(spectrum, unit(finding)));
         }
     }
-    // One motion shows it; the others are there for who wants to look.
+    // One motion shows it; the others are folded below it.
     let mut shown = diagnosis.series.iter().filter(|s| finding.joints.contains(&s.joint));
     if let Some(first) = shown.next() {
         page.plot(&torques(first, finding)).plot(&residuals(first, finding));

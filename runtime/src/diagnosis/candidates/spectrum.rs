@@ -84,7 +84,7 @@ mod tests {
             ddq: at(&|t| -1.69 * (1.3 * t).sin()),
             torque: vec![vec![0.0; samples]],
             fixed: vec![],
-            spoiled: 0,
+            edge_samples: 0,
         });
         signals.edge_samples = 10;
         signals

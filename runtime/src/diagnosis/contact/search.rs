@@ -245,7 +245,7 @@ mod tests {
             ddq: vec![vec![0.0; 1000]; 3],
             torque: vec![vec![0.0; 1000]; 3],
             fixed: vec![],
-            spoiled: 0,
+            edge_samples: 0,
         })];
         let mut energies = Energies::new();
         for t in (0..1000).step_by(2) {

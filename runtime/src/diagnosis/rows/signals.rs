@@ -18,7 +18,7 @@ pub(in crate::diagnosis) struct Signals {
     pub ddq: Vec<Vec<f64>>,
     pub jerk: Vec<Vec<f64>>,
     pub torque: Vec<Vec<f64>>,
-    /// Samples at each end that the filters have spoiled.
+    /// Samples at each end that the filters' edge effects reach.
     pub edge_samples: usize,
     /// What the torques are made from again when another skew is taken out; `None` for a motion taken as it is.
     recorded: Option<Recorded>,
@@ -97,7 +97,7 @@ impl Signals {
             ddq: thinned(motion.ddq, stride),
             jerk: thinned(jerk, stride),
             torque: recorded.delayed(delay)?,
-            edge_samples: motion.spoiled.div_ceil(stride),
+            edge_samples: motion.edge_samples.div_ceil(stride),
             recorded: Some(recorded),
         })
     }
@@ -127,7 +127,7 @@ impl Signals {
             ddq: motion.ddq.clone(),
             jerk,
             torque: motion.torque.clone(),
-            edge_samples: motion.spoiled,
+            edge_samples: motion.edge_samples,
             recorded: None,
         }
     }

@@ -58,7 +58,7 @@ pub fn observe(
         let source = source::source(equations, model, trajectory, motion, extra)?;
         let decimator = row_plan::decimator(motion.rate, settings)?;
         let samples = motion.q.first().map_or(0, Vec::len);
-        let valid = motion.spoiled..samples.saturating_sub(motion.spoiled).max(motion.spoiled);
+        let valid = motion.edge_samples..samples.saturating_sub(motion.edge_samples).max(motion.edge_samples);
         let grid = decimator.kept_rows(valid);
         let selection = select::select(trajectory, motion, equations, &decimator, grid, &detected, settings)?;
         let columns = source.equations();

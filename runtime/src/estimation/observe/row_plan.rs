@@ -62,10 +62,10 @@ pub(crate) fn why_nothing(plans: &[RowPlan], motions: &[Motion], settings: &Obse
     select::why_nothing(left_out, motions.is_empty(), longest, settings.band)
 }
 
-/// The samples that no filter has spoiled.
+/// The samples between the edge effects of the filters.
 fn valid_samples(motion: &Motion) -> std::ops::Range<usize> {
     let samples = motion.q.first().map_or(0, Vec::len);
-    motion.spoiled..samples.saturating_sub(motion.spoiled).max(motion.spoiled)
+    motion.edge_samples..samples.saturating_sub(motion.edge_samples).max(motion.edge_samples)
 }
 
 fn check_frequencies(settings: &ObserveSettings) -> Result<(), ObserveError> {

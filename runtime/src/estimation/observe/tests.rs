@@ -41,7 +41,7 @@ fn motion(seconds: f64, phase: f64) -> Motion {
     let (q, dq, ddq) = (signal(0), signal(1), signal(2));
     let chi: Vec<f64> = (1..=model.robot().base.len()).map(|k| k as f64).collect();
     let torque = torques(&model, &chi, StateSlices::new(&q, &dq, &ddq).states());
-    Motion { name: "m".into(), rate: RATE, start: 1.0, q, dq, ddq, torque, fixed: vec![], spoiled: 10 }
+    Motion { name: "m".into(), rate: RATE, start: 1.0, q, dq, ddq, torque, fixed: vec![], edge_samples: 10 }
 }
 
 fn settings() -> ObserveSettings {

@@ -35,7 +35,7 @@ fn fitted(zz: f64, weight: f64, friction: impl Fn(f64) -> f64) -> (Estimate, Phy
         ddq: vec![ddq],
         torque: vec![torque],
         fixed: Vec::new(),
-        spoiled: 0,
+        edge_samples: 0,
     };
     let settings = ObserveSettings { band: 20.0, standstill: Standstill::Keep, ..ObserveSettings::default() };
     let observation = observe(&model, &[motion], Equations::Torque, None, &settings, None).unwrap();
@@ -102,7 +102,7 @@ fn an_observation_of_another_robot_has_no_fit() {
         ddq: vec![vec![0.0; 400]],
         torque: vec![vec![0.0; 400]],
         fixed: Vec::new(),
-        spoiled: 0,
+        edge_samples: 0,
     };
     let settings = ObserveSettings { band: 20.0, standstill: Standstill::Keep, ..ObserveSettings::default() };
     let observation = observe(&model, &[motion], Equations::Torque, None, &settings, None).unwrap();

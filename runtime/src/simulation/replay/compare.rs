@@ -3,8 +3,8 @@
 use crate::signal::{Butterworth, Motion, SignalError};
 use serde::Serialize;
 
-/// The loop settles from where the recording starts for this long, s.
-const SETTLING: f64 = 0.2;
+/// Transient of the loop that is left out at the start of a recording, s.
+const START_TRANSIENT: f64 = 0.2;
 
 /// Recorded and simulated torques.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -122,11 +122,11 @@ impl Comparison {
     }
 }
 
-/// Rows that no filter and no start has spoiled.
+/// Rows beyond the edge effects of the filters and the start of the loop.
 fn compared_rows(motion: &Motion) -> std::ops::Range<usize> {
     let samples = motion.q.first().map_or(0, Vec::len);
-    let first = motion.spoiled.max((SETTLING * motion.rate) as usize);
-    first..samples.saturating_sub(motion.spoiled).max(first)
+    let first = motion.edge_samples.max((START_TRANSIENT * motion.rate) as usize);
+    first..samples.saturating_sub(motion.edge_samples).max(first)
 }
 
 /// The recorded torques with the skew to the positions taken out.

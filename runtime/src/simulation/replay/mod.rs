@@ -8,7 +8,7 @@ mod tests;
 
 pub use compare::{ClosedLoop, Compared};
 
-use crate::diagnosis::{Diagnosis, DiagnosisError, Settings, slowest_speeds};
+use crate::diagnosis::Diagnosis;
 use crate::effects::EffectTerm;
 use crate::estimation::choose_bandwidth;
 use crate::model::Model;
@@ -43,6 +43,7 @@ impl fmt::Display for Variant {
 
 /// Why a recording cannot be set beside a simulation.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ReplayError {
     /// The identified parameters are no robot that could move: not every set that fits torques is.
     #[error("the identified robot cannot be simulated {which} the findings: {error}")]
@@ -55,19 +56,24 @@ pub enum ReplayError {
     /// The recording cannot be prepared.
     #[error(transparent)]
     Signal(#[from] SignalError),
-    /// The recording has no speeds to tell motion from rest by.
-    #[error(transparent)]
-    Diagnosis(#[from] DiagnosisError),
+    /// The diagnosis is one of a robot with another number of joints.
+    #[error("the diagnosis has speeds of standstill for {found} joints, the robot has {expected}")]
+    Joints {
+        /// Joints of the robot.
+        expected: usize,
+        /// Speeds of standstill in the diagnosis.
+        found: usize,
+    },
 }
 
 /// Lets the standard model and the model with the findings follow the motions of a recording.
 ///
 /// The controller feeds the standard model's torque forward and closes the loop on the positions with the robot's
-/// nominal gains, or with gains that place every joint's poles at 8 Hz. `name` is what the recording is called;
-/// `progress` gets the share that is done.
+/// nominal gains, or with gains that place every joint's poles at 8 Hz. Torques are compared where a joint is faster than
+/// the diagnosis's speed of standstill. `name` is what the recording is called; `progress` gets the share that is done.
 ///
 /// # Errors
-/// Parameters that cannot be simulated, motions that cannot be prepared.
+/// Parameters that cannot be simulated, motions that cannot be prepared, a diagnosis of another robot.
 pub fn replay(
     model: &dyn Model,
     name: &str,
@@ -79,7 +85,11 @@ pub fn replay(
     let band = chosen.band.min(BAND);
     let settings = Preparation { cutoff: Some(chosen.cutoff), ..Preparation::default() };
     let (prepared, _) = prepare_all(motions, &settings)?;
-    let slowest = slowest_speeds(model, motions, &Settings::default())?;
+    let slowest = &diagnosis.sampling.standstill_speeds;
+    let (expected, found) = (model.robot().joints(), slowest.len());
+    if expected != found {
+        return Err(ReplayError::Joints { expected, found });
+    }
     let terms = diagnosis.terms();
     let known = &diagnosis.standard.chi;
     let variants: [(Variant, &[f64], &[EffectTerm]); 2] =
@@ -95,7 +105,7 @@ pub fn replay(
             comparison.track(v, &followed.tracking_error);
             progress((k as f64 + 0.5 * (v + 1) as f64) / prepared.len() as f64);
         }
-        comparison.add(motion, &slowest, &recorded, &simulated);
+        comparison.add(motion, slowest, &recorded, &simulated);
     }
     Ok(ClosedLoop {
         recording: name.to_owned(),

@@ -27,7 +27,7 @@ fn motion(joints: usize) -> Motion {
         ddq: signal(2),
         torque: vec![vec![0.0; 1000]; joints],
         fixed: Vec::new(),
-        spoiled: 0,
+        edge_samples: 0,
     }
 }
 
