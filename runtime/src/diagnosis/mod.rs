@@ -92,7 +92,8 @@ mod settings;
 pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, OrderSpectrum,
-    ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, StopReason, TorqueSeries, Unexplained,
+    ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, Small, StopReason, TorqueSeries,
+    Unexplained,
 };
 pub use predict::{predict_errors, term_torques};
 pub use preparation::slowest_speeds;
@@ -165,10 +166,14 @@ fn run(
     let signals = &prepared.motions.signals;
     let mut contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
 
+    // A body that is carried all the time pushes like a hand: against a baseline, laws are tried first on all of the
+    // motion, and only what still stands out then is set aside.
+    let mut set_aside = !change;
     loop {
         // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
-        let (mut search, standard, sampling) = begin(model, &prepared, contacts.as_ref(), change, progress)?;
+        let (mut search, standard, sampling) =
+            begin(model, &prepared, contacts.as_ref().filter(|_| set_aside), change, progress)?;
         let settings = prepared.motions.settings();
         let report = match known {
             Some(known) => search.force(known)?,
@@ -176,11 +181,15 @@ fn run(
         };
 
         // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
-        if let Some(found) = &contacts
-            && !remain(found, &prepared, &search)
-        {
-            contacts = None;
-            continue;
+        if let Some(found) = &contacts {
+            let remain = remain(found, &prepared, &search);
+            if !remain {
+                contacts = None;
+            }
+            if remain != set_aside {
+                set_aside = true;
+                continue;
+            }
         }
 
         // 5. Numbers, errors, curves, sentences.

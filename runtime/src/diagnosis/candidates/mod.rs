@@ -1,5 +1,6 @@
 //! Candidates: every effect of the catalogue at every place, with a grid of shapes, as columns on the rows.
 
 pub(in crate::diagnosis) mod candidate;
+pub(in crate::diagnosis) mod nuisances;
 pub(in crate::diagnosis) mod spectrum;
 pub(in crate::diagnosis) mod trial;
