@@ -11,6 +11,7 @@ use crate::diagnosis::judging::ar::{Autoregression, HIGHEST_ORDER};
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rows::gram::dot;
+use crate::parallel;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -64,11 +65,12 @@ struct Blocks {
 pub(in crate::diagnosis) fn calibrate(
     units: &Units,
     regressors: &Regressors<'_>,
+    background: &Background,
     law: &[Vec<f64>],
     residual: &[f64],
     common: bool,
 ) -> Option<Calibrated> {
-    let blocks = blocks(units, regressors, law, residual);
+    let blocks = blocks(units, regressors, background, law, residual);
     let (p, k) = (regressors.shared.len(), law.len());
     let sum = |list: &mut dyn Iterator<Item = &DMatrix<f64>>| {
         list.fold(DMatrix::zeros(p + k + 1, p + k + 1), |sum, m| sum + m)
@@ -144,47 +146,89 @@ pub(in crate::diagnosis) fn rival_p_value(law: &Calibrated, rival: &Calibrated) 
     Evidence::student(mean / (variance / n).sqrt().max(1e-300), n - 1.0).p_value
 }
 
-/// Inner products of everything, made white joint by joint, without what the free columns make.
-fn blocks(units: &Units, regressors: &Regressors<'_>, law: &[Vec<f64>], residual: &[f64]) -> Blocks {
+/// Inner products without any law, joint by joint: the same for all laws of a round.
+pub(in crate::diagnosis) struct Background {
+    of_joint: Vec<Blocks>,
+}
+
+impl Background {
+    /// Of a model that leaves `residual`.
+    pub fn new(units: &Units, regressors: &Regressors<'_>, residual: &[f64], threads: usize) -> Self {
+        let of_joint = |j| of_joint(units, regressors, j, &[], residual);
+        Self { of_joint: parallel::map(threads, regressors.of_joint.len(), of_joint) }
+    }
+}
+
+/// Inner products of everything, all joints together; those of joints on which the law is zero are the background's.
+fn blocks(
+    units: &Units,
+    regressors: &Regressors<'_>,
+    background: &Background,
+    law: &[Vec<f64>],
+    residual: &[f64],
+) -> Blocks {
+    let (p, k) = (regressors.shared.len(), law.len());
+    let zero = DMatrix::zeros(p + k + 1, p + k + 1);
+    let files = units.units.iter().map(|u| u.file + 1).max().unwrap_or(0);
+    let mut out = Blocks { units: vec![zero.clone(); units.units.len()], files: vec![zero; files] };
+    for (j, range) in regressors.of_joint.iter().enumerate() {
+        let acts = law.iter().any(|c| c[range.clone()].iter().any(|x| *x != 0.0));
+        let own = acts.then(|| of_joint(units, regressors, j, law, residual));
+        let (part, numbers) = own.as_ref().map_or((&background.of_joint[j], 0), |own| (own, k));
+        // Without the law, y is the column after the p of the model.
+        let places: Vec<usize> = (0..p + numbers).chain([p + k]).collect();
+        for (sum, part) in out.units.iter_mut().zip(&part.units) {
+            add(sum, part, &places);
+        }
+        for (sum, part) in out.files.iter_mut().zip(&part.files) {
+            add(sum, part, &places);
+        }
+    }
+    out
+}
+
+/// Inner products of `[columns, law, y]` on one joint, made white, without what the free columns make.
+fn of_joint(
+    units: &Units,
+    regressors: &Regressors<'_>,
+    j: usize,
+    law: &[Vec<f64>],
+    residual: &[f64],
+) -> Blocks {
+    let range = &regressors.of_joint[j];
     let width = regressors.shared.len() + law.len() + 1;
     let files = units.units.iter().map(|u| u.file + 1).max().unwrap_or(0);
     let zero = DMatrix::zeros(width, width);
     let mut out = Blocks { units: vec![zero.clone(); units.units.len()], files: vec![zero; files] };
-    for (j, range) in regressors.of_joint.iter().enumerate() {
-        if range.is_empty() {
+    if range.is_empty() {
+        return out;
+    }
+    let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
+    let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
+    let free: &[Vec<f64>] = &regressors.free[j];
+    let left = without_free(units, j, range, &residual[range.clone()], free);
+    let ar = Autoregression::fit(&stretches, &left, HIGHEST_ORDER);
+    let columns = regressors.shared.iter().chain(law).map(|c| &c[range.clone()]);
+    let all: Vec<Option<Vec<f64>>> = columns
+        .chain([&regressors.y[range.clone()]])
+        .map(|c| c.iter().any(|x| *x != 0.0).then(|| ar.whitened(&stretches, c)))
+        .collect();
+    let free: Vec<Vec<f64>> = free.iter().map(|c| ar.whitened(&stretches, c)).collect();
+    let live: Vec<usize> = (0..width).filter(|&i| all[i].is_some()).collect();
+    let columns: Vec<&[f64]> =
+        free.iter().map(Vec::as_slice).chain(live.iter().filter_map(|&i| all[i].as_deref())).collect();
+    let mut of_file = vec![DMatrix::zeros(columns.len(), columns.len()); files];
+    for (u, unit) in units.units.iter().enumerate() {
+        let rows = local_or_empty(&units.rows[j][u], range);
+        if rows.is_empty() {
             continue;
         }
-        let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
-        let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
-        let free: &[Vec<f64>] = &regressors.free[j];
-        let left = without_free(units, j, range, &residual[range.clone()], free);
-        let ar = Autoregression::fit(&stretches, &left, HIGHEST_ORDER);
-        let all = regressors
-            .shared
-            .iter()
-            .chain(law)
-            .map(|c| &c[range.clone()])
-            .chain([&regressors.y[range.clone()]]);
-        let all: Vec<Option<Vec<f64>>> =
-            all.map(|c| c.iter().any(|x| *x != 0.0).then(|| ar.whitened(&stretches, c))).collect();
-        let free: Vec<Vec<f64>> = free.iter().map(|c| ar.whitened(&stretches, c)).collect();
-        let live: Vec<usize> = (0..width).filter(|&i| all[i].is_some()).collect();
-        let columns: Vec<&[f64]> =
-            free.iter().map(Vec::as_slice).chain(live.iter().filter_map(|&i| all[i].as_deref())).collect();
-        let f = free.len();
-        let mut of_file = vec![DMatrix::zeros(columns.len(), columns.len()); files];
-        for (u, unit) in units.units.iter().enumerate() {
-            let rows = local_or_empty(&units.rows[j][u], range);
-            if rows.is_empty() {
-                continue;
-            }
-            let gram = gram(&columns, rows);
-            of_file[unit.file] += &gram;
-            add(&mut out.units[u], &project(&gram, f), &live);
-        }
-        for (file, gram) in of_file.iter().enumerate() {
-            add(&mut out.files[file], &project(gram, f), &live);
-        }
+        let gram = gram(&columns, rows);
+        of_file[unit.file] += &gram;
+        add(&mut out.units[u], &project(&gram, free.len()), &live);
+    }
+    for (file, gram) in of_file.iter().enumerate() {
+        add(&mut out.files[file], &project(gram, free.len()), &live);
     }
     out
 }
@@ -349,6 +393,17 @@ mod tests {
         }
     }
 
+    fn alone(
+        units: &Units,
+        regressors: &Regressors<'_>,
+        law: &[Vec<f64>],
+        residual: &[f64],
+        common: bool,
+    ) -> Option<Calibrated> {
+        let background = Background::new(units, regressors, residual, 1);
+        calibrate(units, regressors, &background, law, residual, common)
+    }
+
     fn wave(rng: &mut Pcg64, rows: usize) -> Vec<f64> {
         let waves: Vec<[f64; 3]> =
             (0..4).map(|k| [normal(rng), rng.random_range(0.0..6.3), 0.03 * f64::from(k + 1)]).collect();
@@ -393,7 +448,7 @@ mod tests {
         let regressors =
             Regressors { shared: &shared, y: &y, free: &[free], of_joint: std::slice::from_ref(&all) };
         let found =
-            calibrate(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
+            alone(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
         [found.evidence(found.lambda), found.evidence(1.0)]
     }
 
@@ -444,8 +499,7 @@ mod tests {
             Regressors { shared: &[], y: &y, free: &[vec![]], of_joint: std::slice::from_ref(&all) };
         let tail = |common| {
             let law = std::slice::from_ref(&law);
-            let found =
-                calibrate(&units(files, true), &regressors, law, &residual, common).expect("determined");
+            let found = alone(&units(files, true), &regressors, law, &residual, common).expect("determined");
             found.evidence(found.lambda).p_value
         };
         assert!(tail(true) > 1e-3, "{}", tail(true));
@@ -460,6 +514,6 @@ mod tests {
         let shared = [column.clone()];
         let regressors =
             Regressors { shared: &shared, y: &y, free: &[vec![]], of_joint: std::slice::from_ref(&all) };
-        assert_eq!(calibrate(&units(10, false), &regressors, &[column], &y, false), None);
+        assert_eq!(alone(&units(10, false), &regressors, &[column], &y, false), None);
     }
 }

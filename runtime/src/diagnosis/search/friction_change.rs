@@ -5,7 +5,7 @@
 //! per cent of the friction and more than the baseline's own units differ by.
 
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::calibration::{Regressors, calibrate};
+use crate::diagnosis::judging::calibration::{Background, Regressors, calibrate};
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
@@ -28,10 +28,20 @@ impl Search<'_> {
         if !self.model.change {
             return Ok(());
         }
-        let joints = self.model.slow.design.joints;
+        let (regression, bench) = (&self.model.slow, self.model.bench(SmoothingWindow::Slow));
+        let design = &regression.design;
+        let joints = design.joints;
+        let shared: Vec<Vec<f64>> = (0..design.columns.len())
+            .filter(|k| !bench.own_friction.contains(k))
+            .map(|k| design.columns[k].clone())
+            .collect();
+        let regressors =
+            Regressors { shared: &shared, y: &design.y, free: &bench.free, of_joint: &bench.of_joint };
+        let residual = regression.residual();
+        let background = Background::new(&bench.units, &regressors, &residual, self.threads);
         let changed: Vec<(usize, Evidence)> = (0..joints)
             .filter_map(|j| {
-                let evidence = self.friction_evidence(j)?;
+                let evidence = self.friction_evidence(j, &shared, &background, &residual)?;
                 let sure = evidence.confidence(joints) >= settings.least_confidence;
                 (sure && self.friction_change(j) >= LEAST_CHANGE).then_some((j, evidence))
             })
@@ -88,14 +98,15 @@ impl Search<'_> {
 
     /// Evidence that the viscous and Coulomb friction of a joint differ from the baseline's, against what they differ by
     /// between its units.
-    fn friction_evidence(&self, joint: usize) -> Option<Evidence> {
-        let (regression, bench) = (&self.model.slow, self.model.bench(SmoothingWindow::Slow));
-        let design = &regression.design;
-        let own = &bench.own_friction;
-        let shared: Vec<Vec<f64>> = (0..design.columns.len())
-            .filter(|k| !own.contains(k))
-            .map(|k| design.columns[k].clone())
-            .collect();
+    fn friction_evidence(
+        &self,
+        joint: usize,
+        shared: &[Vec<f64>],
+        background: &Background,
+        residual: &[f64],
+    ) -> Option<Evidence> {
+        let bench = self.model.bench(SmoothingWindow::Slow);
+        let design = &self.model.slow.design;
         let range = design.of_joint(joint);
         let law: Vec<Vec<f64>> = bench.free[joint][..2]
             .iter()
@@ -107,9 +118,8 @@ impl Search<'_> {
             .collect();
         let mut free = bench.free.clone();
         free[joint].drain(..2);
-        let regressors = Regressors { shared: &shared, y: &design.y, free: &free, of_joint: &bench.of_joint };
-        let residual = regression.residual();
-        let found = calibrate(&bench.units, &regressors, &law, &residual, false)?;
+        let regressors = Regressors { shared, y: &design.y, free: &free, of_joint: &bench.of_joint };
+        let found = calibrate(&bench.units, &regressors, background, &law, residual, false)?;
         Some(found.evidence(found.lambda))
     }
 

@@ -3,16 +3,17 @@
 
 use crate::diagnosis::candidates::nuisances::friction_columns;
 use crate::diagnosis::candidates::trial::dense_columns;
-use crate::diagnosis::judging::calibration::{Calibrated, Regressors, calibrate, rival_p_value};
+use crate::diagnosis::judging::calibration::{Background, Calibrated, Regressors, calibrate, rival_p_value};
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::search::select::Ranked;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, Place};
+use crate::effects::{EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Torques of a joint repeat to this share of their root mean square, where nothing shows that they repeat better.
 const REPEATS: f64 = 0.02;
@@ -158,9 +159,25 @@ fn may_be_common(effect: EffectKind) -> bool {
     )
 }
 
+/// What a round's evidence is worked out beside, on the rows of each window.
+#[derive(Default)]
+pub(in crate::diagnosis) struct Backgrounds {
+    slow: OnceLock<Background>,
+    fast: OnceLock<Background>,
+}
+
+impl Backgrounds {
+    fn of(&self, window: SmoothingWindow) -> &OnceLock<Background> {
+        match window {
+            SmoothingWindow::Slow => &self.slow,
+            SmoothingWindow::Fast => &self.fast,
+        }
+    }
+}
+
 impl Search<'_> {
     /// Evidence and size of a candidate of a round beside the model as it is.
-    fn gate(&self, ranked: &Ranked) -> Option<Gate> {
+    fn gate(&self, against: &Backgrounds, ranked: &Ranked) -> Option<Gate> {
         let (regression, candidate) = self.of(ranked);
         let (model, bench) = (&self.model, self.model.bench(ranked.window));
         let design = &regression.design;
@@ -182,7 +199,10 @@ impl Search<'_> {
             of_joint: &bench.of_joint,
         };
         let common = model.change && may_be_common(candidate.effect);
-        let calibrated = calibrate(&bench.units, &regressors, &law, &left, common)?;
+        let background = against
+            .of(ranked.window)
+            .get_or_init(|| Background::new(&bench.units, &regressors, &before, self.threads));
+        let calibrated = calibrate(&bench.units, &regressors, background, &law, &left, common)?;
         let sizes = candidate.own.iter().map(|&j| bench.size(design, j, &change, &left));
         let size = sizes.max_by(|a, b| (a.law / a.repeats).total_cmp(&(b.law / b.repeats)))?;
         Some(Gate { gain, calibrated, size })
@@ -192,12 +212,13 @@ impl Search<'_> {
     /// joints share: by what they explain of all joints in a residual made white.
     pub(in crate::diagnosis) fn standing(
         &self,
+        against: &Backgrounds,
         ranked: &[Ranked],
         candidate: usize,
         least_confidence: f64,
     ) -> Standing {
         let law = self.of(&ranked[candidate]).1;
-        let Some(own) = self.gate(&ranked[candidate]) else { return Standing::Beaten };
+        let Some(own) = self.gate(against, &ranked[candidate]) else { return Standing::Beaten };
         let (gain, window) = (ranked[candidate].verdict.gain, ranked[candidate].window);
         let mut rivals: Vec<usize> = (0..ranked.len())
             .filter(|&k| ranked[k].window == window && ranked[k].verdict.gain > COMPARABLE * gain)
@@ -205,7 +226,7 @@ impl Search<'_> {
             .collect();
         rivals.sort_by(|&a, &b| ranked[b].verdict.gain.total_cmp(&ranked[a].verdict.gain));
         rivals.truncate(MOST_RIVALS);
-        let gates = parallel::map(self.threads, rivals.len(), |k| self.gate(&ranked[rivals[k]]));
+        let gates = parallel::map(self.threads, rivals.len(), |k| self.gate(against, &ranked[rivals[k]]));
         let penalty = penalty(self.tries());
         let worth = |c: &Calibrated| c.squares - penalty * c.numbers as f64;
         let mut standing = Standing::Ahead;
@@ -231,11 +252,12 @@ impl Search<'_> {
     /// What the gate makes of a candidate at a level over `tries` candidates.
     pub(in crate::diagnosis) fn judged_by_gate(
         &self,
+        against: &Backgrounds,
         ranked: &Ranked,
         tries: usize,
         least_confidence: f64,
     ) -> Outcome {
-        let Some(gate) = self.gate(ranked) else { return Outcome::Fails };
+        let Some(gate) = self.gate(against, ranked) else { return Outcome::Fails };
         let calibrated = &gate.calibrated;
         let evidence = calibrated.evidence(calibrated.lambda);
         let confidence = evidence.confidence(tries);
@@ -258,8 +280,9 @@ impl Search<'_> {
         let mut ranked = self.ranked(None);
         ranked.retain(|r| r.verdict.total() > 0.0 && r.verdict.fitted_fraction > 0.0);
         ranked.truncate(MOST_RIVALS);
+        let against = Backgrounds::default();
         let outcomes = parallel::map(self.threads, ranked.len(), |k| {
-            self.judged_by_gate(&ranked[k], self.tries(), settings.least_confidence)
+            self.judged_by_gate(&against, &ranked[k], self.tries(), settings.least_confidence)
         });
         let mut small: Vec<SmallLaw> = Vec::new();
         for (r, outcome) in ranked.iter().zip(outcomes) {

@@ -8,7 +8,7 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rules::{
     FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, NESTED_CASE_SUFFICES, RIVALS, STRETCHES_PER_LOSS,
 };
-use crate::diagnosis::search::gate::{Outcome, Standing};
+use crate::diagnosis::search::gate::{Backgrounds, Outcome, Standing};
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
@@ -61,6 +61,7 @@ impl Search<'_> {
         rounds: usize,
     ) -> Result<Round, SingularDesign> {
         let mut ties = Vec::new();
+        let against = Backgrounds::default();
         let ranked = self.ranked(joint);
         let holding = self.holding(&ranked, settings);
         let tries = rounds * self.tries();
@@ -82,9 +83,9 @@ impl Search<'_> {
             if self.nested_case_suffices(&ranked, candidate, verdict) {
                 continue;
             }
-            let gate = self.judged_by_gate(&ranked[*k], tries, settings.least_confidence);
+            let gate = self.judged_by_gate(&against, &ranked[*k], tries, settings.least_confidence);
             let Outcome::Passes { confidence: calibrated, significance, inflation } = gate else { continue };
-            match self.standing(&ranked, *k, settings.least_confidence) {
+            match self.standing(&against, &ranked, *k, settings.least_confidence) {
                 Standing::Ahead => {}
                 Standing::Tied(rival) => {
                     let rival = self.of(&ranked[rival]).1;
