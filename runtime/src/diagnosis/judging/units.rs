@@ -3,11 +3,13 @@
 use crate::diagnosis::rows::design::Design;
 use std::ops::Range;
 
-/// Shortest and longest unit where a baseline is cut, s.
-const OF_BASELINE: [f64; 2] = [4.0, 12.0];
+/// Shortest and longest unit of a baseline, s: a law must show in one, and what differs between days or poses must not
+/// be averaged away. Where the recording's motions are shorter than the longest, units are no longer than they.
+const OF_BASELINE: [f64; 2] = [1.0, 12.0];
 /// Shortest and longest unit where a recording is compared with itself, s.
 const OF_ITSELF: [f64; 2] = [1.0, 8.0];
-/// Units that a recording on its own is cut into, where they are not too short or long.
+/// Units that are wanted, where they are not too short or long: a variance of so many has a third of its size as its
+/// standard deviation, and a law is certain at a level of 1e-4 where it stands out 6 times.
 const WANTED: f64 = 10.0;
 
 /// One unit.
@@ -55,7 +57,7 @@ impl Units {
         let target_duration = sum(true) / motions;
         let change = fresh.iter().any(|f| !f);
         let wanted = if change {
-            target_duration.clamp(OF_BASELINE[0], OF_BASELINE[1])
+            target_duration.min(sum(false) / WANTED).clamp(OF_BASELINE[0], OF_BASELINE[1])
         } else {
             (sum(true) / WANTED).clamp(OF_ITSELF[0], OF_ITSELF[1])
         };
