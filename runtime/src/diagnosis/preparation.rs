@@ -155,6 +155,10 @@ impl Prepared {
         if trajectories.is_empty() {
             return Err(DiagnosisError::NoMotion);
         }
+        let joints = model.robot().joints();
+        if let Some(other) = baseline.iter().find(|t| t.position.len() != joints) {
+            return Err(DiagnosisError::OtherBaseline { given: other.position.len(), joints });
+        }
         let motions = Motions::new(model, trajectories, baseline, settings)?;
         let aligned = motions.aligned(model);
         check_rows(model, &aligned)?;

@@ -4,11 +4,9 @@
 use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::PRESLIDING_NUISANCE;
 use crate::effects::{EffectKind, Place};
 use crate::signal::{Stencil, central_difference};
-
-/// Displacement, as a fraction of a joint's travel, over which friction builds up after a reversal.
-const PRESLIDING: f64 = 0.002;
 
 /// All columns that are fitted beside the base parameters and never named: the skew of the torques, the nuisances,
 /// and, against a baseline (`change`), the recording's own friction as the last three of every joint.
@@ -39,7 +37,7 @@ fn nuisance_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
         let mut column = vec![0.0; design.rows.len()];
         column[design.of_joint(j)].copy_from_slice(&on_joint);
         out.push(column);
-        let shape = [PRESLIDING * context.scales[j].range];
+        let shape = [PRESLIDING_NUISANCE * context.scales[j].range];
         out.extend(dense_columns(
             context,
             design,

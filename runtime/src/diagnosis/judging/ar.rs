@@ -5,12 +5,8 @@
 //! stretch are predicted by the orders that they have predecessors for, which makes the product of the innovations the
 //! exact likelihood of a stationary series. Rows on both sides of a gap say nothing about each other.
 
+use crate::diagnosis::rules::LEAST_AR_PAIRS;
 use std::ops::Range;
-
-/// Highest order that is tried.
-pub(in crate::diagnosis) const HIGHEST_ORDER: usize = 12;
-/// Fewest rows that an order is chosen from.
-const LEAST_ROWS: usize = 20;
 
 /// A stationary autoregression and all of its lower orders.
 #[derive(Debug, Clone)]
@@ -40,7 +36,7 @@ impl Autoregression {
                     pairs += 1;
                 }
             }
-            if pairs < LEAST_ROWS || power <= 0.0 {
+            if pairs < LEAST_AR_PAIRS || power <= 0.0 {
                 break;
             }
             let reflection = 2.0 * product / power;
@@ -93,10 +89,11 @@ impl Autoregression {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::rules::HIGHEST_AR_ORDER as HIGHEST_ORDER;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
-    pub(super) fn normal(rng: &mut Pcg64) -> f64 {
+    fn normal(rng: &mut Pcg64) -> f64 {
         (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
     }
 

@@ -1,5 +1,5 @@
-//! Evidence that is measured by the variation that is there anyway (EVIDENCE: between units of the baseline, or
-//! between stretches of the recording).
+//! Evidence that is measured by the variation that is there anyway: between units of the baseline, or between
+//! stretches of the recording itself.
 //!
 //! A residual that is made white by an autoregression still differs from one stretch to the next by more than its own
 //! memory tells: temperature, positions visited, what no column describes. How large the statistic Q of a law is where
@@ -7,18 +7,14 @@
 //! has mean lambda; F = (Q/k) / lambda follows Fisher's distribution with (k, units - 1) degrees of freedom, as a
 //! random effect of the units would have it (Laird and Ware 1982).
 
-use crate::diagnosis::judging::ar::{Autoregression, HIGHEST_ORDER};
+use crate::diagnosis::judging::ar::Autoregression;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rows::gram::dot;
+use crate::diagnosis::rules::{CALIBRATION_RIDGE, HIGHEST_AR_ORDER, LEAST_EIGENVALUE, OWN_FRACTION};
 use crate::parallel;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
-
-/// Least part of a column that is its own: below it, the other columns make it themselves.
-const OWN_PART: f64 = 2e-4;
-/// Relative ridge.
-const RIDGE: f64 = 1e-10;
 
 /// What a law is judged against: everything by row, over all rows of all joints.
 pub(in crate::diagnosis) struct Regressors<'a> {
@@ -207,7 +203,7 @@ fn of_joint(
     let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
     let free: &[Vec<f64>] = &regressors.free[j];
     let left = without_free(units, j, range, &residual[range.clone()], free);
-    let ar = Autoregression::fit(&stretches, &left, HIGHEST_ORDER);
+    let ar = Autoregression::fit(&stretches, &left, HIGHEST_AR_ORDER);
     let columns = regressors.shared.iter().chain(law).map(|c| &c[range.clone()]);
     let all: Vec<Option<Vec<f64>>> = columns
         .chain([&regressors.y[range.clone()]])
@@ -312,7 +308,7 @@ fn factored(g: &DMatrix<f64>) -> Option<(nalgebra::Cholesky<f64, nalgebra::Dyn>,
         } else if scale[k] == 0.0 {
             1.0
         } else {
-            RIDGE
+            CALIBRATION_RIDGE
         };
         g[(i, k)] * scale[i] * scale[k] + diagonal
     });
@@ -348,7 +344,7 @@ fn gain(rest: &DMatrix<f64>, part: &DMatrix<f64>, p: usize, k: usize, common: bo
     let mut s = &own - scaled.transpose() * &made;
     b -= made.transpose() * (&scale * &v);
     let alive: Vec<usize> =
-        (0..k).filter(|&a| own[(a, a)] > 0.0 && s[(a, a)] > OWN_PART * own[(a, a)]).collect();
+        (0..k).filter(|&a| own[(a, a)] > 0.0 && s[(a, a)] > OWN_FRACTION * own[(a, a)]).collect();
     if alive.is_empty() {
         return None;
     }
@@ -361,7 +357,7 @@ fn gain(rest: &DMatrix<f64>, part: &DMatrix<f64>, p: usize, k: usize, common: bo
     let projected = eigen.eigenvectors.transpose() * b.component_mul(&width);
     let (mut squares, mut numbers) = (0.0, 0);
     for (value, x) in eigen.eigenvalues.iter().zip(projected.iter()) {
-        if *value > 1e-6 {
+        if *value > LEAST_EIGENVALUE {
             squares += x * x / value;
             numbers += 1;
         }

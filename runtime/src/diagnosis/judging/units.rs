@@ -1,16 +1,8 @@
 //! A recording cut into units of a few seconds: what a law's evidence is compared between.
 
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::{UNIT_OF_BASELINE, UNIT_OF_ITSELF, UNITS_WANTED};
 use std::ops::Range;
-
-/// Shortest and longest unit of a baseline, s: a law must show in one, and what differs between days or poses must not
-/// be averaged away. Where the recording's motions are shorter than the longest, units are no longer than they.
-const OF_BASELINE: [f64; 2] = [1.0, 12.0];
-/// Shortest and longest unit where a recording is compared with itself, s.
-const OF_ITSELF: [f64; 2] = [1.0, 8.0];
-/// Units that are wanted, where they are not too short or long: a variance of so many has a third of its size as its
-/// standard deviation, and a law is certain at a level of 1e-4 where it stands out 6 times.
-const WANTED: f64 = 10.0;
 
 /// One unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,9 +49,9 @@ impl Units {
         let target_duration = sum(true) / motions;
         let change = fresh.iter().any(|f| !f);
         let wanted = if change {
-            target_duration.min(sum(false) / WANTED).clamp(OF_BASELINE[0], OF_BASELINE[1])
+            target_duration.min(sum(false) / UNITS_WANTED).clamp(UNIT_OF_BASELINE[0], UNIT_OF_BASELINE[1])
         } else {
-            (sum(true) / WANTED).clamp(OF_ITSELF[0], OF_ITSELF[1])
+            (sum(true) / UNITS_WANTED).clamp(UNIT_OF_ITSELF[0], UNIT_OF_ITSELF[1])
         };
         let mut units = Vec::new();
         let mut first_unit = vec![0; files];
@@ -104,5 +96,54 @@ impl Units {
     /// Whether there is a baseline.
     pub fn change(&self) -> bool {
         self.units.iter().any(|u| !u.target)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two joints with rows every 0.02 s, `seconds` in each segment (motion, is_target).
+    fn design(segments: &[(usize, bool)], seconds: f64) -> Design {
+        let rows = (seconds / 0.02) as usize;
+        let all = 2 * segments.len() * rows;
+        Design::made_up(2, segments, rows, vec![vec![1.0; all]], vec![0.0; all])
+    }
+
+    #[test]
+    fn a_recording_on_its_own_is_cut_into_about_ten_units_of_at_least_a_second() {
+        let long = Units::of(&design(&[(0, true), (0, true)], 12.0));
+        assert_eq!(long.units.len(), 10);
+        assert!(!long.change());
+        assert!((long.duration - 2.4).abs() < 0.05, "{}", long.duration);
+        let short = Units::of(&design(&[(0, true)], 4.0));
+        assert_eq!(short.units.len(), 4);
+    }
+
+    #[test]
+    fn a_long_baseline_has_units_as_long_as_the_recording_and_a_short_one_has_enough_of_them() {
+        let long = Units::of(&design(&[(0, false), (1, false), (2, true)], 40.0));
+        assert_eq!(long.units.iter().filter(|u| u.target).count(), 1);
+        assert!((long.duration - 8.0).abs() < 0.1, "{}", long.duration);
+        let short = Units::of(&design(&[(0, false), (1, true)], 10.0));
+        assert_eq!(short.units.iter().filter(|u| !u.target).count(), 10);
+        assert!((short.target_duration - 10.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn stretches_end_at_gaps_and_at_the_borders_of_units_and_hold_every_row_once() {
+        let mut design = design(&[(0, true)], 4.0);
+        for r in design.of_joint(1) {
+            design.rows[r].centre += if r >= design.of_joint(1).start + 30 { 5 } else { 0 };
+        }
+        let units = Units::of(&design);
+        for j in 0..2 {
+            let rows: Vec<usize> = units.stretches[j].iter().cloned().flatten().collect();
+            assert_eq!(rows, design.of_joint(j).collect::<Vec<usize>>());
+            let in_units: usize = units.rows[j].iter().map(|r| r.len()).sum();
+            assert_eq!(in_units, rows.len());
+        }
+        assert_eq!(units.stretches[0].len(), units.units.len());
+        assert_eq!(units.stretches[1].len(), units.units.len() + 1);
     }
 }

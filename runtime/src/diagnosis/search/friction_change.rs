@@ -7,14 +7,12 @@
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::calibration::{Background, Regressors, calibrate};
 use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::rules::LEAST_FRICTION_CHANGE;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
 use crate::effects::{EffectKind, Place, SmoothingWindow};
 use nalgebra::{DMatrix, DVector};
-
-/// Least change of a joint's friction torque that is named, as a share of the friction torque.
-const LEAST_CHANGE: f64 = 0.05;
 
 impl Search<'_> {
     /// Names the joints whose friction has changed since the baseline.
@@ -43,7 +41,7 @@ impl Search<'_> {
             .filter_map(|j| {
                 let evidence = self.friction_evidence(j, &shared, &background, &residual)?;
                 let sure = evidence.confidence(joints) >= settings.least_confidence;
-                (sure && self.friction_change(j) >= LEAST_CHANGE).then_some((j, evidence))
+                (sure && self.friction_change(j) >= LEAST_FRICTION_CHANGE).then_some((j, evidence))
             })
             .collect();
         for (j, evidence) in changed {

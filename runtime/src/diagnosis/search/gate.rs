@@ -7,6 +7,7 @@ use crate::diagnosis::judging::calibration::{Background, Calibrated, Regressors,
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::{COMPARABLE, MOST_COMPARED, REPEATS, TOLD_APART};
 use crate::diagnosis::search::select::Ranked;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
@@ -14,16 +15,6 @@ use crate::effects::{EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 use std::ops::Range;
 use std::sync::OnceLock;
-
-/// Torques of a joint repeat to this share of their root mean square, where nothing shows that they repeat better.
-const REPEATS: f64 = 0.02;
-
-/// A rival is compared where it makes this share of a candidate's gain.
-const COMPARABLE: f64 = 0.5;
-/// Most rivals that a candidate is compared with.
-const MOST_RIVALS: usize = 6;
-/// Laws are told apart where the better one is so by accident with less than this probability.
-const MOST_DOUBT: f64 = 0.05;
 
 /// What a number must gain where the best of so many candidates is taken (Foster and George 1994).
 fn penalty(candidates: usize) -> f64 {
@@ -225,7 +216,7 @@ impl Search<'_> {
             .filter(|&k| self.of(&ranked[k]).1.own.iter().all(|j| !law.own.contains(j)))
             .collect();
         rivals.sort_by(|&a, &b| ranked[b].verdict.gain.total_cmp(&ranked[a].verdict.gain));
-        rivals.truncate(MOST_RIVALS);
+        rivals.truncate(MOST_COMPARED);
         let gates = parallel::map(self.threads, rivals.len(), |k| self.gate(against, &ranked[rivals[k]]));
         let penalty = penalty(self.tries());
         let worth = |c: &Calibrated| c.squares - penalty * c.numbers as f64;
@@ -242,7 +233,7 @@ impl Search<'_> {
             if ahead < -penalty {
                 return Standing::Beaten;
             }
-            if sure && doubt > MOST_DOUBT {
+            if sure && doubt > TOLD_APART {
                 standing = Standing::Tied(k);
             }
         }
@@ -279,7 +270,7 @@ impl Search<'_> {
     pub(in crate::diagnosis) fn small(&self, settings: &Settings) -> Vec<SmallLaw> {
         let mut ranked = self.ranked(None);
         ranked.retain(|r| r.verdict.total() > 0.0 && r.verdict.fitted_fraction > 0.0);
-        ranked.truncate(MOST_RIVALS);
+        ranked.truncate(MOST_COMPARED);
         let against = Backgrounds::default();
         let outcomes = parallel::map(self.threads, ranked.len(), |k| {
             self.judged_by_gate(&against, &ranked[k], self.tries(), settings.least_confidence)
