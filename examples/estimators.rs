@@ -161,7 +161,7 @@ fn one_seed(
         weighted.errors.iter().find(of).map_or(1.0, |e| e.sigma)
     };
     let sigmas: Vec<f64> = observation.groups.iter().map(|g| sigma_of(g.trajectory, g.equation)).collect();
-    if let Some(found) = instrumental_variables(&observation, &sigmas) {
+    if let Ok(found) = instrumental_variables(&observation, &sigmas) {
         add("IDIM-IV", found.chi, found.sigma);
     }
     Ok(outcomes)

@@ -4,14 +4,18 @@
 //! by name or by path; identification, simulation and diagnosis live in [`dynid_runtime`].
 #![deny(missing_docs)]
 
+pub mod arguments;
 pub mod commands;
+pub mod errors;
 pub mod failure;
 pub mod models;
 pub mod motions;
 pub mod output;
 pub mod pages;
 pub mod paper_tables;
-pub mod plausibility;
 pub mod recorded;
 pub mod robots;
-pub mod scoring;
+pub mod saved;
+pub mod truth;
+pub mod verdict;
+pub mod words;

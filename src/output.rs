@@ -15,6 +15,11 @@ pub fn print(text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.write_all(b"\n"));
 }
 
+/// Tells a person what to know before believing the result, on standard error.
+pub fn warn(text: &str) {
+    eprintln!("warning: {text}");
+}
+
 /// A table for a terminal. A header that starts with `<` sets its column to the left; the others hold numbers.
 pub fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     let mut table = Table::new();

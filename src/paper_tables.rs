@@ -1,7 +1,7 @@
 //! Tables II, III and IV beside the paper's, as rows of text.
 
 use dynid_runtime::estimation::Estimate;
-use dynid_runtime::model::Robot;
+use dynid_runtime::model::{JointIndex, Robot};
 use dynid_runtime::paper::{
     Case, CaseResult, PUBLISHED_DEVIATIONS, PUBLISHED_PARAMETERS, Spread, mean_difference, published_error,
     spread,
@@ -221,7 +221,8 @@ impl Results<'_> {
             rows.push(published_row("the paper", &cases, |case| Some(published_error(case).1)));
         }
         for joint in 0..self.robot.joints() {
-            rows.push(self.row(&format!("joint {}", joint + 1), &cases, 3, |case| {
+            let number = self.robot.joint_number(JointIndex(joint));
+            rows.push(self.row(&format!("joint {number}"), &cases, 3, |case| {
                 spread(self.of(case).map(|r| r.per_joint[joint]))
             }));
         }

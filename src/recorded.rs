@@ -1,81 +1,17 @@
 //! From the path of a recording to motions that a model can be evaluated on.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use clap::Args;
-use dynid_runtime::estimation::observe::{
-    Equations, Observation, ObserveError, ObserveSettings, Standstill, observe,
-};
+use dynid_runtime::estimation::observe::{Equations, Observation, ObserveError, ObserveSettings, observe};
 use dynid_runtime::estimation::{Bandwidth, Piecewise, choose_bandwidth};
+use dynid_runtime::model::Robot;
 use dynid_runtime::recording::{Loader, Manifest, RecordingError, RowReport, Side, Trajectory, load};
 use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare_all};
 
+use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
 use crate::output::Bar;
-use crate::robots::{Dynamics, path_of, resolve};
-
-/// Which recording is read, and how it is sampled. The defaults are the same for every robot and recording.
-#[derive(Debug, Clone, Args)]
-pub struct RecordingOptions {
-    /// The recording: a YAML that names the robot, the files and the columns
-    pub recording: PathBuf,
-    /// Another robot than the one the recording names: a name, or the path of a robot YAML
-    #[arg(long)]
-    pub robot: Option<String>,
-    /// Use only what comes after this time, s
-    #[arg(long, allow_negative_numbers = true)]
-    pub from: Option<f64>,
-    /// Use only what comes before this time, s
-    #[arg(long, allow_negative_numbers = true)]
-    pub to: Option<f64>,
-    #[command(flatten)]
-    /// How it is sampled.
-    pub sampling: Sampling,
-}
-
-/// How signals become equations.
-#[derive(Debug, Clone, Args)]
-pub struct Sampling {
-    /// Band of the equations, Hz: what is faster is filtered out of torques and model alike [default: the widest, up
-    /// to 50 Hz, in which the encoders' noise hardly shows in the accelerations]
-    #[arg(long)]
-    pub band: Option<f64>,
-    /// Equations a second, Hz [default: twice the band]
-    #[arg(long)]
-    pub rate: Option<f64>,
-    /// Cut-off of the position filter, Hz [default: twice the band, at most a fifth of the recording's rate]
-    #[arg(long)]
-    pub cutoff: Option<f64>,
-    /// Leave out rows where the joint is slower than this, rad/s or m/s: one value, or one per joint [default: 2 %
-    /// of the joint's fastest speed]
-    #[arg(long, value_delimiter = ',', conflicts_with = "all_rows")]
-    pub standstill: Vec<f64>,
-    /// Keep the rows where joints stand still
-    #[arg(long)]
-    pub all_rows: bool,
-    /// Threads; the result is the same for every number [default: all cores]
-    #[arg(long, default_value_t = 0)]
-    pub threads: usize,
-}
-
-impl Sampling {
-    /// The same as settings of the observation.
-    pub fn settings(&self, joints: usize, band: f64) -> ObserveSettings {
-        let standstill = match (self.all_rows, self.standstill.as_slice()) {
-            (true, _) => Standstill::Keep,
-            (false, []) => Standstill::default(),
-            (false, [one]) => Standstill::Below(vec![*one; joints]),
-            (false, several) => Standstill::Below(several.to_vec()),
-        };
-        ObserveSettings {
-            band,
-            rate: self.rate,
-            standstill,
-            threads: self.threads,
-            ..ObserveSettings::default()
-        }
-    }
-}
+use crate::robots::{Dynamics, found_again, resolve};
 
 /// A recording that was read.
 pub struct Measured {
@@ -123,21 +59,38 @@ pub struct Recorded {
 impl Recorded {
     /// The robot and the title, on one line.
     pub fn heading(&self) -> String {
-        let name = &self.dynamics.model().robot().name;
-        if self.title.is_empty() { name.to_string() } else { format!("{name}: {}", self.title) }
+        heading(self.dynamics.model().robot(), &self.title)
     }
+}
+
+/// A robot and the title of its recording, on one line.
+pub fn heading(robot: &Robot, title: &str) -> String {
+    if title.is_empty() { robot.name.to_string() } else { format!("{}: {title}", robot.name) }
 }
 
 /// Reads a recording.
 ///
 /// # Errors
 /// [`Failure::Input`] for what is wrong in a file, [`Failure::Data`] where the rows cannot support an answer.
-pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
+pub fn measure(options: &Source) -> Result<Measured, Failure> {
     let (manifest, dynamics, robot) = opened(options)?;
+    measure_as(options, manifest, dynamics, robot)
+}
+
+/// Reads the recording of a manifest as one of a robot that was found before; `robot` is how it is found again.
+///
+/// # Errors
+/// As of [`measure`].
+pub fn measure_as(
+    options: &Source,
+    manifest: Manifest,
+    dynamics: Dynamics,
+    robot: String,
+) -> Result<Measured, Failure> {
     let window = window(options.from, options.to)?;
     let recording = load(&manifest, dynamics.model().robot()).map_err(recording_failure)?;
     let trajectories: Vec<Trajectory> = match window {
-        Some(window) => recording.trajectories.iter().filter_map(|t| cropped(t, window)).collect(),
+        Some(window) => recording.trajectories.iter().filter_map(|t| t.within(window)).collect(),
         None => recording.trajectories,
     };
     if trajectories.is_empty() {
@@ -151,10 +104,10 @@ pub fn measure(options: &RecordingOptions) -> Result<Measured, Failure> {
 ///
 /// # Errors
 /// [`Failure::Data`] where no motion can be prepared.
-pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Recorded, Failure> {
+pub fn prepared(measured: Measured, options: &Source, sampling: &Sampling) -> Result<Recorded, Failure> {
     let Measured { dynamics, title, robot, side, trajectories, mut rows } = measured;
     let joints = dynamics.model().robot().joints();
-    let (preparation, settings) = bandwidth(options, &trajectories, joints)?;
+    let (preparation, settings) = bandwidth(options, sampling, &trajectories, joints)?;
     let (motions, too_short) = prepare_all(&trajectories, &preparation)
         .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
     rows.too_short = too_short.iter().map(SignalError::to_string).collect();
@@ -165,8 +118,8 @@ pub fn prepared(measured: Measured, options: &RecordingOptions) -> Result<Record
 ///
 /// # Errors
 /// As theirs.
-pub fn read(options: &RecordingOptions) -> Result<Recorded, Failure> {
-    prepared(measure(options)?, options)
+pub fn read(options: &Source, sampling: &Sampling) -> Result<Recorded, Failure> {
+    prepared(measure(options)?, options, sampling)
 }
 
 /// Rows of a piece of a long recording: what is in memory at once is a few times as much.
@@ -187,7 +140,11 @@ pub struct Observed {
 ///
 /// # Errors
 /// As of [`read`] and of the observation.
-pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Result<Observed, Failure> {
+pub fn read_observed(
+    options: &Source,
+    sampling: &Sampling,
+    equations: &[Equations],
+) -> Result<Observed, Failure> {
     let failure = |error: ObserveError| observe_failure(&options.recording, &error);
     let (manifest, dynamics, robot) = opened(options)?;
     let window = window(options.from, options.to)?;
@@ -212,7 +169,7 @@ pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Res
         let trajectories = first.into_iter().map(|(_, piece)| piece).collect();
         let (title, side) = (manifest.title, manifest.side);
         let measured = Measured { dynamics, title, robot, side, trajectories, rows };
-        let recorded = prepared(measured, options)?;
+        let recorded = prepared(measured, options, sampling)?;
         let bar = Bar::new("samples");
         let progress = |done, all| bar.at(done, all);
         let model = recorded.dynamics.model();
@@ -231,7 +188,7 @@ pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Res
         piece
     };
     let first: Vec<Trajectory> = first.into_iter().map(|(window, piece)| named(window, piece)).collect();
-    let (preparation, settings) = bandwidth(options, &first, model.robot().joints())?;
+    let (preparation, settings) = bandwidth(options, sampling, &first, model.robot().joints())?;
     let (mut all, motions) =
         Piecewise::new(model, equations, first, preparation, settings.clone()).map_err(failure)?;
     while let Some(piece) = next_piece(&mut loader, window)? {
@@ -248,7 +205,7 @@ pub fn read_observed(options: &RecordingOptions, equations: &[Equations]) -> Res
 fn next_piece(loader: &mut Loader<'_>, window: Option<[f64; 2]>) -> Result<Option<Trajectory>, Failure> {
     while let Some(piece) = loader.next_trajectory().map_err(recording_failure)? {
         let inside = match window {
-            Some(window) => cropped(&piece, window),
+            Some(window) => piece.within(window),
             None => Some(piece),
         };
         if inside.is_some() {
@@ -259,67 +216,38 @@ fn next_piece(loader: &mut Loader<'_>, window: Option<[f64; 2]>) -> Result<Optio
 }
 
 /// The manifest, the robot that is meant, and how it is found again.
-fn opened(options: &RecordingOptions) -> Result<(Manifest, Dynamics, String), Failure> {
+fn opened(options: &Source) -> Result<(Manifest, Dynamics, String), Failure> {
     let manifest = Manifest::read(&options.recording).map_err(recording_failure)?;
     let (name, beside) = match &options.robot {
         Some(name) => (name, None),
         None => (&manifest.robot, Some(manifest.folder.as_path())),
     };
     let dynamics = resolve(name, beside)?;
-    let found = match &dynamics {
-        Dynamics::Generated(model) => model.robot().name.to_string(),
-        Dynamics::Recursive(_) => path_of(name, beside).display().to_string(),
-    };
+    let found = found_again(&dynamics, name, beside);
     Ok((manifest, dynamics, found))
 }
 
-fn nothing_in_window(options: &RecordingOptions) -> Failure {
+fn nothing_in_window(options: &Source) -> Failure {
     Failure::Data(format!("{}: no row lies between --from and --to", options.recording.display()))
 }
 
 /// How a recording is filtered and sampled, by the rule or as asked for.
 fn bandwidth(
-    options: &RecordingOptions,
+    options: &Source,
+    sampling: &Sampling,
     trajectories: &[Trajectory],
     joints: usize,
 ) -> Result<(Preparation, ObserveSettings), Failure> {
-    let (band, cutoff) = match options.sampling.band {
-        Some(band) => (band, cutoff_of(band, trajectories)),
+    let (band, cutoff) = match sampling.band {
+        Some(band) => (band, Bandwidth::cutoff_of(band, trajectories)),
         None => {
             let chosen = choose_bandwidth(trajectories)
                 .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
             (chosen.band, Some(chosen.cutoff))
         }
     };
-    let preparation = Preparation { cutoff: options.sampling.cutoff.or(cutoff), ..Preparation::default() };
-    Ok((preparation, options.sampling.settings(joints, band)))
-}
-
-/// The rows of a trajectory within a window of time; `None` where there is none.
-fn cropped(trajectory: &Trajectory, [from, to]: [f64; 2]) -> Option<Trajectory> {
-    let first = trajectory.time.partition_point(|&t| t < from);
-    let last = trajectory.time.partition_point(|&t| t <= to);
-    if first >= last {
-        return None;
-    }
-    let cut = |channel: &Vec<Vec<f64>>| channel.iter().map(|c| c[first..last].to_vec()).collect();
-    Some(Trajectory {
-        name: trajectory.name.clone(),
-        time: trajectory.time[first..last].to_vec(),
-        position: cut(&trajectory.position),
-        velocity: trajectory.velocity.as_ref().map(cut),
-        torque: cut(&trajectory.torque),
-        fixed: trajectory.fixed.clone(),
-    })
-}
-
-/// The position filter that goes with a band at the slowest trajectory's rate; `None` where no rate is known.
-fn cutoff_of(band: f64, trajectories: &[Trajectory]) -> Option<f64> {
-    let rate = |t: &Trajectory| match (t.time.first(), t.time.last()) {
-        (Some(first), Some(last)) if last > first => Some((t.time.len() - 1) as f64 / (last - first)),
-        _ => None,
-    };
-    trajectories.iter().filter_map(rate).min_by(f64::total_cmp).map(|rate| Bandwidth::cutoff_for(band, rate))
+    let preparation = Preparation { cutoff: sampling.rows.cutoff.or(cutoff), ..Preparation::default() };
+    Ok((preparation, sampling.settings(joints, band)))
 }
 
 /// What the observation refuses, as the end of a command.

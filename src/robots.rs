@@ -30,7 +30,9 @@ impl Dynamics {
 
 /// Finds a robot by the name of a generated model or by the path of a YAML.
 ///
-/// A relative path is looked for from the working directory and from `beside`, the folder of the recording.
+/// `beside` is the folder of the recording that names the robot: a relative path is looked for there and nowhere else,
+/// so that a recording means the same robot from every working directory. Without it the path comes from the command
+/// line and is relative to the working directory.
 ///
 /// # Errors
 /// [`Failure::Input`] with every mistake of the YAML as `file:line:col: message`, or with the known names.
@@ -43,18 +45,35 @@ pub fn resolve(name: &str, beside: Option<&Path>) -> Result<Dynamics, Failure> {
         return Err(unknown(name));
     }
     let path = path_of(name, beside);
-    let robot = read(&path)?;
-    let model =
-        RecursiveModel::new(robot).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
+    if beside.is_some() && !path.is_file() && Path::new(name).is_file() {
+        return Err(Failure::Input(format!(
+            "{}: there is no such file: a robot is looked for beside the recording that names it. There is a {name} in the \
+             working directory: --robot {name} takes it",
+            path.display()
+        )));
+    }
+    recursive(read(&path)?, &path.display().to_string())
+}
+
+/// The recursive engine for a robot; `named` is what a person knows it by.
+///
+/// # Errors
+/// [`Failure::Input`] where the engine does not take it.
+pub fn recursive(robot: Robot, named: &str) -> Result<Dynamics, Failure> {
+    let model = RecursiveModel::new(robot).map_err(|error| Failure::Input(format!("{named}: {error}")))?;
     Ok(Dynamics::Recursive(Box::new(model)))
 }
 
-/// The path that is meant by a relative one: from the working directory where such a file is there, else from `beside`.
+/// The path that is meant: a relative one is looked for in the folder of the recording, where there is one.
 pub fn path_of(name: &str, beside: Option<&Path>) -> PathBuf {
-    let direct = PathBuf::from(name);
-    match beside.map(|folder| folder.join(name)) {
-        Some(joined) if !direct.is_file() => joined,
-        _ => direct,
+    beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name))
+}
+
+/// How a robot that was found is found again: its name, or the path of its YAML.
+pub fn found_again(dynamics: &Dynamics, name: &str, beside: Option<&Path>) -> String {
+    match dynamics {
+        Dynamics::Generated(model) => model.robot().name.to_string(),
+        Dynamics::Recursive(_) => path_of(name, beside).display().to_string(),
     }
 }
 

@@ -88,6 +88,8 @@ fn wrong_input_ends_with_status_2_and_says_where() {
     assert_refused(&folder.run(&["identify", "motion.csv"]), 2, &["not a recording YAML"]);
     assert_refused(&folder.run(&["identify", "recording.yaml", "--from", "3", "--to", "2"]), 2, &["--from"]);
     assert_refused(&folder.run(&["identify", "recording.yaml", "--band", "nan"]), 2, &["band"]);
+    assert_refused(&folder.run(&["diagnose", "recording.yaml", "--band", "nan"]), 2, &["band"]);
+    assert_refused(&folder.run(&["diagnose", "recording.yaml", "--standstill", "1,2,3"]), 2, &["3", "2"]);
     assert_refused(
         &folder.run(&["validate", "recording.yaml", "recording.yaml"]),
         2,

@@ -12,12 +12,14 @@ use dynid_runtime::estimation::{
     Bandwidth, Estimate, EstimateSettings, Method, choose_bandwidth, estimate, relative_error,
 };
 use dynid_runtime::model::Model;
-use dynid_runtime::recording::{Manifest, load};
+use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
+use dynid_runtime::recording::{Manifest, Trajectory, load};
 use dynid_runtime::signal::{Motion, Preparation, prepare};
 
 /// A recording with the band that is chosen for it, or `None` where it is absent.
 struct Recorded {
     model: &'static dyn Model,
+    trajectories: Vec<Trajectory>,
     motions: Vec<Motion>,
     bandwidth: Bandwidth,
 }
@@ -34,7 +36,7 @@ fn recorded(name: &str, bandwidth: Option<Bandwidth>) -> Option<Recorded> {
     let bandwidth = bandwidth.unwrap_or_else(|| choose_bandwidth(&trajectories).unwrap());
     let preparation = Preparation { cutoff: Some(bandwidth.cutoff), ..Preparation::default() };
     let motions = trajectories.iter().map(|t| prepare(t, &preparation).unwrap()).collect();
-    Some(Recorded { model, motions, bandwidth })
+    Some(Recorded { model, trajectories, motions, bandwidth })
 }
 
 impl Recorded {
@@ -49,6 +51,19 @@ impl Recorded {
     fn torque(&self, windows: &[[f64; 2]], standstill: Standstill) -> Observation {
         let settings = ObserveSettings { windows: windows.to_vec(), standstill, ..self.settings() };
         self.observe(Equations::Torque, &settings)
+    }
+
+    fn within(&self, window: [f64; 2]) -> Vec<Trajectory> {
+        self.trajectories.iter().filter_map(|t| t.within(window)).collect()
+    }
+
+    /// The error of a model on motions, as `dynid validate` prints it.
+    fn judged(&self, estimate: &Estimate, motions: &[Trajectory], comparison: &Comparison) -> f64 {
+        let prepared = comparison.prepare(motions).unwrap();
+        let predictor = Predictor { chi: &estimate.chi(), effects: &[], delay: 0.0 };
+        let evaluation =
+            evaluate(self.model, &[predictor], &prepared.motions, &prepared.settings, &[]).unwrap();
+        evaluation.predictions[0].errors.relative_error
     }
 
     fn value(&self, estimate: &Estimate, name: &str) -> f64 {
@@ -98,18 +113,15 @@ fn the_tx40_is_identified_from_its_recording() {
 #[test]
 fn the_tx40_model_holds_on_later_motion() {
     let Some(tx40) = recorded("tx40/recording.yaml", None) else { return };
-    let error = |tx40: &Recorded, standstill: Standstill| {
-        let fitted = weighted(&tx40.torque(&[[0.0, 4.5]], standstill.clone()));
-        relative_error(&tx40.torque(&[[4.5, 7.4]], standstill), &fitted.chi())
-    };
-    let every_row = error(&tx40, Standstill::Keep);
-    println!("50 Hz, all rows {every_row:.4}");
-    assert!(every_row < 0.0875);
-    let narrow = Bandwidth { band: 25.0, cutoff: 100.0, noise: 0.0 };
-    let tx40 = recorded("tx40/recording.yaml", Some(narrow)).unwrap();
-    let moving = error(&tx40, Standstill::Automatic);
+    let fitted = weighted(&tx40.torque(&[[0.0, 4.5]], Standstill::Automatic));
+    let later = tx40.within([4.5, 7.4]);
+    let moving = tx40.judged(&fitted, &later, &Comparison::default());
     println!("25 Hz, moving rows {moving:.4}");
     assert!(moving < 0.075);
+    let every_row = Comparison { standstill: Standstill::Keep, ..Comparison::default() };
+    let every_row = tx40.judged(&fitted, &later, &every_row);
+    println!("25 Hz, all rows {every_row:.4}");
+    assert!(every_row < 0.0875);
 }
 
 #[test]
@@ -137,8 +149,9 @@ fn the_ur10e_is_predicted_on_other_motions() {
     let Some(train) = recorded("ur10e/train.yaml", None) else { return };
     let Some(test) = recorded("ur10e/test.yaml", Some(train.bandwidth)) else { return };
     let fitted = weighted(&train.torque(&[], Standstill::Automatic));
-    let moving = relative_error(&test.torque(&[], Standstill::Automatic), &fitted.chi());
-    let every_row = relative_error(&test.torque(&[], Standstill::Keep), &fitted.chi());
+    let moving = train.judged(&fitted, &test.trajectories, &Comparison::default());
+    let every_row = Comparison { standstill: Standstill::Keep, ..Comparison::default() };
+    let every_row = train.judged(&fitted, &test.trajectories, &every_row);
     println!("{:?}: moving rows {moving:.4}, all rows {every_row:.4}", train.bandwidth);
     assert!(moving <= 0.042);
     assert!(every_row <= 0.045);
@@ -148,7 +161,7 @@ fn the_ur10e_is_predicted_on_other_motions() {
 fn the_panda_is_predicted_on_its_last_two_fifths() {
     let Some(panda) = recorded("panda/recording.yaml", None) else { return };
     let fitted = weighted(&panda.torque(&[[0.3, 12.54]], Standstill::Automatic));
-    let error = relative_error(&panda.torque(&[[12.54, 20.7]], Standstill::Automatic), &fitted.chi());
+    let error = panda.judged(&fitted, &panda.within([12.54, 20.7]), &Comparison::default());
     println!("{:?}: {error:.4}", panda.bandwidth);
     assert!(error <= 0.013);
 }

@@ -6,12 +6,13 @@ use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
 use serde::{Deserialize, Serialize};
 
+use crate::hiding::{hide, of, plain};
 use crate::motions::{planned, recorded};
+use crate::put::Number;
 use crate::random::Random;
 use crate::secret::{Secret, is_change};
-use crate::size::{VISIBLE, magnitude};
+use crate::size::VISIBLE;
 use crate::visible::visible;
-use crate::world::{Number, World};
 use crate::{Case, Failure};
 
 /// An effect as it was hidden.
@@ -21,7 +22,7 @@ pub struct Hidden {
     pub effect: EffectKind,
     /// Joint that it must be named on; `None` for the whole robot's.
     pub joint: Option<usize>,
-    /// Its magnitude, see [`magnitude`].
+    /// Its magnitude, see [`crate::hiding::Hiding::counts`].
     pub magnitude: f64,
     /// Its torque relative to the noise, on the joint where it shows most.
     pub visible: f64,
@@ -73,7 +74,7 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
         let mut secret = Secret::draw(effect, model, taken, &mut random)
             .ok_or_else(|| format!("{} has no joint that can hide {}", case.robot, effect.id()))?;
         if let (EffectKind::TorqueSaturation, Some(joint)) = (effect, secret.joint) {
-            secret.most_torque = most_torque(&recorded(&World::plain(model)?, &motions, &[], noise)?, joint);
+            secret.most_torque = most_torque(&recorded(&plain(model)?, &motions, &[], noise)?, joint);
         }
         let (size, seen) = sized(model, &secret, VISIBLE[case.size], &motions[..1], noise)?;
         hidden.push(Hidden {
@@ -82,7 +83,7 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
             joint: secret.joint.filter(|_| effect != EffectKind::Payload),
             magnitude: size,
             visible: seen,
-            numbers: World::plain(model)?.hide(&secret, size)?,
+            numbers: hide(&mut plain(model)?, model, &secret, size)?,
         });
         secrets.push((secret, size));
     }
@@ -92,14 +93,13 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
 /// Simulates a case. `with_test`: a motion for a test as well.
 pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Result<Recordings, Failure> {
     let Drawn { hidden, secrets, motions, count, length, noise, mut random } = draw(model, case)?;
-    let plain = World::plain(model)?;
-    let mut world = World::plain(model)?;
+    let mut world = plain(model)?;
     for (secret, size) in &secrets {
-        world.hide(secret, *size)?;
+        hide(&mut world, model, secret, *size)?;
     }
     let change = case.effects.iter().any(|&e| is_change(e));
     let baseline = if change {
-        recorded(&plain, &planned(model, count, length, &mut random)?, &[], noise.wrapping_add(100))?
+        recorded(&plain(model)?, &planned(model, count, length, &mut random)?, &[], noise.wrapping_add(100))?
     } else {
         Vec::new()
     };
@@ -109,9 +109,9 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
         // A contact belongs to the motion in which it happened.
         let lasting: Vec<(Secret, f64)> =
             secrets.iter().filter(|(s, _)| s.effect != EffectKind::Contact).cloned().collect();
-        let mut world = World::plain(model)?;
+        let mut world = plain(model)?;
         for (secret, size) in &lasting {
-            world.hide(secret, *size)?;
+            hide(&mut world, model, secret, *size)?;
         }
         test = recorded(&world, &planned, &lasting, noise.wrapping_add(200))?;
     }
@@ -132,10 +132,10 @@ fn sized(
     motions: &[ExcitingMotion],
     noise: u64,
 ) -> Result<(f64, f64), Failure> {
-    let without = recorded(&World::plain(model)?, motions, &[], noise)?;
+    let without = recorded(&plain(model)?, motions, &[], noise)?;
     let seen = |size: f64| -> Result<f64, Failure> {
-        let mut world = World::plain(model)?;
-        world.hide(secret, size)?;
+        let mut world = plain(model)?;
+        hide(&mut world, model, secret, size)?;
         let with = recorded(&world, motions, &[(secret.clone(), size)], noise)?;
         let joints = visible(model, &with, &without, is_change(secret.effect))?;
         let most = joints.into_iter().fold(0.0, f64::max);
@@ -144,7 +144,8 @@ fn sized(
         let lasts = without.first().and_then(|m| Some(m.time.last()? - m.time.first()?)).unwrap_or(0.0);
         Ok(if secret.effect == EffectKind::Contact { most * (lasts / (to - from)).sqrt() } else { most })
     };
-    let (_, start, most) = magnitude(secret.effect);
+    let hiding = of(secret.effect).ok_or("it is not in the table")?;
+    let (start, most) = (hiding.start, hiding.most);
     let far = |found: f64| (found.max(0.01) / wanted).ln().abs();
     let mut best = (start, seen(start)?);
     let mut last = best;

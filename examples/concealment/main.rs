@@ -8,15 +8,16 @@
 
 mod dump;
 mod hide;
+mod hiding;
 mod journal;
 mod motions;
 mod page;
+mod places;
+mod put;
 mod random;
 mod secret;
 mod size;
-mod torques;
 mod visible;
-mod world;
 
 use std::io::Write;
 use std::path::PathBuf;

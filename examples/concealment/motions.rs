@@ -5,19 +5,20 @@ use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::{
     ExcitationSettings, ExcitingMotion, MotionKind, Profile, excite,
 };
-use dynid_runtime::simulation::{LoopSettings, simulate};
+use dynid_runtime::simulation::{LoopSettings, World, simulate};
 
 use crate::Failure;
+use crate::hiding::of;
 use crate::random::Random;
 use crate::secret::Secret;
-use crate::world::{World, distort};
 use dynid_runtime::effects::EffectKind;
 
 /// Share of the limits that the motions use.
 pub const SHARE: f64 = 0.8;
-/// Control rate, Hz, and control samples for each recorded row.
-const RATE: f64 = 2000.0;
-const RECORD_EVERY: usize = 4;
+/// Control rate, Hz.
+pub const RATE: f64 = 2000.0;
+/// Control samples for each recorded row.
+pub const RECORD_EVERY: usize = 4;
 
 /// Random motions within the robot's limits, about `length` seconds each: Fourier series of 4 to 12 harmonics, or
 /// points that are joined by one of two profiles.
@@ -46,9 +47,14 @@ pub fn planned(
     Ok(motions)
 }
 
+/// What the k-th motion of a recording is called.
+pub fn name(k: usize) -> String {
+    format!("motion {}", k + 1)
+}
+
 /// Records a world on planned motions. Motions that are recorded with the same `noise` seed have the same noise.
 pub fn recorded(
-    world: &World,
+    world: &World<'_>,
     motions: &[ExcitingMotion],
     secrets: &[(Secret, f64)],
     noise: u64,
@@ -57,12 +63,14 @@ pub fn recorded(
     let mut all = Vec::new();
     for (k, motion) in motions.iter().enumerate() {
         let mut settings =
-            LoopSettings::nominal(world.model(), &world.known(), motion, RATE, noise.wrapping_add(k as u64));
+            LoopSettings::nominal(world.model(), &world.chi(), motion, RATE, noise.wrapping_add(k as u64));
         settings.record_every = if late { 1 } else { RECORD_EVERY };
-        settings.name = format!("motion {}", k + 1);
-        let mut trajectory = simulate(&mut world.plant(k)?, motion, &settings, &mut |_| {})?.recorded;
+        settings.name = name(k);
+        let mut trajectory = simulate(&mut world.plant(&name(k))?, motion, &settings, &mut |_| {})?.recorded;
         for (secret, magnitude) in secrets {
-            distort(&mut trajectory, secret, *magnitude, RATE, RECORD_EVERY);
+            if let Some(hiding) = of(secret.effect) {
+                (hiding.distort)(&mut trajectory, secret, *magnitude);
+            }
         }
         all.push(trajectory);
     }

@@ -6,7 +6,8 @@ use dynid_runtime::effects::EffectKind;
 use dynid_runtime::report::significant;
 
 use crate::hide::Hidden;
-use crate::size::{SIZES, VISIBLE, magnitude};
+use crate::hiding;
+use crate::size::{SIZES, VISIBLE};
 use crate::{Case, Options, Outcome, Score};
 
 /// One row of input to the tables.
@@ -139,7 +140,13 @@ pub fn what_can_be_seen(
             })
             .collect();
         if cells.iter().any(|cell| cell != "-") {
-            let _ = writeln!(text, "| {} | {} | {} |", effect.id(), magnitude(effect).0, cells.join(" | "));
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} |",
+                effect.id(),
+                hiding::of(effect).map_or("", |h| h.counts),
+                cells.join(" | ")
+            );
         }
     }
     text
@@ -372,7 +379,8 @@ fn what_is_hidden(text: &mut String, effects: &[EffectKind]) {
     line(text, "| effect | magnitude | most |");
     line(text, "|---|---|---|");
     for &effect in effects {
-        let (what, _, most) = magnitude(effect);
+        let Some(hiding) = hiding::of(effect) else { continue };
+        let (what, most) = (hiding.counts, hiding.most);
         let _ = writeln!(text, "| {} | {what} | {most} |", effect.id());
     }
     text.push('\n');

@@ -2,9 +2,8 @@
 
 use dynid_runtime::diagnosis::{Diagnosis, Finding};
 use dynid_runtime::effects::EffectKind;
+use dynid_runtime::prediction::{Evaluation, JointRows};
 use dynid_runtime::report::{Panel, Sheet};
-
-use crate::tested::Seen;
 
 /// What every finding rests on: the residual over the variable that reveals it, and the law.
 pub fn findings(robot: &str, found: &Diagnosis) -> Option<String> {
@@ -41,28 +40,36 @@ fn revealing(finding: &Finding) -> Option<Panel> {
     })
 }
 
-/// What both models leave of the torques of the motion that took no part, joint by joint.
-pub fn held_out(robot: &str, seen: &Seen) -> String {
-    let panels = (0..seen.measured.len())
-        .map(|j| {
-            let left = |model: &[Vec<f64>]| -> Vec<(f64, f64)> {
-                let rest = seen.measured[j].iter().zip(&model[j]).map(|(y, m)| y - m);
-                seen.time.iter().copied().zip(rest).collect()
+/// The number of a joint (0-based) in the table.
+pub fn joint_number(compared: &Evaluation, joint: usize) -> String {
+    let number = compared.left_out.iter().find(|rows| rows.equation == joint).and_then(|rows| rows.joint);
+    number.map_or_else(String::new, |number| number.to_string())
+}
+
+/// What both models leave of the torques of the first test motion, joint by joint.
+pub fn held_out(robot: &str, compared: &Evaluation) -> String {
+    let first: Vec<&JointRows> = compared.rows.iter().filter(|rows| rows.trajectory == 0).collect();
+    let panels = first
+        .iter()
+        .map(|rows| {
+            let left = |model: &[f64]| -> Vec<(f64, f64)> {
+                let rest = rows.measured.iter().zip(model).map(|(y, m)| y - m);
+                rows.time.iter().copied().zip(rest).collect()
             };
+            let lines =
+                [("standard model", rows.predicted.first()), ("with what was found", rows.predicted.last())];
             Panel {
-                title: format!("joint {}, N.m", j + 1),
-                lines: vec![
-                    ("standard model".to_owned(), left(&seen.before)),
-                    ("with what was found".to_owned(), left(&seen.after)),
-                ],
+                title: format!("joint {}, N.m", joint_number(compared, rows.joint)),
+                lines: lines
+                    .into_iter()
+                    .filter_map(|(name, model)| Some((name.to_owned(), left(model?))))
+                    .collect(),
             }
         })
         .collect();
+    let motion = compared.trajectories.first().map_or("", |name| name.rsplit('/').next().unwrap_or(name));
     Sheet {
-        title: format!(
-            "{robot}: what is left of the torques of a motion that took no part ({})",
-            seen.motion
-        ),
+        title: format!("{robot}: what is left of the torques of a test motion ({motion})"),
         x: "time, s".to_owned(),
         columns: 2,
         panel: [460.0, 190.0],

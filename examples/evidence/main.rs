@@ -11,13 +11,15 @@ mod story;
 mod tested;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Parser;
 use dynid::robots::resolve;
 use dynid_runtime::diagnosis::{Settings, Silent, diagnose};
+use dynid_runtime::estimation::observe::{Equations, ObserveSettings, observe};
+use dynid_runtime::estimation::{EstimateSettings, choose_bandwidth, estimate};
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::{Manifest, Trajectory, load};
+use dynid_runtime::signal::{Preparation, prepare_all};
 
 use story::{Part, STORIES, Story, Told};
 
@@ -58,6 +60,21 @@ fn motions(model: &dyn Model, path: &Path) -> Result<Vec<Trajectory>, Failure> {
     Ok(load(&Manifest::read(path)?, model.robot())?.trajectories)
 }
 
+/// Base parameters as `dynid identify` finds them: the chosen band, weighted.
+fn identified(model: &dyn Model, motions: &[Trajectory]) -> Result<Vec<f64>, Failure> {
+    let chosen = choose_bandwidth(motions)?;
+    let preparation = Preparation { cutoff: Some(chosen.cutoff), ..Preparation::default() };
+    let (motions, _) = prepare_all(motions, &preparation)?;
+    let settings = ObserveSettings { band: chosen.band, ..ObserveSettings::default() };
+    let observation = observe(model, &motions, Equations::Torque, None, &settings, None)?;
+    Ok(estimate(&observation, &EstimateSettings::default()).chi())
+}
+
+/// The part of a motion within a window.
+fn within(motion: &Trajectory, window: [f64; 2]) -> Result<Trajectory, Failure> {
+    Ok(motion.within(window).ok_or("no row lies in the window")?)
+}
+
 /// Diagnoses one part of a recording and judges on the other.
 fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Failure> {
     let path = folder.join(story.recording);
@@ -70,19 +87,17 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
             let motion = all.first().ok_or("the recording has no motion")?;
             let (from, to) = (motion.time[0], motion.time[motion.time.len() - 1]);
             let cut = story.cut.unwrap_or(from + 0.6 * (to - from));
-            (vec![between(motion, from, cut)], vec![between(motion, cut, to + 1.0)])
+            (vec![within(motion, [from, cut])?], vec![within(motion, [cut, to])?])
         }
     };
-    let start = Instant::now();
     let found = diagnose(model, &fitted, &[], &Settings::default(), &Silent)?;
-    let seconds = start.elapsed().as_secs_f64();
-    let counted = tested::errors(model, &found, &fitted, &test)?;
+    let standard = identified(model, &fitted)?;
+    let compared = tested::compared(model, &standard, &found, &test)?;
     let mut pictures = Vec::new();
     if let Some(out) = out {
-        let seen = tested::seen(model, &found, &test[0])?;
         for (name, svg) in [
             ("findings", figures::findings(story.title, &found)),
-            ("held_out", (!found.findings.is_empty()).then(|| figures::held_out(story.title, &seen))),
+            ("held_out", (!found.findings.is_empty()).then(|| figures::held_out(story.title, &compared))),
         ] {
             if let Some(svg) = svg {
                 let file = format!("evidence_{}_{name}.svg", story.robot);
@@ -93,53 +108,38 @@ fn tell(folder: &Path, story: &Story, out: Option<&Path>) -> Result<String, Fail
     }
     let parts: Vec<Part> =
         story.parts.iter().map(|&span| part(model, &path, span)).collect::<Result<_, _>>()?;
-    Ok(story::told(&Told {
-        story,
-        found: &found,
-        counted: &counted,
-        pictures: &pictures,
-        parts: &parts,
-        seconds,
-    }))
+    Ok(story::told(&Told { story, found: &found, compared: &compared, pictures: &pictures, parts: &parts }))
 }
 
 /// Diagnoses one part of a single motion and judges on what comes before and after it.
 fn part(model: &dyn Model, path: &Path, span: (f64, f64)) -> Result<Part, Failure> {
     let all = motions(model, path)?;
     let motion = all.first().ok_or("the recording has no motion")?;
-    let fitted = [between(motion, span.0, span.1)];
+    let fitted = [within(motion, [span.0, span.1])?];
     let found = diagnose(model, &fitted, &[], &Settings::default(), &Silent)?;
     let (first, last) = (motion.time[0], motion.time[motion.time.len() - 1]);
     let rest: Vec<Trajectory> = [(first, span.0), (span.1, last)]
         .into_iter()
         .filter(|(from, to)| to - from > SHORTEST_REST)
-        .map(|(from, to)| between(motion, from, to))
+        .filter_map(|(from, to)| motion.within([from, to]))
         .collect();
-    let counted = if rest.is_empty() { Vec::new() } else { tested::errors(model, &found, &fitted, &rest)? };
+    let errors = if rest.is_empty() {
+        None
+    } else {
+        let standard = identified(model, &fitted)?;
+        let compared = tested::compared(model, &standard, &found, &rest)?;
+        compared
+            .predictions
+            .first()
+            .zip(compared.predictions.last())
+            .map(|(before, after)| [before.errors.relative_error, after.errors.relative_error])
+    };
     let named = found.findings.iter().map(|f| {
         let on: Vec<String> = f.joints.iter().map(ToString::to_string).collect();
         format!("{}@{}", f.effect, on.join("+"))
     });
-    Ok(Part {
-        span,
-        named: named.collect(),
-        rest: counted.first().map(|c| [c.before.relative_error, c.after.relative_error]),
-    })
+    Ok(Part { span, named: named.collect(), rest: errors })
 }
 
 /// Shortest rest that is worth a prediction, s.
 const SHORTEST_REST: f64 = 1.0;
-
-/// The part of a motion between two times.
-fn between(motion: &Trajectory, from: f64, to: f64) -> Trajectory {
-    let keep: Vec<usize> = (0..motion.time.len()).filter(|&k| (from..to).contains(&motion.time[k])).collect();
-    let pick = |x: &Vec<f64>| keep.iter().map(|&k| x[k]).collect::<Vec<f64>>();
-    Trajectory {
-        name: format!("{} {from:.2} to {to:.2} s", motion.name),
-        time: pick(&motion.time),
-        position: motion.position.iter().map(pick).collect(),
-        velocity: motion.velocity.as_ref().map(|v| v.iter().map(pick).collect()),
-        torque: motion.torque.iter().map(pick).collect(),
-        ..motion.clone()
-    }
-}

@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 
 use dynid_runtime::diagnosis::{Diagnosis, Finding};
 use dynid_runtime::effects::EffectKind;
+use dynid_runtime::prediction::{Evaluation, above_noise};
 use dynid_runtime::report::{percent, significant};
 
-use crate::tested::Counted;
+use crate::figures::joint_number;
 
 /// A recording and how it is divided.
 pub struct Story {
@@ -26,7 +27,9 @@ pub struct Story {
     pub recorded: &'static str,
     /// How it is divided.
     pub divided: &'static str,
-    /// What is aimed at: which way of counting, and the largest ratio or error.
+    /// The commands that print the figures.
+    pub commands: &'static [&'static str],
+    /// What is aimed at.
     pub goal: Option<Goal>,
 }
 
@@ -51,6 +54,12 @@ pub const STORIES: [Story; 3] = [
         recorded: "A single exciting motion of 7.4 s at 5 kHz, motor angles and motor torques (public repository \
                    figaroh-examples).",
         divided: "Diagnosed on 0.05 to 4.5 s, judged on 4.5 to 7.4 s.",
+        commands: &[
+            "dynid identify tx40/recording.yaml --to 4.5 --out standard.json",
+            "dynid diagnose tx40/recording.yaml --to 4.5 --out found.json",
+            "dynid validate standard.json tx40/recording.yaml --from 4.5",
+            "dynid validate found.json tx40/recording.yaml --from 4.5",
+        ],
         goal: Some(Goal::Ratio(0.68)),
     },
     Story {
@@ -63,6 +72,12 @@ pub const STORIES: [Story; 3] = [
         recorded: "Exciting motions at about 95 Hz with jittery stamps; the torque is the motor current times the \
                    published drive gains (public repository dynamic_calibration).",
         divided: "Diagnosed on three motions of 21 to 42 s, judged on two other motions, one of them recorded a week later.",
+        commands: &[
+            "dynid identify ur10e/train.yaml --out standard.json",
+            "dynid diagnose ur10e/train.yaml --test ur10e/test.yaml --out found.json",
+            "dynid validate standard.json ur10e/test.yaml",
+            "dynid validate found.json ur10e/test.yaml",
+        ],
         goal: Some(Goal::Error(0.026)),
     },
     Story {
@@ -70,11 +85,17 @@ pub const STORIES: [Story; 3] = [
         title: "Franka Emika Panda",
         recording: "recording.yaml",
         test: None,
-        cut: None,
+        cut: Some(12.54),
         parts: &[],
         recorded: "A single exciting motion of 20 s at 1 kHz. Its torque sensors sit behind the gears, so that there is \
                    next to no drive physics to be missed: a check for false alarms.",
-        divided: "Diagnosed on the first 60 % of the motion, judged on the rest.",
+        divided: "Diagnosed on the first 60 % of the motion (up to 12.54 s), judged on the rest.",
+        commands: &[
+            "dynid identify panda/recording.yaml --to 12.54 --out standard.json",
+            "dynid diagnose panda/recording.yaml --to 12.54 --out found.json",
+            "dynid validate standard.json panda/recording.yaml --from 12.54",
+            "dynid validate found.json panda/recording.yaml --from 12.54",
+        ],
         goal: None,
     },
 ];
@@ -85,14 +106,13 @@ pub struct Told<'a> {
     pub story: &'a Story,
     /// What was found.
     pub found: &'a Diagnosis,
-    /// Errors on the part that took no part.
-    pub counted: &'a [Counted],
+    /// The standard model as it is identified, that of the diagnosis, and the model with the findings on the part that
+    /// took no part.
+    pub compared: &'a Evaluation,
     /// Name and file of each figure.
     pub pictures: &'a [(&'static str, String)],
     /// What the other parts say.
     pub parts: &'a [Part],
-    /// Time of the diagnosis, s.
-    pub seconds: f64,
 }
 
 /// What one part of a recording says when it is diagnosed for itself.
@@ -122,7 +142,7 @@ pub fn page(stories: &[String]) -> String {
 
 /// One story.
 pub fn told(told: &Told<'_>) -> String {
-    let Told { story, found, counted, .. } = told;
+    let Told { story, found, compared, .. } = told;
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = writeln!(text, "## {}\n\n{} {}\n", story.title, story.recorded, story.divided);
@@ -133,7 +153,7 @@ pub fn told(told: &Told<'_>) -> String {
         named(&mut text, told);
         shifts(&mut text, found);
     }
-    proof(&mut text, story, counted, picture(told, "held_out"));
+    proof(&mut text, story, compared, picture(told, "held_out"));
     parts(&mut text, told.parts);
     open(&mut text, found);
     text
@@ -148,10 +168,9 @@ fn located(text: &mut String, told: &Told<'_>) {
     let _ = writeln!(
         text,
         "### Where the standard model fails\n\nOn the part that is diagnosed the standard model leaves {} in sample. {} \
-         candidates, each an effect at a place with all of its shapes, were tried in {} s.\n",
+         candidates, each an effect at a place with all of its shapes, were tried.\n",
         percent(found.before.relative_error),
-        found.tried,
-        significant(told.seconds, 2)
+        found.tried
     );
     text.push_str("| joint | error of the standard model | share of what is unexplained | where it lives |\n|---|---|---|---|\n");
     for m in &found.mismatch {
@@ -227,51 +246,73 @@ fn shifts(text: &mut String, found: &Diagnosis) {
     text.push('\n');
 }
 
-fn proof(text: &mut String, story: &Story, counted: &[Counted], picture: Option<&str>) {
-    text.push_str("### The part that took no part\n\n| rows | standard model | with what was found | ratio |\n|---|---|---|---|\n");
-    for c in counted {
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {:.2} |",
-            c.how,
-            percent(c.before.relative_error),
-            percent(c.after.relative_error),
-            c.ratio()
-        );
-    }
-    let Some(first) = counted.first() else { return };
+/// The models of an evaluation, in its order.
+const MODELS: [&str; 3] = [
+    "standard model, `dynid identify`",
+    "standard model of the diagnosis, skew taken out",
+    "with what was found",
+];
+
+fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Option<&str>) {
     let _ = writeln!(
         text,
-        "\nJoint by joint, {}:\n\n| joint | standard model | with what was found |\n|---|---|---|",
-        first.how
+        "### The part that took no part\n\n```\n{}\n```\n\n{} equations of {} Hz bandwidth, {} left out where the joint \
+         hardly moves: the same for every model.\n",
+        story.commands.join("\n"),
+        compared.used(),
+        significant(compared.band, 3),
+        compared.standing()
     );
-    for (j, (before, after)) in first.before.per_joint.iter().zip(&first.after.per_joint).enumerate() {
-        let _ = writeln!(text, "| {} | {} | {} |", j + 1, percent(*before), percent(*after));
+    text.push_str("| model | error | above the noise | ratio |\n|---|---|---|---|\n");
+    let whole = |k: usize| compared.predictions.get(k).map_or(f64::NAN, |p| p.errors.relative_error);
+    for (k, (name, prediction)) in MODELS.iter().zip(&compared.predictions).enumerate() {
+        let above =
+            compared.noise.as_ref().map(|noise| above_noise(&prediction.errors, noise).relative_error);
+        let _ = writeln!(
+            text,
+            "| {name} | {} | {} | {:.2} |",
+            percent(whole(k)),
+            above.map_or_else(|| "-".to_owned(), percent),
+            whole(k) / whole(0)
+        );
+    }
+    if let Some(noise) = &compared.noise {
+        let _ = writeln!(text, "\nNoise of the torques in this band: {}.", percent(noise.relative_error));
+    }
+    text.push_str("\n| joint | standard model | with what was found | noise |\n|---|---|---|---|\n");
+    let (Some(first), Some(last)) = (compared.predictions.first(), compared.predictions.last()) else {
+        return;
+    };
+    for (j, (before, after)) in first.errors.per_joint.iter().zip(&last.errors.per_joint).enumerate() {
+        let noise = compared.noise.as_ref().and_then(|n| n.per_joint.get(j));
+        let noise = noise.map_or_else(|| "-".to_owned(), |n| percent(*n));
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {noise} |",
+            joint_number(compared, j),
+            percent(*before),
+            percent(*after)
+        );
     }
     if let Some(file) = picture {
         let _ = writeln!(text, "\n![what is left of the torques]({file})");
     }
-    let words = match story.goal {
-        None => None,
-        Some(Goal::Ratio(most)) => {
-            let reached = if first.ratio() <= most { "reached" } else { "missed" };
-            Some(format!(
-                "The goal was a ratio of {most} at most; here it is {:.2}: {reached}.",
-                first.ratio()
-            ))
-        }
-        Some(Goal::Error(most)) => {
-            let reached = if first.after.relative_error <= most { "reached" } else { "missed" };
-            Some(format!(
-                "The goal was an error of {} at most; here it is {}: {reached}.",
-                percent(most),
-                percent(first.after.relative_error)
-            ))
-        }
+    goal(text, story, first.errors.relative_error, last.errors.relative_error);
+}
+
+/// Whether the goal was reached, in the figures of the table.
+fn goal(text: &mut String, story: &Story, before: f64, after: f64) {
+    let (what, most, is) = match story.goal {
+        None => return,
+        Some(Goal::Ratio(most)) => ("a ratio", most.to_string(), (after / before, most)),
+        Some(Goal::Error(most)) => ("an error", percent(most), (after, most)),
     };
-    if let Some(words) = words {
-        let _ = writeln!(text, "\n{words}");
-    }
+    let reached = if is.0 <= is.1 { "reached" } else { "missed" };
+    let here = match story.goal {
+        Some(Goal::Error(_)) => percent(is.0),
+        Some(Goal::Ratio(_)) | None => format!("{:.2}", is.0),
+    };
+    let _ = writeln!(text, "\nThe goal was {what} of {most} at most; here it is {here}: {reached}.");
 }
 
 fn parts(text: &mut String, parts: &[Part]) {
@@ -279,8 +320,8 @@ fn parts(text: &mut String, parts: &[Part]) {
         return;
     }
     text.push_str(
-        "\n### The same on other parts\n\nEach part is diagnosed for itself; the rest of the recording is predicted, on \
-         rows where the joint moves, at 25 Hz.\n\n| part | named | rest, standard model | rest, with what was found |\n|---|---|---|---|\n",
+        "\n### The same on other parts\n\nEach part is diagnosed for itself; the rest of the recording is predicted, as \
+         above.\n\n| part | named | rest, standard model | rest, with what was found |\n|---|---|---|---|\n",
     );
     for part in parts {
         let rest = part.rest.map(|r| r.map(percent));
@@ -294,7 +335,7 @@ fn open(text: &mut String, found: &Diagnosis) {
     text.push_str("\n### What stays open\n\n");
     let _ = writeln!(
         text,
-        "{} of the squared error that remains on held-back motion is more than noise.",
+        "{} of the squared error that remains on held-out motion is more than noise.",
         percent(found.unexplained.share)
     );
     for c in &found.cannot_tell {

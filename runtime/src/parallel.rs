@@ -36,6 +36,7 @@ pub(crate) fn map<T: Send>(threads: usize, count: usize, work: impl Fn(usize) ->
 }
 
 /// The same for work that changes the items of a list in place.
+#[cfg(any(test, feature = "diagnosis"))]
 pub(crate) fn for_each<T: Send>(threads: usize, items: &mut [T], work: impl Fn(&mut T) + Sync) {
     let threads = threads_for(threads, items.len());
     if threads <= 1 {

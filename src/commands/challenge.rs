@@ -4,20 +4,20 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use dynid_runtime::diagnosis::{
-    Diagnosis, Estimated, Progress, Settings, diagnose, fit_known, predict_errors, slowest_speeds,
-};
+use dynid_runtime::diagnosis::scoring::{Hidden, LEAST_GAP, Naming, Scored, TestErrors, label};
+use dynid_runtime::diagnosis::{Diagnosis, Progress, Settings, diagnose, fit_known};
 use dynid_runtime::effects::{EffectKind, EffectTerm};
-use dynid_runtime::model::Model;
+use dynid_runtime::model::{JointNumber, Model};
+use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
 use dynid_runtime::recording::{Manifest, Trajectory, load};
 use dynid_runtime::report::{percent, significant};
 
-use super::diagnose::diagnosis_failure;
+use crate::errors::prediction_failure;
 use crate::failure::{Failure, file_failure};
 use crate::output::{Bar, print, table, write_json};
 use crate::recorded::recording_failure;
 use crate::robots::{Dynamics, resolve};
-use crate::scoring::{Hidden, LEAST_GAP, Naming, Scored, TestErrors, joint_index, label, read_truth};
+use crate::truth::read_truth;
 
 /// Which cases, and where the score goes.
 #[derive(Debug, Args)]
@@ -186,7 +186,7 @@ impl Case {
         Ok(score.judge(hidden.is_some()))
     }
 
-    /// Errors on the motion that was kept apart.
+    /// Errors on the test recording, of all models on the same rows.
     fn errors(
         &self,
         found: &Diagnosis,
@@ -194,28 +194,41 @@ impl Case {
         settings: &Settings,
     ) -> Result<TestErrors, Failure> {
         let model = self.model();
+        let file = self.folder.join("test.yaml");
+        let comparison = Comparison { threads: settings.threads, ..Comparison::default() };
+        let test = comparison
+            .prepare(&self.motions("test.yaml")?)
+            .map_err(|error| prediction_failure(&file, &error))?;
+        let known = self.with_known(hidden, settings)?;
+        let (terms, true_terms) = (found.terms(), known.as_ref().map(Diagnosis::terms).unwrap_or_default());
+        let none: &[EffectTerm] = &[];
+        let mut models = vec![
+            Predictor { chi: &found.standard.chi, effects: none, delay: found.delay },
+            Predictor { chi: &found.model.chi, effects: &terms, delay: found.delay },
+        ];
+        if let Some(known) = &known {
+            models.push(Predictor { chi: &known.model.chi, effects: &true_terms, delay: known.delay });
+        }
+        let evaluation = evaluate(model, &models, &test.motions, &test.settings, &[])
+            .map_err(|error| prediction_failure(&file, &error))?;
+        let error = |k: usize| evaluation.predictions.get(k).map(|p| p.errors.relative_error);
+        Ok(TestErrors {
+            before: error(0).unwrap_or_default(),
+            after: error(1).unwrap_or_default(),
+            true_effect: error(2),
+        })
+    }
+
+    /// The true effects, fitted. Effects that cannot be fitted leave the case to be judged by naming.
+    fn with_known(&self, hidden: &[Hidden], settings: &Settings) -> Result<Option<Diagnosis>, Failure> {
+        if hidden.is_empty() {
+            return Ok(None);
+        }
         let (motions, baseline) = (self.motions("recording.yaml")?, self.baseline()?);
-        let test = self.motions("test.yaml")?;
-        let failed = |error| diagnosis_failure(&self.folder.join("test.yaml"), &error);
-        let slowest = slowest_speeds(model, &motions, settings).map_err(failed)?;
-        let error = |parameters: &Estimated, terms: &[EffectTerm], delay: f64| {
-            predict_errors(model, parameters, terms, delay, &test, &slowest, settings)
-                .map(|errors| errors.relative_error)
-        };
-        let before = error(&found.standard, &[], found.delay).map_err(failed)?;
-        let after = error(&found.model, &found.terms(), found.delay).map_err(failed)?;
-        let true_effect = if hidden.is_empty() {
-            None
-        } else {
-            // Effects that cannot be fitted leave the case to be judged by naming.
-            let joint = |h: &Hidden| joint_index(model.robot(), *h.joints.first()?);
-            let effects: Vec<(EffectKind, Option<usize>)> =
-                hidden.iter().map(|h| (h.effect, joint(h))).collect();
-            fit_known(model, &motions, &baseline, &effects, settings)
-                .and_then(|known| error(&known.model, &known.terms(), known.delay))
-                .ok()
-        };
-        Ok(TestErrors { before, after, true_effect })
+        let robot = self.model().robot();
+        let joint = |h: &Hidden| Some(robot.joint_index(JointNumber(*h.joints.first()?))?.0);
+        let effects: Vec<(EffectKind, Option<usize>)> = hidden.iter().map(|h| (h.effect, joint(h))).collect();
+        Ok(fit_known(self.model(), &motions, &baseline, &effects, settings).ok())
     }
 }
 
@@ -313,7 +326,7 @@ fn details(name: &str, diagnosed: &Diagnosed) -> String {
         text.push_str(&format!("\n  joint {}: {} of the mismatch, {}", m.joint, percent(m.share), m.where_));
     }
     text.push_str(&format!(
-        "\n  held back ({}) {} -> {}, skew {} ms, unexplained {}",
+        "\n  held out ({}) {} -> {}, skew {} ms, unexplained {}",
         found.held_out.how,
         percent(found.held_out.before),
         percent(found.held_out.after),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
-use dynid_runtime::model::{Model, ParameterKind, Robot};
+use dynid_runtime::model::{JointIndex, Model, ParameterKind, Robot};
 use dynid_runtime::recording::{self, Trajectory};
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, MotionKind, excite};
@@ -26,7 +26,7 @@ pub(super) struct Arguments {
     seed: u64,
 }
 
-/// Motions that are recorded; the last one is kept apart.
+/// Motions that are recorded; the last one is the test recording.
 const MOTIONS: u64 = 4;
 /// Control rate, Hz, and control samples for each recorded row.
 const RATE: f64 = 2000.0;
@@ -44,24 +44,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let hidden = hidden_effect(model.robot(), &nominal.standard, arguments.seed);
     print(&format!(
         "A Staubli TX-40 is simulated in closed loop: {MOTIONS} motions of 8 s. Its joints hide some physics that the\n\
-         standard model does not have. The last motion is kept apart.\n"
+         standard model does not have. The last motion is the test recording.\n"
     ));
     let motions = simulated(model, &chi, &hidden, arguments.seed)?;
     let (fit, test) = motions.split_at(motions.len() - 1);
     let folder = |name: &str| arguments.out.join(name);
     save(&folder("fit"), model.robot(), "simulated TX-40", fit)?;
-    save(&folder("test"), model.robot(), "simulated TX-40, a motion kept apart", test)?;
+    save(&folder("test"), model.robot(), "simulated TX-40, a test motion", test)?;
 
     let text = |path: PathBuf| path.display().to_string();
     let recording = text(folder("fit").join("recording.yaml"));
-    let kept_apart = text(folder("test").join("recording.yaml"));
+    let test_recording = text(folder("test").join("recording.yaml"));
     let standard = text(folder("standard.json"));
     let improved = text(folder("improved.json"));
     let report = text(folder("report.html"));
     step(&["identify", &recording, "--out", &standard])?;
-    step(&["validate", &standard, &kept_apart])?;
-    step(&["diagnose", &recording, "--test", &kept_apart, "--out", &improved, "--report", &report])?;
-    step(&["validate", &improved, &kept_apart])?;
+    step(&["validate", &standard, &test_recording])?;
+    step(&["diagnose", &recording, "--test", &test_recording, "--out", &improved, "--report", &report])?;
+    step(&["validate", &improved, &test_recording])?;
 
     let amplitude = significant(hidden.amplitude[0], 3);
     let shape: Vec<String> = hidden.shape.iter().map(|x| significant(*x, 3)).collect();
@@ -98,7 +98,7 @@ fn hidden_effect(robot: &Robot, standard: &[f64], seed: u64) -> EffectTerm {
     EffectTerm {
         effect,
         place: Place::Joint(joint),
-        joints: vec![joint + 1],
+        joints: vec![robot.joint_number(JointIndex(joint)).0],
         shape,
         amplitude: vec![amplitude],
         sigma: vec![0.0],

@@ -1,34 +1,38 @@
-//! `dynid diagnose REC`: which physics is missing, where, and does adding it help on motion that was held back?
+//! `dynid diagnose REC`: which physics is missing, where, and does adding it help on held-out motion?
+
+mod compare;
+mod reference;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose, term_torques};
-use dynid_runtime::estimation::{Identified, NamedParameter};
-use dynid_runtime::model::{Model, Robot, torques};
-use dynid_runtime::recording::Trajectory;
-use dynid_runtime::report::{percent, significant};
-use dynid_runtime::signal::Motion;
-
-use super::validate::{known_parameters, prediction, read_model};
-use crate::failure::Failure;
-use crate::output::{Bar, print, table, write, write_json};
-use crate::pages::diagnosis::{Extras, KeptApart, confidence_words, joint_words, page};
-use crate::recorded::{Measured, RecordingOptions, left_out_words, measure, read};
+use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
+use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
+
+use crate::arguments::{DiagnosisOptions, Source};
+use crate::failure::Failure;
+use crate::output::{Bar, print, write, write_json};
+use crate::pages::diagnosis::{Extras, page};
+use crate::pages::diagnosis_summary::summary;
+use crate::recorded::{Measured, left_out_words, measure};
+use crate::words::joint_number;
+use compare::{fitted, tested};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    recording: RecordingOptions,
+    recording: Source,
+    #[command(flatten)]
+    sampling: DiagnosisOptions,
     /// A recording of the same robot before it changed: only what changed is looked for
     #[arg(long)]
     baseline: Option<PathBuf>,
     /// A model of the same robot before it changed, saved by `identify` or `diagnose`: only what changed is looked for
     #[arg(long, conflicts_with = "baseline")]
     reference: Option<PathBuf>,
-    /// A recording that takes no part in the diagnosis: the errors on it are reported before and after
+    /// A test recording, which takes no part in the diagnosis: the errors on it are reported before and after
     #[arg(long)]
     test: Option<PathBuf>,
     /// Simulate the identified robot along the recorded motion without and with the findings, however long the
@@ -46,34 +50,33 @@ pub(super) struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// Band in which models with effects are compared on other recordings unless another is asked for, Hz: that of the
-/// diagnosis' faster rows.
-const BAND: f64 = 25.0;
-
 /// Motion that is simulated without being asked for, s.
 const QUICK: f64 = 30.0;
 
 /// Diagnoses, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let measured = measure(&arguments.recording)?;
+    let source = &arguments.recording;
+    let measured = measure(source)?;
     let model = measured.dynamics.model();
     let baseline = match (&arguments.baseline, &arguments.reference) {
-        (Some(path), _) => measure(&other(&arguments.recording, path))?.trajectories,
-        (None, Some(path)) => as_the_reference(path, &arguments.recording)?,
+        (Some(path), _) => measure(&source.other(path))?.trajectories,
+        (None, Some(path)) => reference::as_the_reference(path, source, &arguments.sampling)?,
         (None, None) => Vec::new(),
     };
+    let settings = settings(&arguments.sampling, model.robot().joints());
     let bar = Bar::new("diagnosis");
-    let outcome = diagnose(model, &measured.trajectories, &baseline, &Settings::default(), &bar);
+    let outcome = diagnose(model, &measured.trajectories, &baseline, &settings, &bar);
     drop(bar);
-    let diagnosis = outcome.map_err(|error| diagnosis_failure(&arguments.recording.recording, &error))?;
-    let standard = saved(model.robot(), &arguments.recording, &diagnosis, false);
-    let improved = saved(model.robot(), &arguments.recording, &diagnosis, true);
-    let kept_apart = match &arguments.test {
-        Some(path) => Some(tested(&other(&arguments.recording, path), &standard, &improved)?),
-        None => None,
+    let diagnosis = outcome.map_err(|error| diagnosis_failure(&source.recording, &error))?;
+    let extras = Extras {
+        fitted: fitted(&measured, &diagnosis, &arguments.sampling),
+        tested: match &arguments.test {
+            Some(path) => Some(tested(&source.other(path), &diagnosis, &arguments.sampling)?),
+            None => None,
+        },
+        forward: simulated(&measured, &diagnosis, arguments.closed_loop),
+        joints: (0..model.robot().joints()).map(|j| joint_number(model.robot(), j)).collect(),
     };
-    let forward = simulated(&measured, &diagnosis, arguments.closed_loop);
-    let extras = Extras { kept_apart, forward };
     if arguments.json.as_deref() != Some(Path::new("-")) {
         print(&summary(&measured, &diagnosis, &extras));
     }
@@ -81,7 +84,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         write_json(path, &for_programs(&diagnosis, &extras)?)?;
     }
     if let Some(path) = &arguments.out {
-        write_json(path, &improved)?;
+        write_json(path, &improved(&measured, &diagnosis, &extras))?;
     }
     if let Some(path) = &arguments.report {
         write(path, &page(&measured.title, &diagnosis, &extras, &left_out_words(&measured.rows)))?;
@@ -89,39 +92,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The motions of the recording with the torques that a reference model gives them: what the robot would have been
-/// recorded with before it changed.
-fn as_the_reference(path: &Path, options: &RecordingOptions) -> Result<Vec<Trajectory>, Failure> {
-    let reference = read_model(path)?;
-    let recorded = read(options)?;
-    let model = recorded.dynamics.model();
-    let chi = known_parameters(&reference, model, path)?;
-    recorded
-        .motions
-        .iter()
-        .map(|motion| {
-            let effects = term_torques(model, &chi, &reference.effects, motion)
-                .map_err(|error| diagnosis_failure(path, &error))?;
-            Ok(predicted(model, &chi, motion, effects))
-        })
-        .collect()
-}
-
-/// A motion with the torques of chi added to `torque`.
-fn predicted(model: &dyn Model, chi: &[f64], motion: &Motion, mut torque: Vec<Vec<f64>>) -> Trajectory {
-    let modelled = torques(model, chi, motion.state_slices().states());
-    for (torque, modelled) in torque.iter_mut().flatten().zip(modelled.iter().flatten()) {
-        *torque += modelled;
-    }
-    let samples = motion.q.first().map_or(0, Vec::len);
-    Trajectory {
-        name: format!("{} as the reference model has it", motion.name),
-        time: (0..samples).map(|t| motion.start + t as f64 / motion.rate).collect(),
-        position: motion.q.clone(),
-        velocity: None,
-        torque,
-        fixed: motion.fixed.clone(),
-    }
+/// The settings of a diagnosis as they were asked for.
+fn settings(options: &DiagnosisOptions, joints: usize) -> Settings {
+    let mut settings = Settings::default();
+    settings.band = options.band;
+    settings.cutoff = options.cutoff;
+    settings.standstill_speeds = options.speeds(joints);
+    settings.threads = options.threads;
+    settings
 }
 
 /// The recording by forward simulation, where there is something to compare and the recording is short or it was
@@ -141,14 +119,13 @@ fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<
     )
 }
 
-/// The same options for another recording of the robot, over all of its time.
-fn other(options: &RecordingOptions, path: &Path) -> RecordingOptions {
-    RecordingOptions { recording: path.to_path_buf(), from: None, to: None, ..options.clone() }
-}
-
 /// What a diagnosis refuses, as the end of a command.
 pub(crate) fn diagnosis_failure(recording: &Path, error: &DiagnosisError) -> Failure {
-    Failure::Data(format!("{}: {error}", recording.display()))
+    let words = format!("{}: {error}", recording.display());
+    match error {
+        DiagnosisError::Setting { .. } | DiagnosisError::StandstillSpeeds { .. } => Failure::Input(words),
+        _ => Failure::Data(words),
+    }
 }
 
 impl Progress for Bar {
@@ -157,150 +134,74 @@ impl Progress for Bar {
     }
 }
 
-/// The standard model, or the model with the findings, in the form that `validate` reads.
-fn saved(
-    robot: &Robot,
-    options: &RecordingOptions,
-    diagnosis: &Diagnosis,
-    with_findings: bool,
-) -> Identified {
-    let (estimated, errors) = if with_findings {
-        (&diagnosis.model, &diagnosis.after)
-    } else {
-        (&diagnosis.standard, &diagnosis.before)
-    };
-    let base_parameters = robot
+/// The model with the findings, in the form that `validate` and `simulate` read.
+fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Identified {
+    let robot = measured.dynamics.model().robot();
+    let estimated = &diagnosis.model;
+    let parameters = robot
         .base
         .iter()
         .zip(estimated.chi.iter().zip(&estimated.sigma))
         .map(|(base, (&value, &sigma))| NamedParameter {
             name: base.name.to_string(),
             value,
-            sigma: Some(sigma),
+            sigma: Some(sigma).filter(|s| s.is_finite() && *s > 0.0),
             relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
             sigma_blocks: None,
             unit: base.unit.to_string(),
         })
         .collect();
-    Identified {
-        robot: options.robot.clone().unwrap_or_else(|| robot.name.to_string()),
-        method: "diagnosis".to_owned(),
-        samples: diagnosis.rows,
-        relative_error: errors.relative_error,
-        per_joint: errors.per_joint.clone(),
-        power_relative_error: None,
-        base_parameters,
-        essential_parameters: None,
-        condition_number: 0.0,
-        rows_left_out: 0,
+    let own = || EvaluatedRows {
+        samples: measured.trajectories.iter().map(|t| t.time.len()).sum(),
+        rows_left_out: None,
         equations: Vec::new(),
-        band: options.sampling.band.unwrap_or(BAND),
-        warnings: Vec::new(),
-        effects: if with_findings { diagnosis.terms() } else { Vec::new() },
+        band: diagnosis.sampling.band,
+        errors: diagnosis.after.clone(),
+        noise: None,
+    };
+    let mut rows = extras.fitted.as_ref().and_then(|e| EvaluatedRows::evaluated(e, 1)).unwrap_or_else(own);
+    rows.rows_left_out = Some(measured.rows.rows.left_out);
+    Identified {
+        effects: diagnosis.terms(),
+        delay: diagnosis.delay,
+        ..Identified::with_parameters(robot, &measured.robot, "diagnosis", rows, parameters)
     }
-}
-
-/// The errors of both models on a recording that took no part.
-fn tested(
-    options: &RecordingOptions,
-    standard: &Identified,
-    improved: &Identified,
-) -> Result<KeptApart, Failure> {
-    let mut options = options.clone();
-    options.sampling.band = Some(standard.band);
-    let recorded = read(&options)?;
-    let errors = |model: &Identified| prediction(&recorded, model, &options.recording).map(|p| p.errors);
-    Ok(KeptApart { name: recorded.title.clone(), before: errors(standard)?, after: errors(improved)? })
 }
 
 /// The JSON of the contract: everything but the curves that only a plot needs.
 fn for_programs(diagnosis: &Diagnosis, extras: &Extras) -> Result<serde_json::Value, Failure> {
     let mut value = serde_json::to_value(diagnosis)
         .map_err(|error| Failure::Data(format!("the result cannot be written as JSON: {error}")))?;
-    if let Some(object) = value.as_object_mut() {
-        object.remove("series");
-        object.remove("spectra");
-        if let Some(test) = &extras.kept_apart {
-            object.insert(
-                "test".to_owned(),
-                serde_json::json!({
-                    "recording": test.name,
-                    "before": test.before.0, "after": test.after.0,
-                    "per_joint_before": test.before.1, "per_joint_after": test.after.1,
-                }),
-            );
+    let Some(object) = value.as_object_mut() else { return Ok(value) };
+    object.remove("series");
+    object.remove("spectra");
+    if let Some(evaluation) = &extras.fitted {
+        for (key, prediction) in ["before", "after"].into_iter().zip(&evaluation.predictions) {
+            let mut errors = serde_json::json!(prediction.errors);
+            errors["band"] = evaluation.band.into();
+            object.insert(key.to_owned(), errors);
         }
-        let forward = match &extras.forward {
-            Some(Ok(run)) => serde_json::to_value(run).ok(),
-            Some(Err(reason)) => Some(serde_json::json!({ "not_simulated": reason })),
-            None => None,
-        };
-        if let Some(forward) = forward {
-            object.insert("closed_loop".to_owned(), forward);
-        }
+    }
+    if let Some(test) = &extras.tested
+        && let [before, after] = test.evaluation.predictions.as_slice()
+    {
+        let test = serde_json::json!({
+            "recording": test.name,
+            "band": test.evaluation.band,
+            "rows": test.evaluation.used(),
+            "noise": test.evaluation.noise.as_ref().map(|noise| noise.relative_error),
+            "before": before.errors.relative_error, "after": after.errors.relative_error,
+            "per_joint_before": before.errors.per_joint, "per_joint_after": after.errors.per_joint,
+        });
+        object.insert("test".to_owned(), test);
+    }
+    let forward = match &extras.forward {
+        Some(Ok(run)) => serde_json::to_value(run).ok(),
+        Some(Err(reason)) => Some(serde_json::json!({ "not_simulated": reason })),
+        None => None,
+    };
+    if let Some(forward) = forward {
+        object.insert("closed_loop".to_owned(), forward);
     }
     Ok(value)
-}
-
-fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> String {
-    let mut text = format!("{}: {}\n", diagnosis.robot, measured.title);
-    for line in left_out_words(&measured.rows) {
-        text.push_str(&format!("{line}\n"));
-    }
-    text.push('\n');
-    for sentence in &diagnosis.verdict {
-        text.push_str(&format!("{sentence}\n"));
-    }
-    let mut rows = vec![
-        vec![
-            "fitted motion".to_owned(),
-            percent(diagnosis.before.relative_error),
-            percent(diagnosis.after.relative_error),
-        ],
-        vec![
-            format!("held back ({})", diagnosis.held_out.how),
-            percent(diagnosis.held_out.before),
-            percent(diagnosis.held_out.after),
-        ],
-    ];
-    if let Some(test) = &extras.kept_apart {
-        rows.push(vec![format!("kept apart ({})", test.name), percent(test.before.0), percent(test.after.0)]);
-    }
-    if let Some(Ok(run)) = &extras.forward {
-        rows.push(vec!["by forward simulation".to_owned(), percent(run.before), percent(run.after)]);
-    }
-    text.push('\n');
-    text.push_str(&table(&["<relative error of the torques", "before", "after"], rows));
-    if let Some(Err(reason)) = &extras.forward {
-        text.push_str(&format!("\n{reason}"));
-    }
-    for finding in &diagnosis.findings {
-        text.push_str(&format!("\n\n{} on {}\n", finding.effect, joint_words(&finding.joints)));
-        text.push_str(&format!("  {}\n", finding.sentence));
-        let numbers: Vec<String> = finding
-            .parameters
-            .iter()
-            .map(|(name, p)| {
-                let sigma =
-                    if p.sigma > 0.0 { format!(" +- {}", significant(p.sigma, 2)) } else { String::new() };
-                format!("{name} {}{sigma} {}", significant(p.value, 4), p.unit)
-            })
-            .collect();
-        text.push_str(&format!("  {}\n", numbers.join(", ")));
-        text.push_str(&format!(
-            "  held-out error of its joints {} -> {}, {}",
-            percent(finding.held_out_before),
-            percent(finding.held_out_after),
-            confidence_words(finding.confidence)
-        ));
-    }
-    for c in &diagnosis.cannot_tell {
-        text.push_str(&format!(
-            "\n\ncannot tell {} on {} apart: {}",
-            c.between.join(" and "),
-            joint_words(&c.joints),
-            c.experiment
-        ));
-    }
-    text
 }

@@ -8,12 +8,13 @@ use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{
     Criterion, ExcitationPlan, ExcitationSettings, Identification, excite,
 };
-use dynid_runtime::simulation::{Reference, check_standard};
+use dynid_runtime::simulation::{Reference, check_standard, to_csv};
 
 use crate::failure::Failure;
-use crate::motions::{MotionOptions, to_csv, to_svg};
+use crate::motions::{MotionOptions, to_svg};
 use crate::output::{Bar, make_folder, print, table, write};
 use crate::robots::resolve;
+use crate::words::joint_number;
 
 /// What to search, and where to put it.
 #[derive(Debug, Args)]
@@ -129,7 +130,7 @@ fn summary(robot: &Robot, plan: &ExcitationPlan, arguments: &Arguments) -> Strin
         .iter()
         .enumerate()
         .map(|(k, motion)| {
-            let fixed: Vec<String> = motion.fixed().iter().map(|j| (j + 1).to_string()).collect();
+            let fixed: Vec<String> = motion.fixed().iter().map(|&j| joint_number(robot, j)).collect();
             let mut row = vec![
                 (k + 1).to_string(),
                 significant(motion.duration(), 3),

@@ -4,22 +4,25 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::estimation::observe::{Equations, Observation};
-use dynid_runtime::estimation::{
-    Estimate, EstimateSettings, Identified, Method, NamedParameter, Observed, estimate, per_equation,
-    relative_error,
-};
+use dynid_runtime::estimation::{Estimate, EstimateSettings, Method, estimate};
+use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
+use dynid_runtime::prediction::observed_errors;
 use dynid_runtime::report::{percent, significant};
 
+use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
 use crate::output::{print, table, write, write_json};
-use crate::plausibility;
-use crate::recorded::{self, Recorded, RecordingOptions, left_out_words, observe_failure};
+use crate::recorded::{self, Recorded, left_out_words, observe_failure};
+use crate::verdict;
+use crate::words::joint_number;
 
 /// What to identify and where to put it.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    recording: RecordingOptions,
+    recording: Source,
+    #[command(flatten)]
+    sampling: Sampling,
     /// idim-ols, idim-wls, pim-ols, pim-wls; robust idim-irls, pim-irls; total least squares idim-tls, pim-tls
     #[arg(long, default_value = "idim-wls")]
     method: Method,
@@ -58,7 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let equations: &[Equations] =
         if arguments.method.is_power() { &[power, Equations::Torque] } else { &[Equations::Torque] };
     let recorded::Observed { recorded, observations, whole } =
-        recorded::read_observed(&arguments.recording, equations)?;
+        recorded::read_observed(&arguments.recording, &arguments.sampling, equations)?;
     let (identified, estimate) = identify(&recorded, &observations, arguments)?;
     if arguments.json.as_deref() != Some(Path::new("-")) {
         print(&summary(&recorded, &identified, &estimate, arguments));
@@ -116,23 +119,13 @@ fn identify(
                 &weighted
             }
         };
-        warnings.extend(plausibility::check(path, recorded, torques, of_torques)?);
+        warnings.extend(verdict::check(path, recorded, torques, of_torques)?);
     }
     let chi = estimate.chi();
-    let errors = (relative_error(torques, &chi), per_equation(torques, &chi));
-    let mut identified = Identified::new(
-        model.robot(),
-        &recorded.robot,
-        &Observed {
-            samples: observation.samples,
-            trajectories: &observation.trajectories,
-            left_out: &observation.left_out,
-            settings,
-        },
-        &estimate,
-        errors,
-        recorded.rows.rows.left_out,
-    );
+    let errors = observed_errors(torques, &chi);
+    let mut rows = EvaluatedRows::observed(observation, settings.band, &estimate, errors);
+    rows.rows_left_out = Some(recorded.rows.rows.left_out);
+    let mut identified = Identified::new(model.robot(), &recorded.robot, rows, &estimate);
     identified.warnings.extend(warnings);
     Ok((identified, estimate))
 }
@@ -154,7 +147,7 @@ fn summary(
         identified.samples,
         estimate.rows,
         significant(identified.band, 3),
-        significant(identified.condition_number, 3),
+        identified.condition_number.map_or_else(|| "unknown".to_owned(), |c| significant(c, 3)),
     ));
     text.push_str(&parameters(robot, identified, arguments.base));
     if let Some(essential) = &identified.essential_parameters {
@@ -173,11 +166,12 @@ fn summary(
         text.push_str(&format!("\n\nrelative error of the power {}", percent(power)));
     }
     text.push_str(&format!(
-        "\n\nrelative error of the torques {}; per joint:",
-        percent(identified.relative_error)
+        "\n\nrelative error of the torques {} in the {} Hz band; per joint:",
+        percent(identified.relative_error),
+        significant(identified.band, 3)
     ));
     for (joint, error) in identified.per_joint.iter().enumerate() {
-        text.push_str(&format!(" {}: {}", joint + 1, percent(*error)));
+        text.push_str(&format!(" {}: {}", joint_number(robot, joint), percent(*error)));
     }
     for warning in &identified.warnings {
         text.push_str(&format!("\nwarning: {warning}"));

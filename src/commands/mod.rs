@@ -38,7 +38,7 @@ enum Command {
     Identify(identify::Arguments),
     /// Predict the torques of a recording with an identified model
     Validate(validate::Arguments),
-    /// Find out which physics is missing, where, and whether adding it helps on motion that was held back
+    /// Find out which physics is missing, where, and whether adding it helps on held-out motion
     Diagnose(diagnose::Arguments),
     /// Diagnose recordings with hidden effects, then read what was hidden and keep score
     Challenge(challenge::Arguments),

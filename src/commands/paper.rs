@@ -11,12 +11,14 @@ use dynid_runtime::paper::{Campaign, CampaignError, Case, CaseResult, PaperSetti
 use dynid_runtime::report::{Panel, Sheet};
 use dynid_runtime::signal::{Motion, Preparation, prepare};
 
+use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
 use crate::motions::check_size;
 use crate::output::{Bar, make_folder, print, table, write, write_page};
 use crate::paper_tables::{Results, Rows};
-use crate::recorded::{RecordingOptions, Sampling, read};
+use crate::recorded::read;
 use crate::robots::resolve;
+use crate::words::joint_number;
 
 /// Simulated or recorded, and where to write.
 #[derive(Debug, Args)]
@@ -144,16 +146,9 @@ fn run_seeds(
 }
 
 fn recorded(path: PathBuf, settings: &PaperSettings, arguments: &Arguments) -> Result<(), Failure> {
-    let sampling = Sampling {
-        band: Some(settings.observe.band),
-        rate: None,
-        cutoff: None,
-        standstill: Vec::new(),
-        all_rows: false,
-        threads: 0,
-    };
-    let options = RecordingOptions { recording: path, robot: None, from: None, to: None, sampling };
-    let recorded = read(&options)?;
+    let sampling = Sampling { band: Some(settings.observe.band), ..Sampling::default() };
+    let options = Source::whole(path);
+    let recorded = read(&options, &sampling)?;
     let model = recorded.dynamics.model();
     let failed = |error| crate::recorded::observe_failure(&options.recording, &error);
     let settings = PaperSettings { observe: recorded.settings.clone(), ..settings.clone() };
@@ -257,7 +252,10 @@ fn figure(
             for result in &shown {
                 lines.push((format!("case {}", result.case.number()), curve(&rows.predict(&result.chi))));
             }
-            Panel { title: format!("torque of joint {}, N.m", rows.equation + 1), lines }
+            Panel {
+                title: format!("torque of joint {}, N.m", joint_number(model.robot(), rows.equation)),
+                lines,
+            }
         })
         .collect();
     let sheet = Sheet {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::effects::EffectTerm;
-use dynid_runtime::estimation::Identified;
-use dynid_runtime::model::{Model, Robot};
+use dynid_runtime::model::{JointIndex, JointNumber, Model, Robot};
+use dynid_runtime::model_file::{Identified, to_yaml};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
@@ -14,11 +14,12 @@ use dynid_runtime::simulation::{
     check_standard, simulate,
 };
 
-use super::validate::read_model;
-use crate::failure::Failure;
+use crate::failure::{Failure, file_failure};
 use crate::motions::{MotionOptions, check_size, read as read_motions};
-use crate::output::{Bar, make_folder, print, table};
-use crate::robots::resolve;
+use crate::output::{Bar, make_folder, print, table, write};
+use crate::robots::{Dynamics, resolve};
+use crate::saved::{known_parameters, own_dynamics, read_model};
+use crate::words::joint_number;
 
 /// What to simulate, and where to put it.
 #[derive(Debug, Args)]
@@ -84,10 +85,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         check_size(option, size)?;
     }
     let saved = saved_model(&arguments.robot)?;
-    let name = saved.as_ref().map_or(arguments.robot.as_str(), |identified| identified.robot.as_str());
-    let dynamics = resolve(name, Path::new(&arguments.robot).parent())?;
+    let dynamics = match &saved {
+        Some(identified) => own_dynamics(identified, Path::new(&arguments.robot))?,
+        None => resolve(&arguments.robot, None)?,
+    };
     let model = dynamics.model();
     let robot = model.robot();
+    if let Some(words) = missing(robot, saved.is_some(), arguments.follow.is_some()) {
+        return Err(Failure::Input(words));
+    }
     let parameters = parameters(robot, saved.as_ref(), &arguments.robot)?;
     let chi = match &parameters {
         Parameters::Standard(standard) => robot.base_from_standard(standard),
@@ -115,10 +121,53 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(bar);
     let trajectories: Vec<_> = runs.iter().map(|run| run.recorded.clone()).collect();
     let title = format!("closed-loop simulation of {}, seed {}", robot.name, arguments.seed);
-    let path = recording::write(&arguments.out, robot, name, &title, &trajectories)
+    let name = named_in_recording(&dynamics, arguments, saved.is_some())?;
+    let path = recording::write(&arguments.out, robot, &name, &title, &trajectories)
         .map_err(|error| Failure::Input(error.to_string()))?;
     print(&summary(&path, &runs));
     Ok(())
+}
+
+/// Everything that a robot's YAML lacks for a simulation, at once.
+fn missing(robot: &Robot, saved: bool, followed: bool) -> Option<String> {
+    let mut needed = Vec::new();
+    if robot.nominal.is_none() && !saved {
+        needed.push(
+            "`nominal:` with the standard parameters (a model saved by `identify` needs none)".to_owned(),
+        );
+    }
+    if !followed {
+        let limits = &robot.limits;
+        let empty = [
+            ("position", limits.position.is_empty()),
+            ("velocity", limits.velocity.is_empty()),
+            ("acceleration", limits.acceleration.is_empty()),
+        ];
+        let names: Vec<&str> = empty.iter().filter(|(_, empty)| *empty).map(|(name, _)| *name).collect();
+        if !names.is_empty() {
+            needed.push(format!("`limits:` with {} (--follow needs none)", names.join(", ")));
+        }
+    }
+    (!needed.is_empty())
+        .then(|| format!("{} cannot be simulated: its YAML lacks {}", robot.name, needed.join(" and ")))
+}
+
+/// How the recording names its robot: by name where it is generated, else by the path of a YAML beside the recording: a
+/// copy of the one that was given, or the model's own table.
+fn named_in_recording(dynamics: &Dynamics, arguments: &Arguments, saved: bool) -> Result<String, Failure> {
+    let given = Path::new(&arguments.robot);
+    let (name, text) = match dynamics {
+        Dynamics::Generated(model) => return Ok(model.robot().name.to_string()),
+        Dynamics::Recursive(model) if saved => ("robot.yaml".to_owned(), to_yaml(model.robot())),
+        Dynamics::Recursive(_) => {
+            let text = std::fs::read_to_string(given)
+                .map_err(|error| file_failure("read the robot", given, &error))?;
+            let name = given.file_name().map(|name| name.to_string_lossy().into_owned());
+            (name.unwrap_or_else(|| "robot.yaml".to_owned()), text)
+        }
+    };
+    write(&arguments.out.join(&name), text.trim_end())?;
+    Ok(format!("./{name}"))
 }
 
 fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
@@ -131,9 +180,7 @@ fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
 
 fn parameters(robot: &Robot, saved: Option<&Identified>, name: &str) -> Result<Parameters, Failure> {
     if let Some(identified) = saved {
-        let chi = identified.chi(robot).map_err(|missing| {
-            Failure::Input(format!("{name}: it has no {missing}: it was identified for another robot"))
-        })?;
+        let chi = known_parameters(identified, robot, Path::new(name))?;
         return Ok(Parameters::Base(chi, identified.effects.clone()));
     }
     let Some(nominal) = &robot.nominal else {
@@ -180,7 +227,8 @@ fn plant<'m>(
 ) -> Result<Plant<'m>, Failure> {
     let robot = model.robot();
     let failed = |error: SimulationError| Failure::Input(error.to_string());
-    let elastic = arguments.elastic.iter().map(|text| elastic_joint(text)).collect::<Result<Vec<_>, _>>()?;
+    let elastic =
+        arguments.elastic.iter().map(|text| elastic_joint(robot, text)).collect::<Result<Vec<_>, _>>()?;
     let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
     match parameters {
         Parameters::Base(..) if !more => world.plant("").map_err(failed),
@@ -200,15 +248,23 @@ fn plant<'m>(
     }
 }
 
-fn elastic_joint(text: &str) -> Result<ElasticJoint, Failure> {
+fn elastic_joint(robot: &Robot, text: &str) -> Result<ElasticJoint, Failure> {
     let wrong = || Failure::Input(format!("--elastic {text}: expected JOINT:STIFFNESS[:DAMPING[:PLAY]]"));
     let mut fields = text.split(':');
-    let joint: usize = fields.next().and_then(|x| x.parse().ok()).filter(|&j| j > 0).ok_or_else(wrong)?;
+    let number: usize = fields.next().and_then(|x| x.parse().ok()).ok_or_else(wrong)?;
+    let JointIndex(joint) = robot.joint_index(JointNumber(number)).ok_or_else(|| {
+        let known: Vec<String> = (0..robot.joints()).map(|j| joint_number(robot, j)).collect();
+        Failure::Input(format!(
+            "--elastic {text}: the joints of {} are {}, not {number}",
+            robot.name,
+            known.join(", ")
+        ))
+    })?;
     let numbers: Vec<f64> = fields.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
     match numbers[..] {
-        [stiffness] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping: 0.0, play: 0.0 }),
-        [stiffness, damping] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play: 0.0 }),
-        [stiffness, damping, play] => Ok(ElasticJoint { joint: joint - 1, stiffness, damping, play }),
+        [stiffness] => Ok(ElasticJoint { joint, stiffness, damping: 0.0, play: 0.0 }),
+        [stiffness, damping] => Ok(ElasticJoint { joint, stiffness, damping, play: 0.0 }),
+        [stiffness, damping, play] => Ok(ElasticJoint { joint, stiffness, damping, play }),
         _ => Err(wrong()),
     }
 }

@@ -1,11 +1,12 @@
 //! The report of `identify`: the parameters, and the torques measured and predicted.
 
-use dynid_runtime::estimation::Identified;
 use dynid_runtime::estimation::observe::{Equations, ObserveError, ObserveSettings, Rows, observe};
 use dynid_runtime::model::Robot;
+use dynid_runtime::model_file::Identified;
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use crate::recorded::{Recorded, left_out_words};
+use crate::words::joint_number;
 
 /// The whole page. Where the recording is too long for its motions to be the whole of it, the torques are those of
 /// the first pieces.
@@ -20,13 +21,13 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
     let chi = identified.chi(robot).unwrap_or_else(|_| vec![0.0; robot.base.len()]);
 
     let mut page = Page::new(&format!("{}: {}", robot.name, recorded.title));
-    page.verdict(&verdict(identified));
+    page.verdict(&verdict(robot, identified));
     page.list(left_out_words(&recorded.rows));
     page.list(&identified.warnings);
     page.heading("Torques, measured and predicted");
     for rows in observation.rows.iter().flatten() {
         let name = &observation.trajectories[rows.trajectory];
-        page.plot(&torque_plot(rows, &chi, name, observation.trajectories.len() > 1));
+        page.plot(&torque_plot(robot, rows, &chi, name, observation.trajectories.len() > 1));
     }
     if !whole {
         page.note(
@@ -64,11 +65,15 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
     Ok(page.to_html())
 }
 
-fn verdict(identified: &Identified) -> String {
+fn verdict(robot: &Robot, identified: &Identified) -> String {
     let worst = (0..identified.per_joint.len())
         .max_by(|&a, &b| identified.per_joint[a].total_cmp(&identified.per_joint[b]));
     let worst = worst.map_or_else(String::new, |joint| {
-        format!(" The worst joint is {} with {}.", joint + 1, percent(identified.per_joint[joint]))
+        format!(
+            " The worst joint is {} with {}.",
+            joint_number(robot, joint),
+            percent(identified.per_joint[joint])
+        )
     });
     format!(
         "{} parameters identified with {}: the torques are reproduced with a relative error of {}.{worst}",
@@ -78,7 +83,7 @@ fn verdict(identified: &Identified) -> String {
     )
 }
 
-fn torque_plot(rows: &Rows, chi: &[f64], trajectory: &str, several: bool) -> Plot {
+fn torque_plot(robot: &Robot, rows: &Rows, chi: &[f64], trajectory: &str, several: bool) -> Plot {
     let predicted = rows.predict(chi);
     let curve = |values: &[f64]| -> Vec<(f64, f64)> {
         rows.time
@@ -88,7 +93,7 @@ fn torque_plot(rows: &Rows, chi: &[f64], trajectory: &str, several: bool) -> Plo
             .map(|((&t, &v), &used)| (t, if used { v } else { f64::NAN }))
             .collect()
     };
-    let mut title = format!("Joint {}", rows.equation + 1);
+    let mut title = format!("Joint {}", joint_number(robot, rows.equation));
     if several {
         title.push_str(&format!(", {trajectory}"));
     }

@@ -86,6 +86,7 @@ mod predict;
 mod preparation;
 mod rows;
 mod rules;
+pub mod scoring;
 mod search;
 mod settings;
 
@@ -95,7 +96,7 @@ pub use outcome::{
     ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, Small, StopReason, TorqueSeries,
     Unexplained,
 };
-pub use predict::{predict_errors, term_torques};
+pub use predict::term_torques;
 pub use preparation::slowest_speeds;
 pub use settings::{Progress, Settings, Silent};
 

@@ -14,7 +14,7 @@ pub struct Errors {
 
 impl Errors {
     /// From the squares of residual and torque, per joint.
-    pub(super) fn of_squares(left: &[f64], whole: &[f64]) -> Self {
+    pub(crate) fn of_squares(left: &[f64], whole: &[f64]) -> Self {
         let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
         Self {
             relative_error: ratio(left.iter().sum(), whole.iter().sum()),

@@ -17,6 +17,7 @@
 //! ```
 
 mod catalogue;
+mod check;
 mod compliance;
 mod contact;
 mod coupled;
@@ -31,6 +32,7 @@ mod shape;
 mod term;
 
 pub use catalogue::EffectKind;
+pub use check::TermError;
 pub use compliance::{Compliance, Transmission, deflection};
 pub use contact::{ContactForce, unit_force_torques};
 pub use coupled::CoupledRotor;

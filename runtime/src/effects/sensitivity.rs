@@ -75,8 +75,10 @@ pub fn derivable(robot: &crate::model::Robot) -> Result<RecursiveModel, Recursiv
 /// variant grows from nothing to `at` (missing values are 0).
 ///
 /// The values of `at` times these means add up to the whole change of the torque, however large it is.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Direction<'a> {
+    /// The effect whose numbers they are.
+    pub effect: &'a dyn Sensitivity,
     /// The numbers that may be wrong together.
     pub variants: &'a [Variant],
     /// The one that the column is for.
@@ -99,8 +101,8 @@ impl Direction<'_> {
     }
 
     /// Moves the states to a point of the path from the point before.
-    fn advance_states(&self, effect: &dyn Sensitivity, point: usize, seeds: &mut Seeds<'_>) {
-        self.advance(effect, point, seeds, |seeds, moved| {
+    fn advance_states(&self, point: usize, seeds: &mut Seeds<'_>) {
+        self.advance(point, seeds, |seeds, moved| {
             for group in [&mut *seeds.q, &mut *seeds.dq, &mut *seeds.ddq] {
                 group.iter_mut().for_each(moved);
             }
@@ -108,8 +110,8 @@ impl Direction<'_> {
     }
 
     /// Moves the table and gravity.
-    fn advance_robot(&self, effect: &dyn Sensitivity, point: usize, seeds: &mut Seeds<'_>) {
-        self.advance(effect, point, seeds, |seeds, moved| {
+    fn advance_robot(&self, point: usize, seeds: &mut Seeds<'_>) {
+        self.advance(point, seeds, |seeds, moved| {
             seeds.gravity.iter_mut().for_each(moved);
             for row in seeds.rows.iter_mut() {
                 moved(&mut row.d);
@@ -120,7 +122,6 @@ impl Direction<'_> {
 
     fn advance(
         &self,
-        effect: &dyn Sensitivity,
         point: usize,
         seeds: &mut Seeds<'_>,
         each: impl Fn(&mut Seeds<'_>, &dyn Fn(&mut Dual)),
@@ -130,7 +131,7 @@ impl Direction<'_> {
             if e == 0.0 {
                 continue;
             }
-            effect.seed(variant, seeds);
+            self.effect.seed(variant, seeds);
             each(seeds, &|x| *x = Dual::new(x.value + share * e * x.slope, 0.0));
         }
     }
@@ -143,7 +144,6 @@ pub fn derivative(
     model: &RecursiveModel,
     gravity: [f64; 3],
     chi: &[f64],
-    effect: &dyn Sensitivity,
     direction: &Direction<'_>,
     states: [&[Vec<f64>]; 4],
     out: &mut [Vec<f64>],
@@ -164,9 +164,9 @@ pub fn derivative(
     let robots: Vec<(Vec<Link<Wide>>, [Wide; 3])> = (0..points)
         .map(|point| {
             let mut seeds = lanes[0].seeds(&mut rows, &mut pull);
-            direction.advance_robot(effect, point, &mut seeds);
+            direction.advance_robot(point, &mut seeds);
             let (mut rows, mut pull) = (seeds.rows.to_vec(), *seeds.gravity);
-            effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
+            direction.effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
             let links = robot.frames.iter().zip(&rows).map(|(f, r)| Link::new(f, &wide_row(r))).collect();
             (links, pull.map(wide))
         })
@@ -184,17 +184,10 @@ pub fn derivative(
             for lane in &mut lanes {
                 lane.states.iter_mut().flatten().for_each(|x| x.slope = 0.0);
                 let mut seeds = lane.seeds(&mut rows, &mut pull);
-                direction.advance_states(effect, point, &mut seeds);
-                effect.seed(variant, &mut seeds);
+                direction.advance_states(point, &mut seeds);
+                direction.effect.seed(variant, &mut seeds);
             }
-            for (group, packed) in packed.iter_mut().enumerate() {
-                for (j, x) in packed.iter_mut().enumerate() {
-                    let of = |part: fn(&Dual) -> f64| {
-                        Lanes::new(std::array::from_fn(|k| part(&lanes[k].states[group][j])))
-                    };
-                    *x = Dual::new(of(|x| x.value), of(|x| x.slope));
-                }
-            }
+            pack(&lanes, &mut packed);
             let [q, dq, ddq] = &packed;
             model.idm_with(links, *gravity, q, dq, ddq, &mut entries);
             for (j, series) in out.iter_mut().enumerate() {
@@ -206,6 +199,18 @@ pub fn derivative(
                     *x += slope / points as f64;
                 }
             }
+        }
+    }
+}
+
+/// Puts the samples side by side: `packed[group][j]` of q, dq, ddq.
+fn pack(lanes: &[Lane; LANES], packed: &mut [Vec<Wide>; 3]) {
+    for (group, packed) in packed.iter_mut().enumerate() {
+        for (j, x) in packed.iter_mut().enumerate() {
+            let of = |part: fn(&Dual) -> f64| {
+                Lanes::new(std::array::from_fn(|k| part(&lanes[k].states[group][j])))
+            };
+            *x = Dual::new(of(|x| x.value), of(|x| x.slope));
         }
     }
 }

@@ -69,8 +69,8 @@ fn columns_agree_with_differences_of_a_changed_robot() {
         for variant in effect.variants(&robot) {
             let mut out = vec![Vec::new(); 3];
             let signals = [&states[0], &states[1], &states[2], &states[3]].map(Vec::as_slice);
-            let alone = Direction { variants: &[variant], which: 0, at: &[] };
-            derivative(&model, robot.gravity, &chi, effect, &alone, signals, &mut out);
+            let alone = Direction { effect, variants: &[variant], which: 0, at: &[] };
+            derivative(&model, robot.gravity, &chi, &alone, signals, &mut out);
             let moved = |e: f64| {
                 let mut robot = robot.clone();
                 let (mut q, mut dq, mut ddq) = (q, dq, ddq);
@@ -129,8 +129,8 @@ fn means_along_the_path_add_up_to_the_whole_change_of_a_large_error() {
         let mut sum = vec![0.0; 3];
         for (which, e) in at.iter().enumerate() {
             let mut out = vec![Vec::new(); 3];
-            let direction = Direction { variants, which, at };
-            derivative(&model, robot.gravity, &chi, effect, &direction, signals, &mut out);
+            let direction = Direction { effect, variants, which, at };
+            derivative(&model, robot.gravity, &chi, &direction, signals, &mut out);
             sum.iter_mut().zip(&out).for_each(|(s, o)| *s += e * o[0]);
         }
         sum

@@ -32,6 +32,16 @@ impl Bandwidth {
     pub fn cutoff_for(band: f64, rate: f64) -> f64 {
         (2.0 * band).min(Preparation::default_cutoff(rate))
     }
+
+    /// The position filter for a given band at the rate of the slowest trajectory; `None` where no rate is known.
+    pub fn cutoff_of(band: f64, trajectories: &[Trajectory]) -> Option<f64> {
+        let rate = |t: &Trajectory| match (t.time.first(), t.time.last()) {
+            (Some(first), Some(last)) if last > first => Some((t.time.len() - 1) as f64 / (last - first)),
+            _ => None,
+        };
+        let slowest = trajectories.iter().filter_map(rate).min_by(f64::total_cmp);
+        slowest.map(|rate| Self::cutoff_for(band, rate))
+    }
 }
 
 /// Chooses the widest band, up to 50 Hz, in which noise makes up at most 1 % of the power of the accelerations.

@@ -6,8 +6,9 @@ use super::observe::{Equations, Observation};
 use super::outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning};
 use super::robust::reweight;
 use super::solve::{Solution, back_substitute};
-use super::total::total_least_squares;
+use super::total::{NoGenericSolution, total_least_squares};
 use super::weights::{Weights, equal, from_own_fits, iterate, residual_norm, solve_active, stack};
+use crate::model::JointNumber;
 
 /// How parameters are estimated from an observation.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,11 +71,11 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
     if settings.solver == Solver::Total {
         let exact: Vec<bool> = active.iter().map(|&l| observation.exact[l]).collect();
         match total_least_squares(&stacked, &exact) {
-            Some(chi) => {
+            Ok(chi) => {
                 solution.residual_norm = stacked.residual_norm(&chi);
                 solution.chi = chi;
             }
-            None => warnings.push(Warning::NoTotalSolution),
+            Err(NoGenericSolution) => warnings.push(Warning::NoTotalSolution),
         }
     }
 
@@ -95,7 +96,7 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
     let per_equation = per_equation(observation, &chi);
     for (equation, &relative_error) in per_equation.iter().enumerate() {
         if relative_error > 1.0 {
-            warnings.push(Warning::NotExplained { equation, relative_error });
+            warnings.push(Warning::NotExplained { joint: joint_of(observation, equation), relative_error });
         }
     }
     let essential =
@@ -139,7 +140,8 @@ fn settle(observation: &Observation, active: &[usize], own: Weights, warnings: &
     for (equation, (&before, &after)) in before.iter().zip(&after).enumerate() {
         if after > 1.0 && before < after {
             collapsed = true;
-            warnings.push(Warning::WeightCollapsed { equation, relative_error: after });
+            let joint = joint_of(observation, equation);
+            warnings.push(Warning::WeightCollapsed { joint, relative_error: after });
         }
     }
     if collapsed {
@@ -149,6 +151,11 @@ fn settle(observation: &Observation, active: &[usize], own: Weights, warnings: &
         warnings.push(Warning::NotConverged { iterations: iterated.iterations });
     }
     iterated
+}
+
+/// The joint whose torque an equation gives; `None` for the power model.
+fn joint_of(observation: &Observation, equation: usize) -> Option<JointNumber> {
+    observation.left_out.iter().find(|rows| rows.equation == equation).and_then(|rows| rows.joint)
 }
 
 fn spread(values: &[f64], active: &[usize], unknowns: usize) -> Vec<f64> {

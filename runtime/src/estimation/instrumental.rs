@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::observe::{Equations, ExtraColumns, Observation};
+use super::solve::RANK_TOLERANCE;
 use super::weights::stack;
 use crate::model::{Model, States};
 use crate::signal::Motion;
@@ -65,35 +66,87 @@ pub struct InstrumentalEstimate {
     pub sigma: Vec<f64>,
 }
 
+/// Why there is no estimate by instrumental variables.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InstrumentalError {
+    /// Not the inverse dynamic model.
+    #[error("instruments are those of the torque equations, and the observation is one of {found:?}")]
+    Equations {
+        /// What was observed.
+        found: Equations,
+    },
+    /// The extra columns are not one instrument per base parameter.
+    #[error(
+        "the observation has {found} extra columns; {needed} instruments are needed, one per base parameter"
+    )]
+    Instruments {
+        /// Extra columns of the observation.
+        found: usize,
+        /// Base parameters.
+        needed: usize,
+    },
+    /// An instrument that is zero or a combination of others.
+    #[error("the instrument of {parameter} is zero along the simulated motions, or a combination of others")]
+    DependentInstrument {
+        /// The base parameter.
+        parameter: String,
+    },
+    /// No instrument has anything in common with the column of a parameter.
+    #[error("no instrument is correlated with the column of {parameter}")]
+    NoInstrument {
+        /// The base parameter.
+        parameter: String,
+    },
+    /// Several columns have the same part in the instruments.
+    #[error("the instruments do not tell the parameters apart: their product with the columns is singular")]
+    Singular,
+}
+
 /// Solves ZT W chi = ZT Y for an observation whose extra columns are [`Instruments`], with one sigma per group of the
 /// observation (as of a weighted estimate's errors; all ones for no weights).
 ///
 /// No product of matrices is made: with the triangle of [Z W Y], ZT W = RzzT Rzw and ZT Y = RzzT rzy, so that
-/// Rzw chi = rzy. `None`: the instruments do not determine the parameters, or the observation has none.
-pub fn instrumental_variables(observation: &Observation, sigma: &[f64]) -> Option<InstrumentalEstimate> {
+/// Rzw chi = rzy.
+///
+/// # Errors
+/// An observation of the power model or without instruments; instruments that do not determine the parameters.
+pub fn instrumental_variables(
+    observation: &Observation,
+    sigma: &[f64],
+) -> Result<InstrumentalEstimate, InstrumentalError> {
     let k = observation.base;
-    if observation.equations != Equations::Torque || observation.unknowns.len() != 2 * k {
-        return None;
+    if observation.equations != Equations::Torque {
+        return Err(InstrumentalError::Equations { found: observation.equations });
+    }
+    if observation.unknowns.len() != 2 * k {
+        let found = observation.unknowns.len().saturating_sub(k);
+        return Err(InstrumentalError::Instruments { found, needed: k });
     }
     let order: Vec<usize> = (k..2 * k).chain(0..k).collect();
     let factor = stack(observation, sigma).select(&order);
+    let norms = factor.column_norms();
+    // Where an instrument adds nothing to those before it, its row of R says nothing about the instruments.
+    if let Some(l) = (0..k).find(|&l| factor.r(l, l).abs() <= RANK_TOLERANCE * norms[l]) {
+        return Err(InstrumentalError::DependentInstrument { parameter: observation.unknowns[l].clone() });
+    }
     let cross = DMatrix::from_fn(k, k, |i, l| factor.r(i, k + l));
     let y = DMatrix::from_fn(k, 1, |i, _| factor.r(i, 2 * k));
     let scale: Vec<f64> = cross.column_iter().map(|c| c.norm()).collect();
-    if scale.contains(&0.0) {
-        return None;
+    if let Some(l) = scale.iter().position(|&norm| norm == 0.0) {
+        return Err(InstrumentalError::NoInstrument { parameter: observation.unknowns[l].clone() });
     }
     let scaled = DMatrix::from_fn(k, k, |i, l| cross[(i, l)] / scale[l]);
     let lu = scaled.lu();
-    let solved = lu.solve(&y)?;
-    let inverse = lu.try_inverse()?;
+    let solved = lu.solve(&y).ok_or(InstrumentalError::Singular)?;
+    let inverse = lu.try_inverse().ok_or(InstrumentalError::Singular)?;
     let chi: Vec<f64> = (0..k).map(|l| solved[l] / scale[l]).collect();
     // The residual of the equations themselves: the instruments' columns take no part in it.
     let all: Vec<f64> = std::iter::repeat_n(0.0, k).chain(chi.iter().copied()).collect();
     let freedom = factor.rows().saturating_sub(k).max(1) as f64;
     let noise = factor.residual_norm(&all) / freedom.sqrt();
     let sigma = (0..k).map(|l| noise * inverse.row(l).norm() / scale[l]).collect();
-    Some(InstrumentalEstimate { chi, sigma })
+    Ok(InstrumentalEstimate { chi, sigma })
 }
 
 #[cfg(test)]
@@ -175,5 +228,13 @@ mod tests {
             assert!((x - expected).abs() < 3.0 * s, "{unbiased:?}");
         }
         assert!(unbiased.sigma[0] < 0.01 * TRUE[0]);
+        assert_eq!(
+            instrumental_variables(&see(None), &[1.0]),
+            Err(InstrumentalError::Instruments { found: 0, needed: 3 })
+        );
+        let rest = Motion { dq: vec![vec![0.0; n]], ..simulated[0].clone() };
+        let resting = [rest];
+        let blind = instrumental_variables(&see(Some(&Instruments::new(&model, &resting))), &[1.0]);
+        assert_eq!(blind, Err(InstrumentalError::DependentInstrument { parameter: "Fv1".into() }));
     }
 }

@@ -1,4 +1,44 @@
 //! From motions to parameters: observation rows, orthogonal factors, estimators, statistics.
+//!
+//! [`observe::observe`] evaluates a model along motions and reduces its decimated equations to orthogonal factors;
+//! [`estimate()`] solves them, with standard deviations, warnings and the essential parameters. All from arrays in
+//! memory:
+//!
+//! ```
+//! use dynid_runtime::estimation::observe::{Equations, ObserveSettings, observe};
+//! use dynid_runtime::estimation::{EstimateSettings, estimate};
+//! use dynid_runtime::recording::Trajectory;
+//! use dynid_runtime::signal::{Preparation, prepare};
+//! # use dynid_runtime::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
+//! # let row = Frame {
+//! #     parent: None, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0,
+//! # };
+//! # let drive = Drive { gear: vec![1.0].into(), coupled_friction: vec![].into() };
+//! # let mut robot = Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![row], drive, Limits::default());
+//! # robot.base = robot.base.iter().filter(|p| ["ZZ1", "Fv1", "Fc1"].contains(&&*p.name)).cloned().collect();
+//! # let model = RecursiveModel::new(robot)?;
+//!
+//! // Twenty seconds at 200 Hz of one axis with an inertia of 2, viscous friction 0.7 and Coulomb friction 1.5.
+//! let time: Vec<f64> = (0..4000).map(|k| k as f64 / 200.0).collect();
+//! let position = time.iter().map(|t| (2.0 * t).sin() + 0.3 * (5.1 * t).sin()).collect();
+//! let torque = time.iter().map(|t| {
+//!     let speed: f64 = 2.0 * (2.0 * t).cos() + 1.53 * (5.1 * t).cos();
+//!     let acceleration = -4.0 * (2.0 * t).sin() - 7.803 * (5.1 * t).sin();
+//!     2.0 * acceleration + 0.7 * speed + 1.5 * speed.signum()
+//! }).collect();
+//! let trajectory = Trajectory {
+//!     name: "run".into(), time, position: vec![position], velocity: None, torque: vec![torque], fixed: vec![],
+//! };
+//!
+//! let motion = prepare(&trajectory, &Preparation::default())?;
+//! let settings = ObserveSettings { band: 10.0, ..ObserveSettings::default() };
+//! let observation = observe(&model, &[motion], Equations::Torque, None, &settings, None)?;
+//! let found = estimate(&observation, &EstimateSettings::default());
+//! for (value, expected) in found.chi().iter().zip([2.0, 0.7, 1.5]) {
+//!     assert!((value - expected).abs() < 0.01 * expected);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod bandwidth;
 mod blocks;
@@ -6,7 +46,6 @@ mod essential;
 mod estimate;
 mod factor;
 mod householder;
-mod identified;
 mod instrumental;
 pub mod observe;
 mod outcome;
@@ -20,8 +59,7 @@ mod weights;
 pub use bandwidth::{Bandwidth, choose_bandwidth};
 pub use estimate::{EstimateSettings, errors_against, estimate, per_equation, relative_error};
 pub use factor::{BLOCK_ROWS, Factor};
-pub use identified::{EquationRows, EssentialParameters, Identified, NamedParameter, Observed};
-pub use instrumental::{InstrumentalEstimate, Instruments, instrumental_variables};
+pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
 pub use outcome::{
     BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,
 };

@@ -1,5 +1,6 @@
 //! What an estimation says.
 
+use crate::model::JointNumber;
 use serde::{Deserialize, Serialize};
 
 /// Which model is identified, and how its equations are weighted.
@@ -160,15 +161,15 @@ pub enum Warning {
     },
     /// Iterated weights gave up on an equation; the weights of (20) from its own fit were used instead.
     WeightCollapsed {
-        /// Joint (0-based), or 0 for the power model.
-        equation: usize,
+        /// Its joint; `None` for the power model.
+        joint: Option<JointNumber>,
         /// Its relative error with iterated weights.
         relative_error: f64,
     },
     /// The model explains less of an equation than no model at all.
     NotExplained {
-        /// Joint (0-based), or 0 for the power model.
-        equation: usize,
+        /// Its joint; `None` for the power model.
+        joint: Option<JointNumber>,
         /// Its relative error.
         relative_error: f64,
     },
@@ -179,6 +180,11 @@ pub enum Warning {
         /// Iterations made.
         iterations: usize,
     },
+}
+
+/// The equation of a joint, or that of the power model.
+fn named(joint: Option<JointNumber>) -> String {
+    joint.map_or_else(|| "power".to_owned(), |joint| format!("joint {joint}"))
 }
 
 impl std::fmt::Display for Warning {
@@ -198,16 +204,20 @@ impl std::fmt::Display for Warning {
                 "badly conditioned ({condition:.0}): this motion hardly tells {} apart",
                 parameters.join(", ")
             ),
-            Warning::WeightCollapsed { equation, relative_error } => write!(
+            Warning::WeightCollapsed { joint, relative_error } => write!(
                 f,
-                "joint {}: iterated weights gave up on it (error {:.0} %); the weights of its own fit were used",
-                equation + 1,
+                "{}: iterated weights gave up on it (error {:.0} %); the weights of its own fit were used",
+                named(*joint),
                 100.0 * relative_error
             ),
-            Warning::NotExplained { equation, relative_error } => write!(
+            Warning::NotExplained { joint: Some(joint), relative_error } => write!(
                 f,
-                "joint {}: the model does not explain its torque (error {:.0} %)",
-                equation + 1,
+                "joint {joint}: the model does not explain its torque (error {:.0} %)",
+                100.0 * relative_error
+            ),
+            Warning::NotExplained { joint: None, relative_error } => write!(
+                f,
+                "the model does not explain the power of the joints (error {:.0} %)",
                 100.0 * relative_error
             ),
             Warning::NoTotalSolution => {

@@ -3,12 +3,21 @@
 use super::Factor;
 use nalgebra::DMatrix;
 
+/// Least part of Y in the unit direction that is solved for.
+const LEAST_PART_OF_Y: f64 = 1e-10;
+
+/// The direction that the data determine least has no part in Y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct NoGenericSolution;
+
 /// Mixed total least squares from a factor whose columns are independent (Golub and Van Loan 1980; Van Huffel and
 /// Vandewalle 1991, section 3.5; on robots Gautier, Vandanjon and Presse 1994).
 ///
 /// The columns in `exact` have no errors; the others and Y have errors of the same size relative to their length.
-/// `None`: no generic solution exists, because the smallest singular direction has no part in Y.
-pub(super) fn total_least_squares(factor: &Factor, exact: &[bool]) -> Option<Vec<f64>> {
+///
+/// # Errors
+/// The smallest singular direction has no part in Y: no generic solution exists.
+pub(super) fn total_least_squares(factor: &Factor, exact: &[bool]) -> Result<Vec<f64>, NoGenericSolution> {
     let k = factor.unknowns();
     let known: Vec<usize> = (0..k).filter(|&l| exact[l]).collect();
     let noisy: Vec<usize> = (0..k).filter(|&l| !exact[l]).collect();
@@ -23,11 +32,12 @@ pub(super) fn total_least_squares(factor: &Factor, exact: &[bool]) -> Option<Vec
     let below =
         DMatrix::from_fn(count + 1, count + 1, |i, l| ordered.r(first + i, first + l) / norms[first + l]);
     let svd = below.svd(false, true);
-    let v = svd.v_t?;
+    // The decomposition was asked for them.
+    let v = svd.v_t.ok_or(NoGenericSolution)?;
     let smallest = svd.singular_values.imin();
     let of_y = v[(smallest, count)];
-    if of_y.abs() < 1e-10 {
-        return None;
+    if of_y.abs() < LEAST_PART_OF_Y {
+        return Err(NoGenericSolution);
     }
     let mut solved = vec![0.0; k];
     for l in 0..count {
@@ -41,7 +51,7 @@ pub(super) fn total_least_squares(factor: &Factor, exact: &[bool]) -> Option<Vec
     for (&l, x) in order.iter().zip(solved) {
         chi[l] = x;
     }
-    Some(chi)
+    Ok(chi)
 }
 
 #[cfg(test)]

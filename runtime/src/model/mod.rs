@@ -1,4 +1,28 @@
 //! A robot's dynamics as linear forms in its parameters: the trait that generated and recursive models share.
+//!
+//! A [`Model`] computes the inverse dynamic regressor IDM(q, dq, ddq), with tau = IDM chi, the energy and power rows of
+//! the power model, and the mass matrix. Generated code implements it for the robots of `robots/`; [`RecursiveModel`]
+//! implements it for any table at run time.
+//!
+//! ```
+//! use dynid_runtime::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot, StateSlices, torques};
+//!
+//! // One axis along gravity.
+//! let row = Frame {
+//!     parent: None, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0,
+//! };
+//! let drive = Drive { gear: vec![1.0].into(), coupled_friction: vec![].into() };
+//! let mut robot = Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![row], drive, Limits::default());
+//! // Of its parameters: inertia, viscous and Coulomb friction.
+//! robot.base = robot.base.iter().filter(|p| ["ZZ1", "Fv1", "Fc1"].contains(&&*p.name)).cloned().collect();
+//! let model = RecursiveModel::new(robot)?;
+//!
+//! // 2 kg.m2, 0.5 N.m.s/rad, 1 N.m; two samples of one joint.
+//! let (q, dq, ddq) = (vec![vec![0.0, 0.1]], vec![vec![1.0, -2.0]], vec![vec![3.0, 4.0]]);
+//! let tau = torques(&model, &[2.0, 0.5, 1.0], StateSlices::new(&q, &dq, &ddq).states());
+//! assert_eq!(tau, [[7.5, 6.0]]);
+//! # Ok::<(), dynid_runtime::model::RecursiveModelError>(())
+//! ```
 
 mod block;
 mod dual;

@@ -8,7 +8,7 @@ use super::manifest::{Channel, Manifest, Side};
 use super::source::Source;
 use super::unit::{Quantity, Unit};
 use super::{RecordingError, Rows};
-use crate::model::{JointKind, Robot};
+use crate::model::{JointIndex, JointKind, Robot};
 
 /// What is the same for all windows.
 pub(super) struct Conversions {
@@ -60,8 +60,7 @@ fn conversion(
     quantity: &str,
     channel: &Channel,
 ) -> Result<Conversion, RecordingError> {
-    let kinds: Vec<JointKind> =
-        robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect();
+    let kinds = robot.joint_kinds();
     let joints = kinds.len();
     let per_joint = |key: &str, found: usize, one_for_all: bool| {
         if found == joints || found == 0 || (one_for_all && found == 1) {
@@ -93,7 +92,7 @@ fn conversion(
             q if motor => q == angular_unit || q == linear_unit,
             q => q == if linear { linear_unit } else { angular_unit },
         };
-        let number = joint_number(robot, j);
+        let number = robot.joint_number(JointIndex(j));
         if !fits {
             let kind = if linear { "prismatic" } else { "revolute" };
             let wanted = Unit::names_of(&[if linear { linear_unit } else { angular_unit }]);
@@ -114,18 +113,13 @@ fn conversion(
     }
     gain.resize(joints, 1.0);
     if let Some(j) = gain.iter().position(|g| *g == 0.0) {
-        let message = format!("0 for joint {}: nothing would be left of the signal", joint_number(robot, j));
+        let message =
+            format!("0 for joint {}: nothing would be left of the signal", robot.joint_number(JointIndex(j)));
         return Err(manifest.error(&[quantity, "gain"], &message));
     }
     let mut offset = channel.offset.clone();
     offset.resize(joints, 0.0);
     Ok(Conversion { offset, gain })
-}
-
-/// The number of joint `joint` (0-based) in the table: j of its frame.
-pub(super) fn joint_number(robot: &Robot, joint: usize) -> usize {
-    let mut frames = robot.frames.iter().enumerate().filter(|(_, f)| f.kind != JointKind::Fixed);
-    frames.nth(joint).map_or(joint + 1, |(frame, _)| frame + 1)
 }
 
 /// Appends rows `run` of a channel, in SI and on the joint side.

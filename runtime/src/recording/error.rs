@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// A recording that cannot be read, with the place and what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// A file that cannot be opened or read.
     #[error("{file}: {message}")]

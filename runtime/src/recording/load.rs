@@ -18,7 +18,8 @@ pub struct Recording {
 
 /// Reads all trajectories of a recording of `robot`.
 ///
-/// Errors: whatever does not fit the contract, the files or the robot, with its place; a trajectory of which more
+/// # Errors
+/// Whatever does not fit the contract, the files or the robot, with its place; a trajectory of which more
 /// than `MOST_LEFT_OUT` percent of the rows cannot be right, or none is left.
 pub fn load(manifest: &Manifest, robot: &Robot) -> Result<Recording, RecordingError> {
     let mut loader = Loader::new(manifest, robot, usize::MAX)?;
@@ -47,6 +48,9 @@ pub struct Loader<'a> {
 
 impl<'a> Loader<'a> {
     /// Checks the manifest against the robot. A trajectory of more than `most_rows` rows comes in pieces.
+    ///
+    /// # Errors
+    /// Channels that do not fit the robot's joints: their number, units, gains; a gear that has no inverse.
     pub fn new(manifest: &'a Manifest, robot: &'a Robot, most_rows: usize) -> Result<Self, RecordingError> {
         let conversions = Conversions::new(manifest, robot)?;
         let most_rows = most_rows.max(BLOCK);
@@ -64,6 +68,10 @@ impl<'a> Loader<'a> {
     }
 
     /// The next motion; `None` when all have been read.
+    ///
+    /// # Errors
+    /// A file that cannot be read or lacks a column, files of unequal length, a window without rows, or one of which
+    /// more than [`super::MOST_LEFT_OUT`] percent of the rows cannot be right.
     pub fn next_trajectory(&mut self) -> Result<Option<Trajectory>, RecordingError> {
         loop {
             if let Some(trajectory) = self.ready.pop_front() {

@@ -2,8 +2,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 
-use super::{Column, Manifest, Side, Time, place};
-use crate::recording::{Quantity, RecordingError};
+use crate::recording::{Column, Manifest, Quantity, RecordingError, Side, Time};
 
 const WHOLE: &str = r#"
 robot: tx40
@@ -104,8 +103,10 @@ fn what_is_no_manifest_is_told() {
         (b"# only a comment\n", "empty"),
         (b"robot: \xff\xfe", "UTF-8"),
         (b"- a\n- b\n", "not a recording YAML"),
-        (b"robot: a\n", "missing field"),
-        (b"time: {rate: 0}", "missing field"),
+        (b"robot: a\n", "rec.yaml:1:1: a recording has no 'time'"),
+        (b"# of an arm\n\ntime: {rate: 0}", "rec.yaml:3:1: a recording has no 'robot'"),
+        (b"robot: a\ntime:\n\trate: 5\n", "rec.yaml:3:1: not YAML: indented with a tab; expected spaces"),
+        (b"robot: a\n---\nrobot: b\n", "second document"),
     ] {
         let error = Manifest::parse(Path::new("rec.yaml"), bytes).expect_err("no manifest").to_string();
         assert!(error.starts_with("rec.yaml:") && error.contains(word), "{error}");
@@ -124,16 +125,51 @@ fn rate_and_file_must_make_sense() {
     assert!(with("{rate: -5}", "trajectories: [{file: a.csv}]").is_err());
     assert!(with("{}", "trajectories: [{file: a.csv}]").is_err());
     assert!(with("{rate: 5, unit: s}", "trajectories: [{file: a.csv}]").is_err());
-    assert!(with("{rate: 5}", "").expect_err("no file").to_string().contains("names no `file`"));
+    assert!(with("{rate: 5}", "").expect_err("no file").to_string().contains("no 'trajectories'"));
+    let unnamed = with("{rate: 5}", "trajectories: [{from: 1}]").expect_err("no file").to_string();
+    assert!(unnamed.contains("trajectory 1 names no `file`"), "{unnamed}");
     assert!(with("{rate: 5}", "trajectories: [{file: a.csv}]").is_ok());
 }
 
 #[test]
-fn keys_are_found_where_they_stand() {
-    assert_eq!(place(WHOLE, &["torque", "unit"]), (9, 42));
-    assert_eq!(place(WHOLE, &["position"]), (7, 1));
-    assert_eq!(place(WHOLE, &["nowhere"]), (1, 1));
-    assert_eq!(place("", &["x"]), (1, 1));
+fn words_in_a_title_do_not_move_a_mistake_to_its_line() {
+    let text = WHOLE
+        .replacen("all keys at once", "\"torque: unit: of the trajectories: to: and back\"", 1)
+        .replacen("to: 7.25", "to: 0.25", 1);
+    let error = parse(&text).expect_err("a window that ends before it begins").to_string();
+    assert!(error.starts_with("dir/rec.yaml:11:32: trajectories.to: trajectory 1"), "{error}");
+    let manifest = parse(&WHOLE.replacen("all keys at once", "\"torque: unit: A\"", 1)).expect("a manifest");
+    let error = manifest.error(&["torque", "unit"], "wrong").to_string();
+    assert_eq!(error, "dir/rec.yaml:9:42: torque.unit: wrong");
+}
+
+#[test]
+fn a_recording_without_trajectories_is_told_so() {
+    let text = "# of an arm\nrobot: a\ntime: {rate: 5}\nposition: {columns: [q]}\ntorque: {columns: [u]}\n";
+    let error = parse(text).expect_err("no file").to_string();
+    assert!(
+        error.starts_with("dir/rec.yaml:2:1: trajectories: a recording has no 'trajectories'"),
+        "{error}"
+    );
+    assert!(parse(&format!("{text}trajectories:\n")).is_err());
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_manifest() {
+    let marked = format!("\u{feff}{WHOLE}");
+    assert_eq!(parse(&marked).expect("a manifest").robot, "tx40");
+    let error = parse(&marked.replacen("unit: A", "unit: 7", 1)).expect_err("no unit").to_string();
+    assert!(error.starts_with("dir/rec.yaml:9:"), "{error}");
+}
+
+#[test]
+fn what_is_far_too_long_or_too_deep_is_refused_at_once() {
+    let start = std::time::Instant::now();
+    let deep = parse(&format!("robot: {}", "[".repeat(200_000))).expect_err("too deep").to_string();
+    assert!(deep.contains("nested deeper than 16 levels"), "{deep}");
+    let long = parse(&format!("{WHOLE}{}", "#".repeat(2_000_000))).expect_err("too long").to_string();
+    assert!(long.contains("longer than 1048576 bytes"), "{long}");
+    assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
 }
 
 proptest! {

@@ -1,14 +1,42 @@
 //! Recordings: manifests, files, units, trajectories.
+//!
+//! A [`Manifest`] says which files and columns hold what; [`load()`] reads them for a robot, on the joint side and in SI,
+//! and [`Loader`] does so piece by piece. Every mistake is told with its file, line and column, and what was expected.
+//!
+//! ```
+//! use dynid_runtime::recording::Manifest;
+//! use std::path::Path;
+//!
+//! let manifest = Manifest::parse(
+//!     Path::new("log.yaml"),
+//!     b"robot: tx40
+//! time: {column: t, unit: ms}
+//! position: {columns: [q1, q2], unit: deg}
+//! torque: {columns: [i1, i2], unit: A, gain: [14.9, 13.3]}
+//! trajectories:
+//!   - {file: run.csv, from: 0.5, to: 7}
+//! ",
+//! )?;
+//! assert_eq!(manifest.trajectories[0].to, Some(7.0));
+//!
+//! let mistake = Manifest::parse(Path::new("log.yaml"), b"robot: tx40\nposition: {columns: [q1]}\n");
+//! assert_eq!(mistake.unwrap_err().to_string(), "log.yaml:1:1: a recording has no 'time'");
+//! # Ok::<(), dynid_runtime::recording::RecordingError>(())
+//! ```
 
 mod channel;
-mod duplicate_key;
+mod column;
 mod error;
+mod fields;
 #[cfg(test)]
 mod folder;
 mod load;
 mod manifest;
+mod manifest_reader;
+mod manifest_values;
 mod npy;
 mod number;
+mod reach;
 mod regear;
 mod report;
 mod rows;
@@ -19,14 +47,16 @@ mod trajectory;
 mod unit;
 mod window;
 mod write;
+mod yaml;
 
+pub use column::Column;
 pub use error::RecordingError;
 pub use load::{Loader, Recording, load};
-pub use manifest::{Channel, Column, Layout, Manifest, Side, Time, Window};
+pub use manifest::{Channel, Layout, Manifest, Side, Time, Window};
+pub use reach::Reach;
 pub use regear::regear;
 pub use report::{Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RowReport};
 pub use rows::Rows;
-pub use screen::Reach;
 pub use table::TableReader;
 pub use trajectory::Trajectory;
 pub use unit::{Quantity, Unit};

@@ -3,48 +3,7 @@
 use std::ops::Range;
 
 use super::Reason;
-use crate::model::{JointKind, Robot};
-
-/// What a joint can do, generously: beyond it a value is garbage, not motion.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reach {
-    /// Per joint, rad or m.
-    pub position: Vec<[f64; 2]>,
-    /// Per joint, magnitude, rad/s or m/s.
-    pub velocity: Vec<f64>,
-    /// Per joint, magnitude, N.m or N.
-    pub torque: Vec<f64>,
-}
-
-impl Reach {
-    /// Twice the range of the position limits about its middle, three times the velocity limit, ten times the
-    /// torque limit; where the robot states none: 100 rad or 100 m, 30 rad/s or 20 m/s, 1e5 N.m or N.
-    pub fn of(robot: &Robot) -> Self {
-        let kinds: Vec<JointKind> =
-            robot.frames.iter().map(|f| f.kind).filter(|k| *k != JointKind::Fixed).collect();
-        let magnitude = |limits: &[[f64; 2]], j: usize| {
-            limits.get(j).map(|[low, high]| low.abs().max(high.abs())).filter(|m| m.is_finite() && *m > 0.0)
-        };
-        let position = |j: usize| match robot.limits.position.get(j) {
-            Some([low, high]) if low.is_finite() && high.is_finite() && low < high => {
-                let (middle, range) = (0.5 * (low + high), high - low);
-                [middle - range, middle + range]
-            }
-            _ => [-100.0, 100.0],
-        };
-        let velocity = |(j, kind): (usize, &JointKind)| {
-            let unknown = if *kind == JointKind::Prismatic { 20.0 } else { 30.0 };
-            magnitude(&robot.limits.velocity, j).map_or(unknown, |v| 3.0 * v)
-        };
-        Self {
-            position: (0..kinds.len()).map(position).collect(),
-            velocity: kinds.iter().enumerate().map(velocity).collect(),
-            torque: (0..kinds.len())
-                .map(|j| magnitude(&robot.limits.torque, j).map_or(1e5, |t| 10.0 * t))
-                .collect(),
-        }
-    }
-}
+use super::reach::Reach;
 
 /// Rows of one window, on the joint side, in SI.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -96,100 +55,32 @@ fn longest_gap(step: f64) -> f64 {
 /// The order matters: unreadable rows, rows out of reach, then stamps (the largest set of rows whose time goes
 /// forward stays), then runs of a few rows that no joint could have jumped to and back from.
 pub(super) fn screen(piece: &Piece, reach: &Reach, speed_limits: bool) -> Verdict {
-    let rows = piece.time.len();
-    let mut faults = Vec::new();
-    let mut good = vec![true; rows];
-    for fault in &piece.faults {
-        // A row may be at fault in two files; it counts once.
-        if std::mem::replace(&mut good[fault.row], false) {
-            faults.push(fault.clone());
-        }
-    }
-    let mut leave = |good: &mut [bool], row: usize, reason: Reason, what: String| {
-        if std::mem::replace(&mut good[row], false) {
-            faults.push(Fault { row, reason, what, elsewhere: None });
-        }
-    };
-    for (j, [low, high]) in reach.position.iter().enumerate() {
-        for (row, x) in
-            piece.position[j].iter().enumerate().filter(|(_, x)| x.is_nan() || *x < low || *x > high)
-        {
-            leave(&mut good, row, Reason::OutOfReach, format!("position {} of joint {}", short(*x), j + 1));
-        }
-    }
-    let bounded = [(&piece.velocity, &reach.velocity, "velocity"), (&piece.torque, &reach.torque, "torque")];
-    for (channel, bounds, quantity) in bounded {
-        for (j, (values, bound)) in channel.iter().zip(bounds).enumerate() {
-            for (row, x) in values.iter().enumerate().filter(|(_, x)| x.is_nan() || x.abs() > *bound) {
-                leave(
-                    &mut good,
-                    row,
-                    Reason::OutOfReach,
-                    format!("{quantity} {} of joint {}", short(*x), j + 1),
-                );
-            }
-        }
-    }
-    for row in out_of_order(&piece.time, &good) {
-        let what = format!("time {} s does not go forward", piece.time[row]);
-        leave(&mut good, row, Reason::TimeOrder, what);
-    }
-    let kept: Vec<usize> = (0..rows).filter(|&row| good[row]).collect();
-    let step = typical_step(&piece.time, &kept);
-    let jump = |a: usize, b: usize| -> Option<String> {
-        // A stamp may be late or early by some rows' time, so that a short step may be a longer one.
-        let dt = (piece.time[b] - piece.time[a]).max(step) + (5.0 * step).min(0.010);
-        piece.position.iter().enumerate().find_map(|(j, q)| {
-            let speed = (q[b] - q[a]).abs() / dt;
-            let bound = reach.velocity[j];
-            (speed > bound).then(|| {
-                let known = if speed_limits {
-                    "three times its speed limit"
-                } else {
-                    "what a joint does (no limits.velocity)"
-                };
-                format!(
-                    "joint {} jumps by {}, {} a second: beyond {known}",
-                    j + 1,
-                    short(q[b] - q[a]),
-                    short(speed)
-                )
-            })
-        })
-    };
-    // Runs between jumps; short ones are garbage, the rest are tied together again where nothing contradicts it.
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    let mut jumps: Vec<String> = Vec::new();
-    for k in 0..kept.len() {
-        match (k > 0).then(|| jump(kept[k - 1], kept[k])).flatten() {
-            None if k > 0 => {
-                if let Some(run) = runs.last_mut() {
-                    run.end = k + 1;
-                }
-            }
-            what => {
-                runs.push(k..k + 1);
-                jumps.extend(what);
-            }
-        }
-    }
-    if runs.len() > 1 {
-        for (r, run) in runs.iter().enumerate().filter(|(_, run)| run.len() < SHORTEST_RUN) {
-            let what = &jumps[if r > 0 { r - 1 } else { 0 }];
-            for &row in &kept[run.clone()] {
-                leave(&mut good, row, Reason::Jump, what.clone());
-            }
-        }
-    }
-    let mut kept: Vec<usize> = kept.into_iter().filter(|&row| good[row]).collect();
+    let mut rows = Screening { piece, good: vec![true; piece.time.len()], faults: Vec::new() };
+    rows.leave_unreadable();
+    rows.leave_out_of_reach(reach);
+    rows.leave_out_of_order();
+    let kept = rows.kept();
+    let jumps = Jumps { piece, reach, speed_limits, step: typical_step(&piece.time, &kept) };
+    rows.leave_short_runs(&kept, &jumps);
+    let (kept, motions, cuts) = rows.leave_isolated(rows_cut(rows.kept(), &jumps));
+    let mut faults = rows.faults;
+    faults.sort_by_key(|f| f.row);
+    Verdict { faults, kept, motions, cuts }
+}
+
+/// Rows that stay, unbroken motions as ranges of them, and what separates each motion from the next.
+type Motions = (Vec<usize>, Vec<Range<usize>>, Vec<String>);
+
+/// Cuts rows at gaps in time and at jumps.
+fn rows_cut(kept: Vec<usize>, jumps: &Jumps<'_>) -> Motions {
     let (mut motions, mut cuts) = (Vec::new(), Vec::new());
     let mut start = 0;
     for k in 1..kept.len() {
-        let gap = piece.time[kept[k]] - piece.time[kept[k - 1]];
-        let what = if gap > longest_gap(step) {
-            Some(format!("no rows for {} s, longer than may be interpolated", short(gap)))
+        let gap = jumps.piece.time[kept[k]] - jumps.piece.time[kept[k - 1]];
+        let what = if gap > longest_gap(jumps.step) {
+            Some(format!("no rows for {} s, longer than may be interpolated", four_digits(gap)))
         } else {
-            jump(kept[k - 1], kept[k])
+            jumps.between(kept[k - 1], kept[k])
         };
         if let Some(what) = what {
             motions.push(start..k);
@@ -198,30 +89,148 @@ pub(super) fn screen(piece: &Piece, reach: &Reach, speed_limits: bool) -> Verdic
         }
     }
     motions.push(start..kept.len());
-    if motions.len() > 1 && motions.iter().any(|m| m.len() < SHORTEST_MOTION) {
-        for motion in motions.iter().filter(|m| m.len() < SHORTEST_MOTION) {
-            for &row in &kept[motion.clone()] {
-                let what = format!("one of {} rows between two gaps, too few to filter", motion.len());
-                leave(&mut good, row, Reason::Isolated, what);
+    (kept, motions, cuts)
+}
+
+/// Rows of a piece, and what is wrong with those that are left out.
+struct Screening<'a> {
+    piece: &'a Piece,
+    good: Vec<bool>,
+    faults: Vec<Fault>,
+}
+
+impl Screening<'_> {
+    fn kept(&self) -> Vec<usize> {
+        (0..self.good.len()).filter(|&row| self.good[row]).collect()
+    }
+
+    fn leave(&mut self, row: usize, reason: Reason, what: String) {
+        self.leave_with(Fault { row, reason, what, elsewhere: None });
+    }
+
+    /// A row may be at fault in two files; it counts once.
+    fn leave_with(&mut self, fault: Fault) {
+        if std::mem::replace(&mut self.good[fault.row], false) {
+            self.faults.push(fault);
+        }
+    }
+
+    fn leave_unreadable(&mut self) {
+        for fault in &self.piece.faults {
+            self.leave_with(fault.clone());
+        }
+    }
+
+    fn leave_out_of_reach(&mut self, reach: &Reach) {
+        let piece = self.piece;
+        for (j, [low, high]) in reach.position.iter().enumerate() {
+            for (row, x) in
+                piece.position[j].iter().enumerate().filter(|(_, x)| x.is_nan() || *x < low || *x > high)
+            {
+                let what = format!("position {} of joint {}", four_digits(*x), reach.joint[j]);
+                self.leave(row, Reason::OutOfReach, what);
             }
         }
-        let mut all = Vec::new();
-        (motions, cuts) = motions.into_iter().enumerate().filter(|(_, m)| m.len() >= SHORTEST_MOTION).fold(
-            (Vec::new(), Vec::new()),
-            |(mut kept_motions, mut kept_cuts), (k, m)| {
-                let from = all.len();
-                all.extend_from_slice(&kept[m]);
-                if from > 0 {
-                    kept_cuts.push(cuts[k - 1].clone());
+        let bounded =
+            [(&piece.velocity, &reach.velocity, "velocity"), (&piece.torque, &reach.torque, "torque")];
+        for (channel, bounds, quantity) in bounded {
+            for (j, (values, bound)) in channel.iter().zip(bounds).enumerate() {
+                for (row, x) in values.iter().enumerate().filter(|(_, x)| x.is_nan() || x.abs() > *bound) {
+                    let what = format!("{quantity} {} of joint {}", four_digits(*x), reach.joint[j]);
+                    self.leave(row, Reason::OutOfReach, what);
                 }
-                kept_motions.push(from..all.len());
-                (kept_motions, kept_cuts)
-            },
-        );
-        kept = all;
+            }
+        }
     }
-    faults.sort_by_key(|f| f.row);
-    Verdict { faults, kept, motions, cuts }
+
+    fn leave_out_of_order(&mut self) {
+        for row in out_of_order(&self.piece.time, &self.good) {
+            let what = format!("time {} s does not go forward", self.piece.time[row]);
+            self.leave(row, Reason::TimeOrder, what);
+        }
+    }
+
+    /// Runs between jumps: short ones are garbage, the rest are tied together again where nothing contradicts it.
+    fn leave_short_runs(&mut self, kept: &[usize], jumps: &Jumps<'_>) {
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        let mut between: Vec<String> = Vec::new();
+        for k in 0..kept.len() {
+            match (k > 0).then(|| jumps.between(kept[k - 1], kept[k])).flatten() {
+                None if k > 0 => {
+                    if let Some(run) = runs.last_mut() {
+                        run.end = k + 1;
+                    }
+                }
+                what => {
+                    runs.push(k..k + 1);
+                    between.extend(what);
+                }
+            }
+        }
+        if runs.len() < 2 {
+            return;
+        }
+        for (r, run) in runs.iter().enumerate().filter(|(_, run)| run.len() < SHORTEST_RUN) {
+            let what = &between[r.saturating_sub(1)];
+            for &row in &kept[run.clone()] {
+                self.leave(row, Reason::Jump, what.clone());
+            }
+        }
+    }
+
+    /// Leaves out motions that are too short for a filter, where there is more than one.
+    fn leave_isolated(&mut self, (kept, motions, cuts): Motions) -> Motions {
+        if motions.len() < 2 || motions.iter().all(|m| m.len() >= SHORTEST_MOTION) {
+            return (kept, motions, cuts);
+        }
+        let (mut all, mut long, mut between) = (Vec::new(), Vec::new(), Vec::new());
+        for (k, motion) in motions.into_iter().enumerate() {
+            if motion.len() < SHORTEST_MOTION {
+                for &row in &kept[motion.clone()] {
+                    let what = format!("one of {} rows between two gaps, too few to filter", motion.len());
+                    self.leave(row, Reason::Isolated, what);
+                }
+                continue;
+            }
+            let from = all.len();
+            all.extend_from_slice(&kept[motion]);
+            if from > 0 {
+                between.push(cuts[k - 1].clone());
+            }
+            long.push(from..all.len());
+        }
+        (all, long, between)
+    }
+}
+
+/// Steps that no joint can have made.
+struct Jumps<'a> {
+    piece: &'a Piece,
+    reach: &'a Reach,
+    /// Whether the reach in velocity is that of limits of the robot.
+    speed_limits: bool,
+    /// Typical step, s.
+    step: f64,
+}
+
+impl Jumps<'_> {
+    /// What is impossible about the step from row `a` to row `b`.
+    fn between(&self, a: usize, b: usize) -> Option<String> {
+        let time = &self.piece.time;
+        // A stamp may be late or early by some rows' time, so that a short step may be a longer one.
+        let dt = (time[b] - time[a]).max(self.step) + (5.0 * self.step).min(0.010);
+        self.piece.position.iter().enumerate().find_map(|(j, q)| {
+            let speed = (q[b] - q[a]).abs() / dt;
+            (speed > self.reach.velocity[j]).then(|| {
+                let known = match self.speed_limits {
+                    true => "three times its speed limit",
+                    false => "what a joint does (no limits.velocity)",
+                };
+                let (step, speed) = (four_digits(q[b] - q[a]), four_digits(speed));
+                format!("joint {} jumps by {step}, {speed} a second: beyond {known}", self.reach.joint[j])
+            })
+        })
+    }
 }
 
 /// The rows to leave out so that time goes strictly forward: all but a longest increasing subsequence
@@ -263,7 +272,7 @@ fn typical_step(time: &[f64], kept: &[usize]) -> f64 {
 }
 
 /// Four significant digits.
-fn short(x: f64) -> String {
+fn four_digits(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) { format!("{x:.3e}") } else { format!("{x:.4}") }
 }
 

@@ -1,10 +1,16 @@
 use proptest::prelude::*;
 
 use super::{Piece, Reach, Verdict, out_of_order, screen};
+use crate::model::JointNumber;
 use crate::recording::Reason;
 
 fn reach(joints: usize) -> Reach {
-    Reach { position: vec![[-10.0, 10.0]; joints], velocity: vec![40.0; joints], torque: vec![1e3; joints] }
+    Reach {
+        joint: (1..=joints).map(JointNumber).collect(),
+        position: vec![[-10.0, 10.0]; joints],
+        velocity: vec![40.0; joints],
+        torque: vec![1e3; joints],
+    }
 }
 
 /// A slow motion of two joints at 1 kHz.
@@ -30,6 +36,14 @@ fn a_clean_motion_stays_whole() {
     let verdict = screen(&motion(500), &reach(2), false);
     assert!(verdict.faults.is_empty() && verdict.cuts.is_empty());
     assert_eq!(verdict.motions.as_slice(), std::slice::from_ref(&(0..500)));
+}
+
+#[test]
+fn joints_are_called_by_their_numbers_in_the_table() {
+    let mut piece = motion(500);
+    piece.position[1][100] = 253.0;
+    let reach = Reach { joint: vec![JointNumber(1), JointNumber(3)], ..reach(2) };
+    assert_eq!(screen(&piece, &reach, false).faults[0].what, "position 253.0000 of joint 3");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use super::fields::{blanks_at, find, is_passed_over, no_text, split};
 use super::number::{Field, parse_field, plain_decimal};
 use super::{Column, Layout, Reason, RecordingError, Rows};
 
@@ -41,7 +42,8 @@ const LONGEST_LINE: usize = 1 << 20;
 impl TableReader<File> {
     /// Opens a file and finds the wanted columns. `file` is what messages call it.
     ///
-    /// Errors: a file that cannot be read, an empty one, a column that is not there (the message names those
+    /// # Errors
+    /// A file that cannot be read, an empty one, a column that is not there (the message names those
     /// that are), a name where there is no header.
     pub fn open(path: &Path, file: &str, layout: &Layout, wanted: &[Column]) -> Result<Self, RecordingError> {
         let source = File::open(path).map_err(|e| RecordingError::io(path, &e))?;
@@ -53,7 +55,10 @@ impl TableReader<File> {
 }
 
 impl<R: Read> TableReader<R> {
-    /// Reads from anything; see `open`.
+    /// Reads from anything.
+    ///
+    /// # Errors
+    /// As [`TableReader::open`].
     pub fn new(source: R, file: &str, layout: &Layout, wanted: &[Column]) -> Result<Self, RecordingError> {
         let mut reader = Self {
             file: file.into(),
@@ -126,6 +131,9 @@ impl<R: Read> TableReader<R> {
     }
 
     /// Appends up to `most` rows to `rows`, which has one column per wanted column. Returns how many; 0 at the end.
+    ///
+    /// # Errors
+    /// What the source says when it cannot be read.
     pub fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
         let mut count = 0;
         while count < most {
@@ -285,97 +293,6 @@ impl<R: Read> TableReader<R> {
             seen = self.end;
         }
         Ok(self.whole > 0)
-    }
-}
-
-fn blanks_at(text: &[u8]) -> usize {
-    text.iter().take_while(|b| matches!(b, b' ' | b'\t')).count()
-}
-
-fn is_passed_over(line: &[u8]) -> bool {
-    matches!(line.trim_ascii_start().first(), None | Some(b'#' | b'%'))
-}
-
-/// Fields of a line, quotes respected; a delimiter at the very end closes the last field.
-fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
-    let line = line.trim_ascii_end();
-    let line = if delimiter == b' ' { line.trim_ascii_start() } else { line };
-    let mut fields = Vec::new();
-    let (mut from, mut quoted) = (0, false);
-    for (at, &b) in line.iter().enumerate() {
-        match b {
-            b'"' => quoted = !quoted,
-            _ if quoted => {}
-            b' ' | b'\t' if delimiter == b' ' => {
-                if at > from {
-                    fields.push(&line[from..at]);
-                }
-                from = at + 1;
-            }
-            b if b == delimiter => {
-                fields.push(&line[from..at]);
-                from = at + 1;
-            }
-            _ => {}
-        }
-    }
-    if from < line.len() || fields.is_empty() {
-        fields.push(&line[from..]);
-    }
-    fields
-}
-
-/// What is wrong with a first line that no table of text begins with.
-fn no_text(line: &[u8]) -> Option<&'static str> {
-    if line.contains(&0) {
-        return Some(
-            "this is not a text of one byte a character (UTF-16, or a binary file): save it as CSV in UTF-8",
-        );
-    }
-    let inside = line.strip_suffix(b"\r").unwrap_or(line);
-    inside
-        .contains(&b'\r')
-        .then_some("the lines end in CR alone: save the file with line ends of LF or CR LF")
-}
-
-fn find(column: &Column, names: &[&[u8]], header: bool) -> Result<usize, String> {
-    let shown = |n: &&[u8]| {
-        let text = String::from_utf8_lossy(trim_quotes(n));
-        text.chars().filter(|c| !c.is_control()).take(40).collect::<String>()
-    };
-    let listed = || {
-        let mut all = names.iter().take(40).map(shown).collect::<Vec<_>>().join(", ");
-        if names.len() > 40 {
-            all.push_str(", ...");
-        }
-        all
-    };
-    match column {
-        Column::Index(index) if *index < names.len() => Ok(*index),
-        Column::Index(index) => {
-            let last = names.len() - 1;
-            Err(format!(
-                "there is no column {index}: the columns go from 0 to {last}; is the delimiter right?"
-            ))
-        }
-        Column::Name(name) if !header => {
-            Err(format!("column `{name}` is asked for by name, but `layout` says that there is no header"))
-        }
-        Column::Name(name) => {
-            let mut found = names.iter().enumerate().filter(|(_, n)| trim_quotes(n) == name.as_bytes());
-            match (found.next(), found.next()) {
-                (Some((index, _)), None) => Ok(index),
-                (Some(_), Some(_)) => Err(format!("two columns are called `{name}`; name them by index")),
-                (None, _) => Err(format!("there is no column `{name}`; there are: {}", listed())),
-            }
-        }
-    }
-}
-
-fn trim_quotes(name: &[u8]) -> &[u8] {
-    match name.trim_ascii() {
-        [b'"', inner @ .., b'"'] => inner.trim_ascii(),
-        other => other,
     }
 }
 

@@ -16,3 +16,23 @@ pub struct Trajectory {
     /// Joints (0-based) that stand still in this motion.
     pub fixed: Vec<usize>,
 }
+
+impl Trajectory {
+    /// The rows within a window of time, s, both ends included; `None` where there is none.
+    pub fn within(&self, [from, to]: [f64; 2]) -> Option<Trajectory> {
+        let first = self.time.partition_point(|&t| t < from);
+        let last = self.time.partition_point(|&t| t <= to);
+        if first >= last {
+            return None;
+        }
+        let cut = |channel: &Vec<Vec<f64>>| channel.iter().map(|c| c[first..last].to_vec()).collect();
+        Some(Trajectory {
+            name: self.name.clone(),
+            time: self.time[first..last].to_vec(),
+            position: cut(&self.position),
+            velocity: self.velocity.as_ref().map(cut),
+            torque: cut(&self.torque),
+            fixed: self.fixed.clone(),
+        })
+    }
+}

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use super::channel::{Conversions, convert, joint_number};
+use super::channel::{Conversions, convert};
 use super::manifest::{Channel, Manifest, Time, Window};
-use super::screen::{Fault, Piece, Reach, screen};
+use super::reach::Reach;
+use super::screen::{Fault, Piece, screen};
 use super::source::Source;
 use super::{Column, Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RecordingError, RowReport, Rows, Trajectory};
-use crate::model::Robot;
+use crate::model::{JointNumber, Robot};
 
 /// Rows taken from every file at a time.
 pub(super) const BLOCK: usize = 4096;
@@ -80,12 +81,11 @@ impl Open {
             .collect::<Result<Vec<_>, RecordingError>>()?;
         let mut fixed = Vec::new();
         for &number in &window.fixed {
-            let joint = (0..robot.joints()).find(|&j| joint_number(robot, j) == number);
-            let Some(joint) = joint else {
+            let Some(joint) = robot.joint_index(JointNumber(number)) else {
                 let message = format!("`fixed` names joint {number}, which {} does not have", robot.name);
                 return Err(manifest.error(&["trajectories", "fixed"], &message));
             };
-            fixed.push(joint);
+            fixed.push(joint.0);
         }
         fixed.sort_unstable();
         fixed.dedup();

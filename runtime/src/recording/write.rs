@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::{RecordingError, Trajectory};
-use crate::model::{JointKind, Robot};
+use crate::model::{JointIndex, JointKind, Robot};
 
 /// Writes trajectories of a robot to `folder` (made where it does not exist) as `traj1.csv`, `traj2.csv`, ... and
 /// `recording.yaml`; returns the path of the manifest. Files of those names are replaced.
@@ -60,16 +60,12 @@ fn write_rows(path: &Path, trajectory: &Trajectory) -> std::io::Result<()> {
 }
 
 fn manifest(robot: &Robot, robot_reference: &str, title: &str, trajectories: &[Trajectory]) -> String {
-    let joints: Vec<(usize, JointKind)> = (robot.frames.iter().enumerate())
-        .filter(|(_, frame)| frame.kind != JointKind::Fixed)
-        .map(|(k, frame)| (k + 1, frame.kind))
-        .collect();
-    let n = joints.len();
+    let kinds = robot.joint_kinds();
+    let n = kinds.len();
     let columns = |letter: &str| (1..=n).map(|j| format!("{letter}{j}")).collect::<Vec<_>>().join(", ");
     let units = |revolute: &str, prismatic: &str| {
-        let unit =
-            |&(_, kind): &(usize, JointKind)| if kind == JointKind::Prismatic { prismatic } else { revolute };
-        format!("[{}]", joints.iter().map(unit).collect::<Vec<_>>().join(", "))
+        let unit = |kind: &JointKind| if *kind == JointKind::Prismatic { prismatic } else { revolute };
+        format!("[{}]", kinds.iter().map(unit).collect::<Vec<_>>().join(", "))
     };
     // A JSON string is a YAML string.
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
@@ -89,8 +85,8 @@ fn manifest(robot: &Robot, robot_reference: &str, title: &str, trajectories: &[T
         let fixed: Vec<String> = trajectory
             .fixed
             .iter()
-            .filter_map(|&j| joints.get(j))
-            .map(|(number, _)| number.to_string())
+            .filter(|&&j| j < n)
+            .map(|&j| robot.joint_number(JointIndex(j)).to_string())
             .collect();
         let fixed = if fixed.is_empty() { String::new() } else { format!(", fixed: [{}]", fixed.join(", ")) };
         let _ = writeln!(text, "  - {{file: traj{}.csv{fixed}}}", k + 1);

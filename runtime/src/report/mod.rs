@@ -1,4 +1,14 @@
 //! What a person reads: numbers in words, plots, pages. Text in, text out; no file is written here.
+//!
+//! ```
+//! use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent};
+//!
+//! let points = (0..100).map(|k| (f64::from(k) * 0.01, (f64::from(k) * 0.1).sin())).collect();
+//! let plot = Plot::new("Torque", "time, s", "N.m").with("measured", Role::Measured, SeriesKind::Line, points);
+//! let mut page = Page::new("A recording");
+//! page.paragraph(&format!("The model explains all but {}.", percent(0.034))).plot(&plot);
+//! assert!(page.to_html().contains("<svg"));
+//! ```
 
 mod axis;
 mod escape;

@@ -25,6 +25,9 @@ pub struct Butterworth {
 
 impl Butterworth {
     /// Low-pass of `order` (1 to 20) with `cutoff` in Hz for signals of `rate` samples a second.
+    ///
+    /// # Errors
+    /// A rate that is not positive, another order, a cut-off outside of (0, rate / 2).
     pub fn low_pass(order: usize, cutoff: f64, rate: f64) -> Result<Self, SignalError> {
         if !(rate.is_finite() && rate > 0.0) {
             return Err(SignalError::Rate(rate));
@@ -113,7 +116,8 @@ impl Butterworth {
     /// (odd padding) of `padding()` samples and each pass starts at rest (Gustafsson 1996 discusses the
     /// choices); agrees with scipy's `sosfiltfilt`.
     ///
-    /// The signal must be longer than the padding.
+    /// # Errors
+    /// A signal that is not longer than the padding.
     pub fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>, SignalError> {
         let mut out = Vec::new();
         self.zero_phase_into(signal, self.padding(), &mut out)?;
@@ -121,6 +125,9 @@ impl Butterworth {
     }
 
     /// `zero_phase` with a padding of one's own, into a buffer that is reused; `out` gets the length of `signal`.
+    ///
+    /// # Errors
+    /// As [`Butterworth::zero_phase`].
     pub fn zero_phase_into(
         &self,
         signal: &[f64],

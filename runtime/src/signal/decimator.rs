@@ -43,12 +43,18 @@ impl KeptRows {
 
 impl Decimator {
     /// Keeps one sample in `factor`, cut-off at the new Nyquist frequency.
+    ///
+    /// # Errors
+    /// A factor of 0.
     pub fn new(factor: usize) -> Result<Self, SignalError> {
         Self::with_band(factor, 1.0)
     }
 
     /// Keeps one sample in `factor`, cut-off at `band` times the new Nyquist frequency (0 < band <= 1); the number
     /// of taps grows with 1 / band, so that the transition keeps its shape.
+    ///
+    /// # Errors
+    /// A factor of 0, or a band outside of (0, 1].
     pub fn with_band(factor: usize, band: f64) -> Result<Self, SignalError> {
         if factor == 0 {
             return Err(SignalError::Factor);

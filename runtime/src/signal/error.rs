@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Misuse, or a signal that is too short for what was asked.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SignalError {
     /// A cut-off that is not between 0 and half the sampling rate.
     #[error("cut-off {cutoff} Hz: it must lie between 0 and {limit} Hz, half the sampling rate")]

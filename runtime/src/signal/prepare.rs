@@ -68,7 +68,8 @@ const SETTLED: f64 = 1e-4;
 /// columns of W. The samples at each end that the filter and the differences have spoiled are counted in
 /// `Motion::spoiled`.
 ///
-/// Errors: channels of unequal length, stamps that do not increase, values that are not finite, a motion too
+/// # Errors
+/// Channels of unequal length, stamps that do not increase, values that are not finite, a motion too
 /// short for the filter, a cut-off outside of (0, rate / 2).
 pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion, SignalError> {
     let name = &trajectory.name;
@@ -141,7 +142,10 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
 }
 
 /// Prepares the trajectories of a recording. Those that are too short to be filtered, as pieces between two gaps may
-/// be, are left out and named; it is an error only if none remains.
+/// be, are left out and named.
+///
+/// # Errors
+/// As [`prepare`], and where every trajectory is too short.
 pub fn prepare_all(
     trajectories: &[Trajectory],
     settings: &Preparation,

@@ -41,6 +41,10 @@ const MOST_SAMPLES: f64 = 1.3e8;
 impl UniformGrid {
     /// The grid of strictly increasing stamps (s): their own where they are uniform, else at the typical (median)
     /// step, or at `rate` Hz where one is given. `name` is for errors.
+    ///
+    /// # Errors
+    /// Fewer than four stamps, stamps that do not increase or are not finite, a rate that is not positive, a grid of
+    /// more than 130 million samples.
     pub fn of(name: &str, time: &[f64], rate: Option<f64>) -> Result<Self, SignalError> {
         let n = time.len();
         if n < 4 {

@@ -28,6 +28,9 @@ impl Spectrum {
 /// mean. Agrees with scipy's `welch`.
 ///
 /// A signal shorter than a segment is taken as one segment of its own length.
+///
+/// # Errors
+/// A rate that is not positive, a signal of fewer than four samples.
 pub fn welch(signal: &[f64], rate: f64, segment: usize) -> Result<Spectrum, SignalError> {
     if !(rate.is_finite() && rate > 0.0) {
         return Err(SignalError::Rate(rate));

@@ -2,9 +2,10 @@
 
 use super::SimulationError;
 use super::controller::{Controller, ControllerSettings};
-use super::plant::{Plant, State};
+use super::plant::Plant;
 use super::reference::Reference;
 use super::sensors::{SensorSettings, Sensors};
+use super::state::State;
 use crate::model::Model;
 use crate::recording::Trajectory;
 use crate::signal::Motion;

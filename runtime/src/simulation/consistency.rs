@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, SymmetricEigen};
 
 use super::SimulationError;
 use super::drive::rotor_inertias;
-use crate::model::{ParameterKind, Robot};
+use crate::model::{JointIndex, ParameterKind, Robot};
 
 /// Checks that a standard parameter set can belong to real bodies.
 ///
@@ -43,7 +43,8 @@ pub fn check_standard(robot: &Robot, standard: &[f64]) -> Result<(), SimulationE
     }
     for (motor, &rotor) in rotor_inertias(robot, &inertia).iter().enumerate() {
         if rotor < 0.0 {
-            return Err(SimulationError::NegativeRotor { motor: motor + 1, inertia: rotor });
+            let motor = robot.joint_number(JointIndex(motor));
+            return Err(SimulationError::NegativeRotor { motor, inertia: rotor });
         }
     }
     for frame in 0..robot.frames.len() {

@@ -1,6 +1,6 @@
 //! A state of a plant under motor torques.
 
-use super::plant::{Hold, State};
+use super::state::{Hold, State};
 
 /// Where a plant is evaluated: coordinates, what holds, and the torques of its motors.
 #[derive(Clone, Copy)]

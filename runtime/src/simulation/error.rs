@@ -1,9 +1,11 @@
 //! Misuse of the simulation, and plants that cannot exist.
 
+use crate::model::JointNumber;
 use thiserror::Error;
 
 /// Why something cannot be simulated.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// A slice of the wrong length.
     #[error("{expected} {what} expected, {found} given")]
@@ -46,8 +48,8 @@ pub enum SimulationError {
          is part of the Ia of each of them"
     )]
     NegativeRotor {
-        /// Motor, from 1.
-        motor: usize,
+        /// Number of the motor: that of its own joint.
+        motor: JointNumber,
         /// Its inertia, kg.m2 at the motor.
         inertia: f64,
     },

@@ -2,8 +2,10 @@
 
 use super::driven::Driven;
 use super::extra::Instant;
-use super::plant::{Hold, Plant, State, Work};
+use super::plant::Plant;
+use super::state::{Hold, State};
 use super::stiction::{self, Decision};
+use super::work::Work;
 use super::{SimulationError, cholesky};
 
 impl Plant<'_> {

@@ -8,7 +8,8 @@
 //! on with it. Friction never chatters, and nothing at rest creeps.
 
 use super::SimulationError;
-use super::plant::{Hold, Plant, State};
+use super::plant::Plant;
+use super::state::{Hold, State};
 
 /// Slip velocities below this are rest where a step ends at a reversal, rad/s or m/s.
 const REST: f64 = 1e-9;

@@ -1,59 +1,13 @@
-//! A simulated robot: its parameters, its friction, its elastic joints, and its state.
+//! A simulated robot: its parameters, its friction and its elastic joints.
 
 use super::SimulationError;
 use super::drive::{DriveFriction, rotor_matrix};
+use super::elastic::{ElasticJoint, check_elastic};
 use super::extra::ExtraTorque;
 use super::scheme::Scheme;
-use super::stiction::{Decision, StictionScratch};
-use super::stiff::Stiff;
-use crate::model::{Model, ParameterKind};
-
-/// Compliance and play between motor and link of one joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ElasticJoint {
-    /// 0-based joint.
-    pub joint: usize,
-    /// N.m/rad or N/m.
-    pub stiffness: f64,
-    /// N.m.s/rad or N.s/m.
-    pub damping: f64,
-    /// Total play, rad or m; 0 for none.
-    pub play: f64,
-}
-
-/// Whether a place of dry friction holds or slips.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hold {
-    /// At rest, held by friction.
-    Sticking,
-    /// Slip velocity positive.
-    Forward,
-    /// Slip velocity negative.
-    Backward,
-}
-
-/// Where the robot is. The first n coordinates are the joints; then one per elastic joint, its motor side.
-#[derive(Debug, Clone, PartialEq)]
-pub struct State {
-    /// s.
-    pub time: f64,
-    /// rad or m.
-    pub q: Vec<f64>,
-    /// rad/s or m/s.
-    pub dq: Vec<f64>,
-    /// One per place of dry friction.
-    pub hold: Vec<Hold>,
-}
-
-impl State {
-    /// Takes over another state of the same plant, without allocating.
-    pub fn copy_from(&mut self, other: &State) {
-        self.time = other.time;
-        self.q.copy_from_slice(&other.q);
-        self.dq.copy_from_slice(&other.dq);
-        self.hold.copy_from_slice(&other.hold);
-    }
-}
+use super::state::{Hold, State};
+use super::work::Work;
+use crate::model::{JointIndex, Model, ParameterKind};
 
 /// A robot that can be driven by joint torques.
 pub struct Plant<'m> {
@@ -70,50 +24,6 @@ pub struct Plant<'m> {
     pub(super) effects: Vec<Box<dyn ExtraTorque + 'm>>,
     pub(super) scheme: Scheme,
     pub(super) work: Work,
-}
-
-/// Memory of one evaluation, allocated once.
-#[derive(Debug, Clone)]
-pub(super) struct Work {
-    pub(super) link_mass: Vec<f64>,
-    pub(super) link_bias: Vec<f64>,
-    pub(super) mass: Vec<f64>,
-    /// M⁻¹·Gᵀ, one row per friction element.
-    pub(super) response: Vec<f64>,
-    pub(super) a: Vec<f64>,
-    pub(super) b: Vec<f64>,
-    pub(super) limits: Vec<[f64; 2]>,
-    pub(super) chosen: Vec<usize>,
-    pub(super) decisions: Vec<Decision>,
-    pub(super) stiction: StictionScratch,
-    pub(super) extra: Vec<f64>,
-    pub(super) joint_levels: Vec<[f64; 2]>,
-    pub(super) levels: Vec<[f64; 2]>,
-    pub(super) motor_q: Vec<f64>,
-    pub(super) motor_dq: Vec<f64>,
-    pub(super) load: Vec<f64>,
-    pub(super) stages: Stages,
-    pub(super) stiff: Stiff,
-    pub(super) next_q: Vec<f64>,
-    pub(super) next_dq: Vec<f64>,
-}
-
-/// Memory of the stages of one step.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Stages {
-    /// Accelerations: the first at the start of the step, the last nearest its end.
-    pub(super) slopes: [Vec<f64>; 4],
-    /// Coordinates in between.
-    pub(super) q: Vec<f64>,
-    /// Their velocities.
-    pub(super) dq: Vec<f64>,
-}
-
-impl Stages {
-    fn new(freedom: usize) -> Self {
-        let zero = || vec![0.0; freedom];
-        Self { slopes: std::array::from_fn(|_| zero()), q: zero(), dq: zero() }
-    }
 }
 
 impl<'m> Plant<'m> {
@@ -171,7 +81,8 @@ impl<'m> Plant<'m> {
         for (k, joint) in elastic.iter().enumerate() {
             check_elastic(joint, &inertia)?;
             if elastic[..k].iter().any(|other| other.joint == joint.joint) {
-                let (what, found) = ("each elastic joint", (joint.joint + 1) as f64);
+                let number = robot.joint_number(JointIndex(joint.joint));
+                let (what, found) = ("each elastic joint", number.0 as f64);
                 return Err(SimulationError::Setting { what, expected: "another joint", found });
             }
         }
@@ -209,29 +120,7 @@ impl<'m> Plant<'m> {
         });
         let every_joint = effects.iter().any(|e| e.has_dry_friction());
         let friction = DriveFriction::new(robot, kept, &motor, every_joint)?;
-        let elements = friction.elements.len();
-        let work = Work {
-            link_mass: vec![0.0; n * n],
-            link_bias: vec![0.0; n],
-            mass: vec![0.0; freedom * freedom],
-            response: vec![0.0; elements * freedom],
-            a: vec![0.0; elements * elements],
-            b: vec![0.0; elements],
-            limits: vec![[0.0; 2]; elements],
-            chosen: Vec::with_capacity(elements),
-            decisions: vec![Decision::Stick; elements],
-            stiction: StictionScratch::new(elements),
-            extra: vec![0.0; n],
-            joint_levels: vec![[0.0; 2]; n],
-            levels: friction.elements.iter().map(|e| [e.level; 2]).collect(),
-            motor_q: vec![0.0; n],
-            motor_dq: vec![0.0; n],
-            load: vec![0.0; n],
-            stages: Stages::new(freedom),
-            stiff: Stiff::new(freedom),
-            next_q: vec![0.0; freedom],
-            next_dq: vec![0.0; freedom],
-        };
+        let work = Work::new(n, freedom, &friction.elements);
         let rotor = rotor.unwrap_or_default();
         Ok(Self {
             model,
@@ -301,24 +190,4 @@ impl<'m> Plant<'m> {
     pub fn motor_acceleration(&self, ddq: &[f64], j: usize) -> f64 {
         ddq[self.motor[j]]
     }
-}
-
-fn check_elastic(joint: &ElasticJoint, inertia: &[f64]) -> Result<(), SimulationError> {
-    let setting = |what, expected, found| Err(SimulationError::Setting { what, expected, found });
-    let Some(&rotor) = inertia.get(joint.joint) else {
-        return setting("the elastic joint", "the number of a joint of the robot", (joint.joint + 1) as f64);
-    };
-    if !(joint.stiffness > 0.0 && joint.stiffness.is_finite()) {
-        return setting("the stiffness of an elastic joint", "positive", joint.stiffness);
-    }
-    if !(joint.damping >= 0.0 && joint.damping.is_finite()) {
-        return setting("the damping of an elastic joint", "zero or positive", joint.damping);
-    }
-    if !(joint.play >= 0.0 && joint.play.is_finite()) {
-        return setting("the play of a joint", "zero or positive", joint.play);
-    }
-    if rotor <= 0.0 {
-        return setting("Ia of an elastic joint", "positive", rotor);
-    }
-    Ok(())
 }

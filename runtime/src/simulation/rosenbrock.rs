@@ -3,8 +3,10 @@
 use super::SimulationError;
 use super::driven::Driven;
 use super::lu::lu_factor;
-use super::plant::{Plant, Stages, State};
+use super::plant::Plant;
+use super::state::State;
 use super::stiff::Stiff;
+use super::work::Stages;
 
 /// g of [`super::Scheme::Rosenbrock2`]: 1 - 1/sqrt(2), the L-stable value with the smaller error.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;

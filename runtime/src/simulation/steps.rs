@@ -2,8 +2,10 @@
 
 use super::SimulationError;
 use super::driven::Driven;
-use super::plant::{Plant, Stages, State};
+use super::plant::Plant;
 use super::scheme::Scheme;
+use super::state::State;
+use super::work::Stages;
 
 impl Plant<'_> {
     /// Chooses how steps are taken; [`Scheme::RungeKutta4`] unless told otherwise.

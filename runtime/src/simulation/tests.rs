@@ -4,7 +4,7 @@
 use super::excitation::{ExcitationSettings, FourierJoint, FourierMotion, MotionKind, excite};
 use super::testing::{arm, pendulum, random_state, tx40, wrist};
 use super::*;
-use crate::model::{Model, ParameterKind, RecursiveModel, torques_at};
+use crate::model::{JointNumber, Model, ParameterKind, RecursiveModel, torques_at};
 use rand::{RngExt, SeedableRng};
 
 fn without_friction(model: &RecursiveModel, chi: &[f64]) -> Vec<f64> {
@@ -222,7 +222,7 @@ fn parameters_that_no_robot_has_are_refused_by_name() {
     let ia5 = model.robot().standard.iter().position(|p| p.name == "Ia5").unwrap();
     standard[ia5] = 0.0;
     let refused = check_standard(model.robot(), &standard).unwrap_err();
-    assert!(matches!(refused, SimulationError::NegativeRotor { motor: 4, .. }), "{refused}");
+    assert!(matches!(refused, SimulationError::NegativeRotor { motor: JointNumber(4), .. }), "{refused}");
 }
 
 /// A slow wave of every joint about `middle`, as Fourier series that start at rest.

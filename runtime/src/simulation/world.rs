@@ -3,9 +3,10 @@
 use super::SimulationError;
 use super::coupled_friction::CoupledFriction;
 use super::effect::EffectTorque;
+use super::elastic::ElasticJoint;
 use super::extra::ExtraTorque;
 use super::less_friction::LessFriction;
-use super::plant::{ElasticJoint, Plant};
+use super::plant::Plant;
 use super::push::Push;
 use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, JointLaw};
 use crate::model::{Model, ParameterKind, RecursiveModel, RecursiveModelError, Robot};

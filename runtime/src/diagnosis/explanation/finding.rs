@@ -45,10 +45,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     let mut deviations = uncertainty(model, k, &amplitude)?;
     deviations.0.iter_mut().chain(&mut deviations.1).for_each(|s| *s *= accepted.inflation);
     let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
-    let scale = match accepted.place {
-        Place::Joint(j) => Some(model.context.scales[j].into()),
-        _ => None,
-    };
+    let scale = accepted.place.joint().map(|j| model.context.scales[j].into());
     let after = regression.held_out(false)?.error_on(&accepted.own);
     let before = model.without(k)?.regression(window).held_out(false)?.error_on(&accepted.own);
     let mut finding = Finding {

@@ -126,8 +126,7 @@ impl<'a> Context<'a> {
                     &self.engine,
                     robot.gravity,
                     &self.chi,
-                    law,
-                    &Direction { variants: wanted, which, at },
+                    &Direction { effect: law, variants: wanted, which, at },
                     [&s.q, &s.dq, &s.ddq, &s.jerk],
                     &mut out,
                 );

@@ -1,5 +1,6 @@
 //! Why motions cannot be observed.
 
+use crate::model::JointNumber;
 use crate::signal::SignalError;
 
 /// Misuse of the observation.
@@ -33,8 +34,8 @@ pub enum ObserveError {
     FixedJoint {
         /// Name of the motion.
         motion: String,
-        /// 1-based joint.
-        joint: usize,
+        /// Its number, or one that no joint has.
+        joint: JointNumber,
     },
     /// Band or rate that mean nothing.
     #[error("{what} must be a positive number of Hz, not {value}")]

@@ -5,6 +5,7 @@ mod error;
 mod merge;
 mod observation;
 mod prepared;
+mod row_plan;
 mod rows;
 mod select;
 mod settings;
@@ -17,19 +18,24 @@ mod work;
 
 pub use error::ObserveError;
 pub use observation::{EquationFactor, Observation, TimeBlock};
+pub(crate) use row_plan::{RowPlan, row_plans, why_nothing};
 pub use rows::Rows;
 pub use select::LeftOut;
 pub use settings::{Equations, ExtraColumns, ObserveSettings, Progress};
 pub use standstill::Standstill;
 
-use crate::model::{Model, ParameterKind};
-use crate::signal::{Decimator, Motion};
+use crate::model::{JointIndex, Model, ParameterKind};
+use crate::signal::Motion;
 use prepared::Prepared;
 
 /// Observes motions: evaluates the model at the full rate in blocks, decimates Y and every column of W with one
 /// linear-phase filter, leaves out the rows that say nothing, and reduces the rest to orthogonal factors.
 ///
 /// Neither W nor any of its columns is ever held at the full rate.
+///
+/// # Errors
+/// Motions of another robot or with channels of unequal length; more than 32 joints; a band or rate that is not
+/// positive; [`ObserveError::NoRows`] where no row is left, with the reason.
 pub fn observe(
     model: &dyn Model,
     motions: &[Motion],
@@ -47,7 +53,7 @@ pub fn observe(
     let mut prepared = Vec::with_capacity(motions.len());
     for (trajectory, motion) in motions.iter().enumerate() {
         let source = source::source(equations, model, trajectory, motion, extra)?;
-        let decimator = decimator(motion.rate, settings)?;
+        let decimator = row_plan::decimator(motion.rate, settings)?;
         let samples = motion.q.first().map_or(0, Vec::len);
         let valid = motion.spoiled..samples.saturating_sub(motion.spoiled).max(motion.spoiled);
         let grid = decimator.kept_rows(valid);
@@ -75,6 +81,11 @@ pub fn observe(
     };
     let mut exact: Vec<bool> = robot.base.iter().map(|p| exact(robot.standard[p.standard].kind)).collect();
     exact.resize(unknowns.len(), false);
+    let joint = |rows: &LeftOut| match equations {
+        Equations::Torque => Some(robot.joint_number(JointIndex(rows.equation))),
+        Equations::Power { .. } => None,
+    };
+    let numbered = |s: &select::Selection| LeftOut { joint: joint(&s.left_out), ..s.left_out.clone() };
     Ok(Observation {
         equations,
         exact,
@@ -82,24 +93,11 @@ pub fn observe(
         unknowns,
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),
         rates: prepared.iter().map(|p| p.motion.rate / p.decimator.factor() as f64).collect(),
-        bands: prepared.iter().map(|p| band_of(&p.decimator, p.motion.rate)).collect(),
+        bands: prepared.iter().map(|p| row_plan::band_of(&p.decimator, p.motion.rate)).collect(),
         groups,
         blocks,
-        left_out: prepared.iter().flat_map(|p| p.selection.iter().map(|s| s.left_out.clone())).collect(),
+        left_out: prepared.iter().flat_map(|p| p.selection.iter().map(numbered)).collect(),
         samples: motions.iter().map(|m| m.q.first().map_or(0, Vec::len)).sum(),
         rows,
     })
-}
-
-/// The filter for a recording's rate.
-fn decimator(rate: f64, settings: &ObserveSettings) -> Result<Decimator, ObserveError> {
-    let factor = Decimator::factor_for(rate, settings.rate.unwrap_or(2.0 * settings.band));
-    let nyquist = 0.5 * rate / factor as f64;
-    Ok(Decimator::with_band(factor, (settings.band / nyquist).min(1.0))?)
-}
-
-fn band_of(decimator: &Decimator, rate: f64) -> f64 {
-    let taps = decimator.taps().len();
-    let half_rate = 0.5 * rate;
-    if taps == 1 { half_rate } else { half_rate * 20.0 / (taps - 1) as f64 }
 }

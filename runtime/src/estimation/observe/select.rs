@@ -3,6 +3,7 @@
 use super::error::ObserveError;
 use super::settings::{Equations, ObserveSettings};
 use super::standstill::Standstill;
+use crate::model::JointNumber;
 use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// How many rows of one equation of one motion were used.
@@ -10,8 +11,10 @@ use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 pub struct LeftOut {
     /// Index of the motion.
     pub trajectory: usize,
-    /// Joint, or 0 for the power model.
+    /// Joint (0-based), or 0 for the power model.
     pub equation: usize,
+    /// Number of the joint in the table; `None` for the power model.
+    pub joint: Option<JointNumber>,
     /// Rows used.
     pub used: usize,
     /// Left out because the joint hardly moves.

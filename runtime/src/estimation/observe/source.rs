@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::block::BLOCK;
 use super::error::ObserveError;
 use super::settings::{Equations, ExtraColumns};
-use crate::model::{LINE, Lanes, Line, Model, ParameterKind, States};
+use crate::model::{JointIndex, LINE, Lanes, Line, Model, ParameterKind, Robot, States};
 use crate::signal::Motion;
 
 /// Most joints that an observation can have.
@@ -58,7 +58,10 @@ pub(super) fn source<'a>(
     extra: Option<&'a dyn ExtraColumns>,
 ) -> Result<Box<dyn Source + 'a>, ObserveError> {
     let n = model.robot().joints();
-    check(n, motion)?;
+    if n > MAX_JOINTS {
+        return Err(ObserveError::TooManyJoints { found: n });
+    }
+    check_shape(model.robot(), motion)?;
     let signals = MotionOfMovingJoints::new(motion, n);
     Ok(match equations {
         Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
@@ -72,10 +75,9 @@ pub(super) fn source<'a>(
     })
 }
 
-fn check(n: usize, motion: &Motion) -> Result<(), ObserveError> {
-    if n > MAX_JOINTS {
-        return Err(ObserveError::TooManyJoints { found: n });
-    }
+/// Whether a motion is one of this robot's, with channels of one length.
+pub(super) fn check_shape(robot: &Robot, motion: &Motion) -> Result<(), ObserveError> {
+    let n = robot.joints();
     let samples = motion.q.first().map_or(0, Vec::len);
     for channels in [&motion.q, &motion.dq, &motion.ddq, &motion.torque] {
         if channels.len() != n {
@@ -90,7 +92,8 @@ fn check(n: usize, motion: &Motion) -> Result<(), ObserveError> {
         }
     }
     if let Some(&joint) = motion.fixed.iter().find(|&&j| j >= n) {
-        return Err(ObserveError::FixedJoint { motion: motion.name.clone(), joint: joint + 1 });
+        let joint = robot.joint_number(JointIndex(joint));
+        return Err(ObserveError::FixedJoint { motion: motion.name.clone(), joint });
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use wide::f64x4;
 
 use super::block::BLOCK;
 use super::source::Source;
-use crate::model::{LINE, Line};
+use crate::model::{LINE, Lanes, Line};
 use crate::signal::{Decimator, KeptRows};
 
 /// Columns that are filtered together.
@@ -39,7 +39,7 @@ pub(super) fn decimate<S: Source + ?Sized>(
     };
     let open = (taps.count + BLOCK) / grid.step + 2;
     let mut sums = vec![f64x4::ZERO; open * quads.len()];
-    let mut lines = vec![[f64x4::ZERO; 2]; width * (BLOCK / LINE)];
+    let mut lines = vec![[Lanes::splat(0.0); 2]; width * (BLOCK / LINE)];
     let mut values = vec![0.0; QUAD * quads.len()];
     let mut passes = Vec::with_capacity(open);
     let mut scratch = Vec::new();
@@ -159,10 +159,10 @@ fn products<const R: usize>(
     for line in lines.chunks_exact(width) {
         for part in 0..2 {
             let h: [f64x4; R] = std::array::from_fn(|r| load(&taps[r][at..at + 4]));
-            add_products(&mut sum_a, &h, line[a][part]);
-            add_products(&mut sum_b, &h, line[b][part]);
-            add_products(&mut sum_c, &h, line[c][part]);
-            add_products(&mut sum_d, &h, line[d][part]);
+            add_products(&mut sum_a, &h, line[a][part].simd());
+            add_products(&mut sum_b, &h, line[b][part].simd());
+            add_products(&mut sum_c, &h, line[c][part].simd());
+            add_products(&mut sum_d, &h, line[d][part].simd());
             at += 4;
         }
     }

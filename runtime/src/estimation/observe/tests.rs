@@ -2,6 +2,7 @@
 use super::*;
 use crate::estimation::Factor;
 use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot, StateSlices, torques};
+use crate::signal::Decimator;
 use nalgebra::DMatrix;
 use std::borrow::Cow;
 use std::ops::Range;

@@ -29,6 +29,10 @@ pub struct RecursiveModel {
 impl RecursiveModel {
     /// Prepares the table. Entries of IDM that vanish in every one of a set of generic states are taken as zero
     /// for every state and are not in the pattern.
+    ///
+    /// # Errors
+    /// More than [`MAX_FRAMES`] frames, a parent behind its child, a gear matrix that does not fit the joints or with
+    /// a zero on its diagonal, a base parameter that refers to nothing.
     pub fn new(robot: Robot) -> Result<RecursiveModel, RecursiveModelError> {
         check(&robot)?;
         let links: Vec<Link<f64>> = robot.frames.iter().map(Link::constant).collect();

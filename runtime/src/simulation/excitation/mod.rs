@@ -2,69 +2,20 @@
 
 mod design;
 mod evolution;
+mod family;
 mod fourier;
 mod information;
 mod limits;
+mod motion;
 mod point_to_point;
+mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use design::{ExcitationPlan, ExcitationSettings, MotionKind, excite};
+pub use design::{ExcitationPlan, excite};
 pub use fourier::{Bounds, FourierJoint, FourierMotion};
 pub use information::{Criterion, Identification, Observer, condition, log_determinant};
 pub use limits::peak_torque_share;
+pub use motion::ExcitingMotion;
 pub use point_to_point::{PointToPointMotion, Profile};
-
-use super::Reference;
-
-/// A motion that was designed.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ExcitingMotion {
-    /// A Fourier series.
-    Fourier(FourierMotion),
-    /// Points joined by a profile.
-    PointToPoint(PointToPointMotion),
-}
-
-impl ExcitingMotion {
-    /// The same path, slower by a factor above 1.
-    pub fn stretch(&mut self, factor: f64) {
-        match self {
-            Self::Fourier(motion) => {
-                motion.period *= factor;
-                motion.joints.iter_mut().for_each(|joint| joint.scale(1.0 / factor));
-            }
-            Self::PointToPoint(motion) => motion.stretch(factor),
-        }
-    }
-}
-
-impl Reference for ExcitingMotion {
-    fn joints(&self) -> usize {
-        match self {
-            Self::Fourier(motion) => motion.joints(),
-            Self::PointToPoint(motion) => motion.joints(),
-        }
-    }
-
-    fn duration(&self) -> f64 {
-        match self {
-            Self::Fourier(motion) => motion.duration(),
-            Self::PointToPoint(motion) => motion.duration(),
-        }
-    }
-
-    fn at(&self, t: f64, q: &mut [f64], dq: &mut [f64], ddq: &mut [f64]) {
-        match self {
-            Self::Fourier(motion) => motion.at(t, q, dq, ddq),
-            Self::PointToPoint(motion) => motion.at(t, q, dq, ddq),
-        }
-    }
-
-    fn fixed(&self) -> Vec<usize> {
-        match self {
-            Self::Fourier(motion) => motion.fixed(),
-            Self::PointToPoint(motion) => motion.fixed(),
-        }
-    }
-}
+pub use settings::{ExcitationSettings, MotionKind};

@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::model::{Limits, Model, RecursiveModel, Robot, torques_at};
+use crate::simulation::Reference;
 use crate::simulation::testing::{arm, with_numeric_base};
 use rand::{RngExt, SeedableRng};
 use std::borrow::Cow;

@@ -3,8 +3,12 @@
 use crate::effects::EffectTerm;
 use crate::model::Model;
 use crate::signal::Motion;
+use crate::simulation::closed_loop::{LoopSettings, simulate};
+use crate::simulation::error::SimulationError;
 use crate::simulation::less_friction::LessFriction;
-use crate::simulation::{LoopSettings, SampledReference, SensorSettings, SimulationError, World, simulate};
+use crate::simulation::reference::SampledReference;
+use crate::simulation::sensors::SensorSettings;
+use crate::simulation::world::World;
 
 /// Control rate of the simulation at least, Hz; and with compliant joints, whose resonance a slower loop would excite.
 const RATE: f64 = 1000.0;

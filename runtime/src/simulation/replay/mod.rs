@@ -14,7 +14,7 @@ use crate::estimation::choose_bandwidth;
 use crate::model::Model;
 use crate::recording::Trajectory;
 use crate::signal::{Preparation, SignalError, prepare_all};
-use crate::simulation::SimulationError;
+use crate::simulation::error::SimulationError;
 use compare::{Comparison, shifted, smooth};
 use follow::{follow, left_out};
 use std::fmt;

@@ -1,13 +1,9 @@
 //! Keeping score of a diagnosis against what was hidden.
 
-use std::path::Path;
+use serde::Serialize;
 
-use dynid_runtime::diagnosis::Finding;
-use dynid_runtime::effects::EffectKind;
-use dynid_runtime::model::Robot;
-use serde::{Deserialize, Serialize};
-
-use crate::failure::{Failure, file_failure};
+use super::outcome::Finding;
+use crate::effects::EffectKind;
 
 /// An effect that was hidden in a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,50 +12,6 @@ pub struct Hidden {
     pub effect: EffectKind,
     /// Numbers j of the joints that it must be named on, any of them; empty: any joint, or none.
     pub joints: Vec<usize>,
-}
-
-/// What of `truth.yaml` counts; its other numbers are for a person.
-#[derive(Debug, Deserialize)]
-struct TruthFile {
-    #[serde(default)]
-    effects: Vec<TrueEffect>,
-}
-
-#[derive(Debug, Deserialize)]
-struct TrueEffect {
-    effect: String,
-    joint: Option<usize>,
-    #[serde(default)]
-    joints: Vec<usize>,
-}
-
-/// Reads what was hidden.
-///
-/// # Errors
-/// [`Failure::Input`] with the file, and the line where there is one.
-pub fn read_truth(path: &Path, robot: &Robot) -> Result<Vec<Hidden>, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| file_failure("read the truth", path, &error))?;
-    let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
-    let truth: TruthFile = serde_yaml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    truth
-        .effects
-        .into_iter()
-        .map(|hidden| {
-            let effect = EffectKind::from_id(&hidden.effect).ok_or_else(|| {
-                wrong(format!("effect {}: the catalogue has no such effect", hidden.effect))
-            })?;
-            let joints: Vec<usize> = hidden.joint.into_iter().chain(hidden.joints).collect();
-            match joints.iter().find(|&&j| joint_index(robot, j).is_none()) {
-                Some(none) => Err(wrong(format!("{}: {} has no joint {none}", hidden.effect, robot.name))),
-                None => Ok(Hidden { effect, joints }),
-            }
-        })
-        .collect()
-}
-
-/// 0-based joint of the frame with number j.
-pub fn joint_index(robot: &Robot, j: usize) -> Option<usize> {
-    robot.joint_of_frame().get(j.checked_sub(1)?).copied().flatten()
 }
 
 /// What was found, sorted by whether it was there.

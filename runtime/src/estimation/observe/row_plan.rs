@@ -1,0 +1,92 @@
+//! Which rows a motion has, without the columns: for what is compared on the rows of an observation.
+
+use super::error::ObserveError;
+use super::select::{self, LeftOut, Selection, select};
+use super::settings::{Equations, ObserveSettings};
+use super::source::check_shape;
+use crate::model::{JointIndex, Robot};
+use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
+
+/// The rows of the torque equations of one motion.
+pub(crate) struct RowPlan {
+    /// What brings a signal at the full rate to the rows.
+    pub decimator: Decimator,
+    /// Where the rows lie.
+    pub grid: KeptRows,
+    /// For each joint and row, whether it is used.
+    pub used: Vec<Vec<bool>>,
+    /// For each joint, what is used and what is not.
+    pub left_out: Vec<LeftOut>,
+    /// Band of the rows, Hz.
+    pub band: f64,
+}
+
+/// The rows that [`super::observe`] uses of motions of a robot.
+///
+/// # Errors
+/// As of [`super::observe`], but for motions without any usable row.
+pub(crate) fn row_plans(
+    robot: &Robot,
+    motions: &[Motion],
+    settings: &ObserveSettings,
+) -> Result<Vec<RowPlan>, ObserveError> {
+    check_frequencies(settings)?;
+    let detected = StandstillSpeeds::of(motions);
+    motions
+        .iter()
+        .enumerate()
+        .map(|(trajectory, motion)| {
+            check_shape(robot, motion)?;
+            let decimator = decimator(motion.rate, settings)?;
+            let grid = decimator.kept_rows(valid_samples(motion));
+            let selection =
+                select(trajectory, motion, Equations::Torque, &decimator, grid, &detected, settings)?;
+            let (used, left_out) = selection
+                .into_iter()
+                .map(|Selection { used, left_out }| {
+                    let joint = Some(robot.joint_number(JointIndex(left_out.equation)));
+                    (used, LeftOut { joint, ..left_out })
+                })
+                .unzip();
+            let band = band_of(&decimator, motion.rate);
+            Ok(RowPlan { decimator, grid, used, left_out, band })
+        })
+        .collect()
+}
+
+/// What is to blame when no row of the plans is used.
+pub(crate) fn why_nothing(plans: &[RowPlan], motions: &[Motion], settings: &ObserveSettings) -> String {
+    let left_out = plans.iter().flat_map(|p| &p.left_out);
+    let duration = |m: &Motion| m.q.first().map_or(0, Vec::len) as f64 / m.rate;
+    let longest = motions.iter().map(duration).fold(0.0, f64::max);
+    select::why_nothing(left_out, motions.is_empty(), longest, settings.band)
+}
+
+/// The samples that no filter has spoiled.
+fn valid_samples(motion: &Motion) -> std::ops::Range<usize> {
+    let samples = motion.q.first().map_or(0, Vec::len);
+    motion.spoiled..samples.saturating_sub(motion.spoiled).max(motion.spoiled)
+}
+
+fn check_frequencies(settings: &ObserveSettings) -> Result<(), ObserveError> {
+    for (what, value) in [("band", settings.band), ("rate", settings.rate.unwrap_or(1.0))] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(ObserveError::Frequency { what, value });
+        }
+    }
+    Ok(())
+}
+
+/// The filter for a recording's rate.
+pub(super) fn decimator(rate: f64, settings: &ObserveSettings) -> Result<Decimator, ObserveError> {
+    let factor = Decimator::factor_for(rate, settings.rate.unwrap_or(2.0 * settings.band));
+    let nyquist = 0.5 * rate / factor as f64;
+    Ok(Decimator::with_band(factor, (settings.band / nyquist).min(1.0))?)
+}
+
+/// The band that a filter lets through, Hz.
+pub(super) fn band_of(decimator: &Decimator, rate: f64) -> f64 {
+    let taps = decimator.taps().len();
+    let half_rate = 0.5 * rate;
+    if taps == 1 { half_rate } else { half_rate * 20.0 / (taps - 1) as f64 }
+}

@@ -1,0 +1,288 @@
+//! An identified model as it is saved and handed to other programs.
+
+use serde::{Deserialize, Serialize};
+
+use super::fingerprint::fingerprint;
+use crate::effects::EffectTerm;
+use crate::estimation::observe::{LeftOut, Observation};
+use crate::estimation::{EquationError, Estimate, ParameterEstimate, Warning};
+use crate::model::Robot;
+use crate::prediction::{Errors, Evaluation};
+
+/// Version of the fields of [`Identified`]: raised when a reader of the version before would misread a file.
+pub const SCHEMA: u32 = 1;
+
+/// An identified model: what `identify` writes as JSON and saves, and what `validate` reads back.
+///
+/// [`super::read`] reads it with every field checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Identified {
+    /// [`SCHEMA`]; 0 in files from before there was one.
+    #[serde(default)]
+    pub schema_version: u32,
+    /// The dynid that wrote it; empty in files from before schema 1.
+    #[serde(default)]
+    pub dynid_version: String,
+    /// Name of the robot, or the path it was given by.
+    pub robot: String,
+    /// `idim-wls`, ...
+    pub method: String,
+    /// Samples of the recording that were read, all joints counted once.
+    pub samples: usize,
+    /// ||Y - W chi|| / ||Y|| of the joint torques over the rows used.
+    pub relative_error: f64,
+    /// The same per joint.
+    pub per_joint: Vec<f64>,
+    /// The same of the power, where the power model was identified.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub power_relative_error: Option<f64>,
+    /// chi with its standard deviations.
+    pub base_parameters: Vec<NamedParameter>,
+    /// The simplified model: parameters that are well determined, re-estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub essential_parameters: Option<EssentialParameters>,
+    /// Condition number of the weighted observation matrix with columns of unit length, where the method has one.
+    #[serde(default)]
+    pub condition_number: Option<f64>,
+    /// Rows of the files that could not be right, where the files were looked at.
+    #[serde(default)]
+    pub rows_left_out: Option<u64>,
+    /// Equations used and left out, per trajectory and joint.
+    #[serde(default)]
+    pub equations: Vec<EquationRows>,
+    /// Band of the equations, Hz.
+    pub band: f64,
+    /// What to know before believing it.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+    /// Effects that a diagnosis found and that belong to the model.
+    #[serde(default)]
+    pub effects: Vec<EffectTerm>,
+    /// By how much the torque channel was found to be later than the positions, s.
+    #[serde(default)]
+    pub delay: f64,
+    /// Relative error that the noise of the torques makes up, where it matters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<Errors>,
+    /// [`fingerprint`] of the table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fingerprint: Option<String>,
+    /// The robot as it was when the parameters were identified.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<Robot>,
+}
+
+/// A parameter with its uncertainty and unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NamedParameter {
+    /// Base parameter.
+    pub name: String,
+    /// SI.
+    pub value: f64,
+    /// Standard deviation (18); `None` where the data do not determine the parameter.
+    pub sigma: Option<f64>,
+    /// 100 sigma / |value| (19).
+    pub relative_sigma_percent: Option<f64>,
+    /// Standard deviation from blocks of time, for errors that last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_blocks: Option<f64>,
+    /// SI unit.
+    pub unit: String,
+}
+
+/// The simplified model of the paper.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EssentialParameters {
+    /// What is kept.
+    pub parameters: Vec<NamedParameter>,
+    /// What was cancelled, first first.
+    pub cancelled: Vec<String>,
+    /// Relative error with what is kept.
+    pub relative_error: f64,
+}
+
+/// The rows of one equation in one trajectory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EquationRows {
+    /// Name of the trajectory.
+    pub trajectory: String,
+    /// Number of the joint in the table; 0 for the power model.
+    pub joint: usize,
+    /// Equations used.
+    pub used: usize,
+    /// Left out because the joint hardly moves.
+    pub standstill: usize,
+    /// Left out because the joint is fixed.
+    pub fixed: usize,
+    /// Left out by time windows.
+    pub windows: usize,
+    /// Left out within reach of the filters from an end.
+    pub edges: usize,
+    /// Standard deviation of the errors, N.m, N or W: its inverse was the weight.
+    pub sigma: Option<f64>,
+    /// Relative error of this equation in this trajectory.
+    pub relative_error: Option<f64>,
+}
+
+impl Identified {
+    /// Brings an estimate and what is known of its rows together. `errors` are those of the joint torques; they
+    /// differ from the estimate's own for the power model.
+    pub fn new(robot: &Robot, robot_name: &str, rows: EvaluatedRows, estimate: &Estimate) -> Self {
+        let named = |p: &ParameterEstimate| NamedParameter {
+            name: p.name.clone(),
+            value: p.value,
+            sigma: p.sigma,
+            relative_sigma_percent: p.relative_sigma_percent,
+            sigma_blocks: p.sigma_blocks,
+            unit: robot
+                .base
+                .iter()
+                .find(|b| b.name == p.name)
+                .map_or_else(String::new, |b| b.unit.to_string()),
+        };
+        let power = estimate.method.is_power();
+        let essential = estimate.essential.as_ref().map(|e| EssentialParameters {
+            parameters: e.parameters.iter().map(named).collect(),
+            cancelled: e.cancelled.clone(),
+            relative_error: e.relative_error,
+        });
+        Identified {
+            power_relative_error: power.then_some(estimate.relative_error),
+            essential_parameters: essential,
+            condition_number: Some(estimate.condition),
+            warnings: estimate.warnings.iter().map(Warning::to_string).collect(),
+            ..Self::with_parameters(
+                robot,
+                robot_name,
+                estimate.method.name(),
+                rows,
+                estimate.parameters.iter().map(named).collect(),
+            )
+        }
+    }
+
+    /// A model of which nothing is known but its parameters and its rows.
+    pub fn with_parameters(
+        robot: &Robot,
+        robot_name: &str,
+        method: &str,
+        rows: EvaluatedRows,
+        base_parameters: Vec<NamedParameter>,
+    ) -> Self {
+        Identified {
+            schema_version: SCHEMA,
+            dynid_version: env!("CARGO_PKG_VERSION").to_owned(),
+            robot: robot_name.to_owned(),
+            method: method.to_owned(),
+            samples: rows.samples,
+            relative_error: rows.errors.relative_error,
+            per_joint: rows.errors.per_joint,
+            power_relative_error: None,
+            base_parameters,
+            essential_parameters: None,
+            condition_number: None,
+            rows_left_out: rows.rows_left_out,
+            equations: rows.equations,
+            band: rows.band,
+            warnings: Vec::new(),
+            effects: Vec::new(),
+            delay: 0.0,
+            noise: rows.noise,
+            fingerprint: Some(fingerprint(robot)),
+            table: Some(robot.clone()),
+        }
+    }
+
+    /// The same parameters with what another recording says about them.
+    pub fn validated(&self, rows: EvaluatedRows) -> Self {
+        Identified {
+            samples: rows.samples,
+            relative_error: rows.errors.relative_error,
+            per_joint: rows.errors.per_joint,
+            power_relative_error: None,
+            rows_left_out: rows.rows_left_out,
+            equations: rows.equations,
+            band: rows.band,
+            noise: rows.noise,
+            ..self.clone()
+        }
+    }
+
+    /// chi in the order of a robot's base parameters.
+    ///
+    /// # Errors
+    /// The name of the first base parameter of the robot that this model does not have.
+    pub fn chi(&self, robot: &Robot) -> Result<Vec<f64>, String> {
+        robot
+            .base
+            .iter()
+            .map(|b| {
+                self.base_parameters
+                    .iter()
+                    .find(|p| p.name == b.name)
+                    .map(|p| p.value)
+                    .ok_or_else(|| b.name.to_string())
+            })
+            .collect()
+    }
+}
+
+/// What the rows of a recording say about a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvaluatedRows {
+    /// Samples read.
+    pub samples: usize,
+    /// Rows of the files that could not be right, where they were looked at.
+    pub rows_left_out: Option<u64>,
+    /// Rows used and left out.
+    pub equations: Vec<EquationRows>,
+    /// Band of the rows, Hz.
+    pub band: f64,
+    /// Errors of the torques.
+    pub errors: Errors,
+    /// What noise makes of them, where it matters.
+    pub noise: Option<Errors>,
+}
+
+impl EvaluatedRows {
+    /// From the observation that an estimate was made from; `errors` are those of the torques.
+    pub fn observed(observation: &Observation, band: f64, estimate: &Estimate, errors: Errors) -> Self {
+        let rows = |l| equation_rows(l, &observation.trajectories, &estimate.errors);
+        Self {
+            samples: observation.samples,
+            rows_left_out: None,
+            equations: observation.left_out.iter().map(rows).collect(),
+            band,
+            errors,
+            noise: None,
+        }
+    }
+
+    /// From an evaluation, for the model at `place` in it.
+    pub fn evaluated(evaluation: &Evaluation, place: usize) -> Option<Self> {
+        let rows = |l| equation_rows(l, &evaluation.trajectories, &[]);
+        Some(Self {
+            samples: evaluation.samples,
+            rows_left_out: None,
+            equations: evaluation.left_out.iter().map(rows).collect(),
+            band: evaluation.band,
+            errors: evaluation.predictions.get(place)?.errors.clone(),
+            noise: evaluation.noise_matters().cloned(),
+        })
+    }
+}
+
+fn equation_rows(rows: &LeftOut, trajectories: &[String], errors: &[EquationError]) -> EquationRows {
+    let error = errors.iter().find(|e| e.trajectory == rows.trajectory && e.equation == rows.equation);
+    EquationRows {
+        trajectory: trajectories.get(rows.trajectory).cloned().unwrap_or_default(),
+        joint: rows.joint.map_or(0, |number| number.0),
+        used: rows.used,
+        standstill: rows.standstill,
+        fixed: rows.fixed,
+        windows: rows.windows,
+        edges: rows.edges,
+        sigma: error.map(|e| e.sigma),
+        relative_error: error.map(|e| e.relative_error),
+    }
+}

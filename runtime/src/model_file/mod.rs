@@ -1,0 +1,36 @@
+//! A saved model: one JSON file that predicts and simulates anywhere, without the robot's YAML and without this build.
+//!
+//! It is an [`Identified`] model: the base parameters with their uncertainty, the effects and the delay that were found
+//! with them, the band they were identified in, the robot's whole table as numbers, and a [`fingerprint`] of it that
+//! says whether a robot of the same name is still the same robot. [`read`] refuses a file with the path of the first
+//! field that cannot be: nothing that it returns can make an evaluation fail for its shape.
+//!
+//! ```text
+//! schema_version   1
+//! dynid_version    what wrote it
+//! robot            name, or path of the YAML as it was given
+//! table            gravity, frames, drive, limits, parameters and their regrouping
+//! fingerprint      16 hexadecimal digits
+//! base_parameters  chi, in the table's order
+//! effects, delay   what a diagnosis found; seconds by which torques are later than positions
+//! band             Hz, of the equations that chi was identified from
+//! ```
+//!
+//! A file without `schema_version` is one from before there were any: it has no table, and is read with the robot that
+//! its `robot` names.
+
+mod check;
+mod error;
+mod fingerprint;
+mod identified;
+mod robot_yaml;
+mod table;
+
+pub use check::{check, read};
+pub use error::FileError;
+pub use fingerprint::{difference, fingerprint};
+pub use identified::{EquationRows, EssentialParameters, EvaluatedRows, Identified, NamedParameter, SCHEMA};
+pub use robot_yaml::to_yaml;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,78 @@
+//! The table of a saved model: every index and number of it.
+
+use super::error::FileError;
+use crate::model::{RecursiveModel, Robot};
+
+/// Checks that models and effects can be evaluated with a table.
+pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
+    let wrong = |field: String, what: &str| Err(FileError::new(format!("table.{field}"), what));
+    let n = robot.joints();
+    if n == 0 {
+        return wrong("frames".to_owned(), "a robot has one joint at least");
+    }
+    if robot.gravity.iter().any(|x| !x.is_finite()) {
+        return wrong("gravity".to_owned(), "it is not finite");
+    }
+    for (k, f) in robot.frames.iter().enumerate() {
+        if [f.gamma, f.b, f.alpha, f.d, f.theta, f.r].iter().any(|x| !x.is_finite()) {
+            return wrong(format!("frames[{k}]"), "it is not finite");
+        }
+    }
+    if let Some(k) = robot.drive.coupled_friction.iter().position(|&motor| motor >= n) {
+        return wrong(format!("drive.coupled_friction[{k}]"), "there is no such motor");
+    }
+    for (k, p) in robot.standard.iter().enumerate() {
+        if p.frame >= robot.frames.len() {
+            return wrong(format!("standard[{k}].frame"), "there is no such frame");
+        }
+    }
+    for (k, base) in robot.base.iter().enumerate() {
+        let known = |&(s, c): &(usize, f64)| s < robot.standard.len() && c.is_finite();
+        if base.standard >= robot.standard.len() {
+            return wrong(format!("base[{k}].standard"), "there is no such standard parameter");
+        }
+        if !base.combination.iter().all(known) {
+            return wrong(
+                format!("base[{k}].combination"),
+                "it names a standard parameter that is not there",
+            );
+        }
+    }
+    let limits = &robot.limits;
+    for (name, limits) in [
+        ("position", &limits.position),
+        ("velocity", &limits.velocity),
+        ("acceleration", &limits.acceleration),
+        ("torque", &limits.torque),
+    ] {
+        let fits = limits.is_empty() || limits.len() == n;
+        if !fits || limits.iter().flatten().any(|x| x.is_nan()) {
+            return wrong(format!("limits.{name}"), "one [low, high] per joint, or none at all");
+        }
+    }
+    check_nominal(robot, n)?;
+    match RecursiveModel::new(robot.clone()) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(FileError::new("table".to_owned(), &error.to_string())),
+    }
+}
+
+fn check_nominal(robot: &Robot, n: usize) -> Result<(), FileError> {
+    let Some(nominal) = &robot.nominal else { return Ok(()) };
+    let wrong = |field: &str, what: &str| Err(FileError::new(format!("table.nominal.{field}"), what));
+    if nominal.standard.len() != robot.standard.len() {
+        return wrong("standard", "one value per standard parameter");
+    }
+    for (name, values) in [
+        ("kp", &nominal.kp),
+        ("kd", &nominal.kd),
+        ("ki", &nominal.ki),
+        ("position_noise", &nominal.position_noise),
+        ("torque_noise", &nominal.torque_noise),
+    ] {
+        if !(values.is_empty() || values.len() == n) {
+            return wrong(name, "one value per joint, or none at all");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,171 @@
+//! What could be meant instead of what a recording says of itself: another robot, a sign, an order, a unit, an offset.
+
+use std::f64::consts::PI;
+
+use super::judged::Judged;
+use crate::estimation::observe::{Equations, observe};
+use crate::estimation::{EstimateSettings, PhysicalFit, estimate, physical_fit};
+use crate::model::{Drive, JointIndex, JointKind, Model, Robot};
+use crate::recording::regear;
+use crate::signal::Motion;
+
+/// A joint's error from which something is looked for that was mistaken about it.
+pub(super) const POOR: f64 = 0.25;
+
+/// What could be meant instead.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Instead {
+    /// Another robot, by its name.
+    Robot(String),
+    /// The opposite sign of a joint's signal.
+    Sign {
+        /// Which signal.
+        of: Signal,
+        /// Which joint.
+        joint: JointIndex,
+    },
+    /// Two columns in the other order.
+    Exchange {
+        /// Which signal.
+        of: Signal,
+        /// Which joints.
+        joints: [JointIndex; 2],
+    },
+    /// Angles in another unit.
+    Unit(AngleUnit),
+    /// Another zero of a joint's position.
+    Offset {
+        /// Which joint.
+        joint: JointIndex,
+        /// Degrees that are added.
+        degrees: i32,
+    },
+}
+
+/// A signal of a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    /// Positions.
+    Position,
+    /// Torques.
+    Torque,
+    /// Positions and torques.
+    Both,
+}
+
+/// A unit of angles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AngleUnit {
+    /// rad.
+    Radians,
+    /// degrees.
+    Degrees,
+}
+
+/// What may have been mistaken about the joints that are explained poorly.
+pub(super) fn mistakes(robot: &Robot, own: &PhysicalFit) -> Vec<Instead> {
+    let kinds = robot.joint_kinds();
+    let n = kinds.len();
+    let poor: Vec<bool> = own.per_equation.iter().map(|&e| e > POOR).collect();
+    let mut all = Vec::new();
+    for joint in (0..n).filter(|&j| poor[j]) {
+        let index = JointIndex(joint);
+        all.extend([Signal::Position, Signal::Torque].map(|of| Instead::Sign { of, joint: index }));
+        if kinds[joint] == JointKind::Revolute {
+            all.extend([90, -90, 180].map(|degrees| Instead::Offset { joint: index, degrees }));
+        }
+    }
+    for a in 0..n {
+        for b in a + 1..n {
+            if (poor[a] || poor[b]) && kinds[a] == kinds[b] {
+                let joints = [JointIndex(a), JointIndex(b)];
+                all.extend(
+                    [Signal::Both, Signal::Torque, Signal::Position]
+                        .map(|of| Instead::Exchange { of, joints }),
+                );
+            }
+        }
+    }
+    all.extend([AngleUnit::Degrees, AngleUnit::Radians].map(Instead::Unit));
+    all
+}
+
+impl Instead {
+    /// How well it explains the recording. `None` where it cannot be told.
+    pub(super) fn fit(&self, judged: &Judged<'_>, others: &[&dyn Model]) -> Option<PhysicalFit> {
+        let own = judged.model;
+        let model = match self {
+            Instead::Robot(name) => *others.iter().find(|m| m.robot().name == name.as_str())?,
+            Instead::Sign { .. } | Instead::Exchange { .. } | Instead::Unit(_) | Instead::Offset { .. } => {
+                own
+            }
+        };
+        let (gear, other) = (&own.robot().drive, &model.robot().drive);
+        let kinds = own.robot().joint_kinds();
+        let changed = |motion: &Motion| match self {
+            Instead::Robot(_) if judged.motor_side => regear(motion, gear, other),
+            // Columns of motors were mixed up before the gear brought them to the joints.
+            Instead::Sign { .. } | Instead::Exchange { .. } if judged.motor_side => {
+                let mut motors = regear(motion, gear, &direct(kinds.len()))?;
+                self.change(&mut motors, &kinds);
+                regear(&motors, &direct(kinds.len()), gear)
+            }
+            _ => {
+                let mut motion = motion.clone();
+                self.change(&mut motion, &kinds);
+                Some(motion)
+            }
+        };
+        let motions = judged.motions.iter().map(changed).collect::<Option<Vec<Motion>>>()?;
+        let observation = observe(model, &motions, Equations::Torque, None, judged.settings, None).ok()?;
+        let settings = EstimateSettings { r_sigma: None, block_sigmas: false, ..EstimateSettings::default() };
+        physical_fit(model.robot(), &observation, &estimate(&observation, &settings))
+    }
+
+    fn change(&self, motion: &mut Motion, kinds: &[JointKind]) {
+        let Motion { q, dq, ddq, torque, .. } = motion;
+        let positions = [q, dq, ddq];
+        match *self {
+            Instead::Robot(_) => {}
+            Instead::Sign { of: Signal::Torque, joint: JointIndex(joint) } => scale(&mut torque[joint], -1.0),
+            Instead::Sign { joint: JointIndex(joint), .. } => {
+                positions.into_iter().for_each(|p| scale(&mut p[joint], -1.0))
+            }
+            Instead::Exchange { of, joints: [JointIndex(a), JointIndex(b)] } => {
+                if of != Signal::Torque {
+                    positions.into_iter().for_each(|p| p.swap(a, b));
+                }
+                if of != Signal::Position {
+                    torque.swap(a, b);
+                }
+            }
+            Instead::Unit(unit) => {
+                let factor = match unit {
+                    AngleUnit::Degrees => PI / 180.0,
+                    AngleUnit::Radians => 180.0 / PI,
+                };
+                for positions in positions {
+                    let revolute =
+                        positions.iter_mut().zip(kinds).filter(|(_, k)| **k == JointKind::Revolute);
+                    revolute.for_each(|(p, _)| scale(p, factor));
+                }
+            }
+            Instead::Offset { joint: JointIndex(joint), degrees } => {
+                let by = f64::from(degrees) / 180.0 * PI;
+                let [q, ..] = positions;
+                q[joint].iter_mut().for_each(|x| *x += by);
+            }
+        }
+    }
+}
+
+/// Motors that sit on their joints.
+fn direct(joints: usize) -> Drive {
+    let gear = (0..joints * joints).map(|k| if k % (joints + 1) == 0 { 1.0 } else { 0.0 });
+    Drive { gear: gear.collect(), coupled_friction: Vec::new().into() }
+}
+
+fn scale(values: &mut [f64], factor: f64) {
+    values.iter_mut().for_each(|x| *x *= factor);
+}

@@ -1,0 +1,147 @@
+//! Whether a recording can be one of the robot that it names: what physics says, and what would explain it better.
+
+mod instead;
+mod judged;
+
+pub use instead::{AngleUnit, Instead, Signal};
+pub use judged::Judged;
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use crate::estimation::observe::Observation;
+use crate::estimation::{Estimate, PhysicalFit, physical_fit};
+use crate::model::{JointIndex, Model};
+use instead::{POOR, mistakes};
+
+/// Strain from which the parameters are said not to be those of a real robot.
+const STRAINED: f64 = 1.1;
+/// A joint's error, and a strain, from which signs, orders, units and offsets are tried.
+const BAD: f64 = 0.5;
+const OVERSTRAINED: f64 = 2.0;
+/// Something else is believed where it lowers the joints' errors by this factor, on their geometric mean.
+const FAR_BETTER: f64 = 1.25;
+/// Robots count as equally good where they lower the errors within this share of the best.
+const AS_GOOD: f64 = 0.95;
+/// A joint's error where half of its squared torque is explained.
+const HALF: f64 = FRAC_1_SQRT_2;
+
+/// What physics says of a recording.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Verdict {
+    /// The robot can have made it, or nothing can be said.
+    Plausible,
+    /// It can have made it, but the free parameters are none that a robot can have.
+    Strained {
+        /// Relative error with the best parameters that a robot can have.
+        possible: f64,
+        /// The same of the free ones.
+        free: f64,
+    },
+    /// Something else explains it far better.
+    Better {
+        /// Relative error with the best parameters that such a robot can have.
+        own: f64,
+        /// The joint that these explain worst, and its error.
+        worst: (JointIndex, f64),
+        /// What explains it better, with its error: the best first, and other robots that are as good.
+        instead: Vec<(Instead, f64)>,
+    },
+    /// No such robot can have made it, and nothing that was tried explains it.
+    Impossible {
+        /// The joint of which physics takes most away.
+        joint: JointIndex,
+        /// Its error with the best parameters that a robot can have.
+        error: f64,
+    },
+}
+
+/// Judges whether a recording can be one of its robot. `torques` are its torque equations, `estimated` their free
+/// weighted estimate, `others` the robots that it could be of instead.
+///
+/// The free fit is compared with the best one that a real robot can have ([`physical_fit`]). Where physics costs
+/// something or a joint is explained poorly, other robots of the same joints are tried; where it costs much or a joint
+/// is explained badly, so are signs, orders of columns, units and offsets.
+pub fn judge(
+    judged: &Judged<'_>,
+    torques: &Observation,
+    estimated: &Estimate,
+    others: &[&dyn Model],
+) -> Verdict {
+    let robot = judged.model.robot();
+    let Some(own) = physical_fit(robot, torques, estimated) else { return Verdict::Plausible };
+    let Some(worst) = largest(own.per_equation.len(), |j| own.per_equation[j]) else {
+        return Verdict::Plausible;
+    };
+    let error = own.per_equation[worst];
+    let mut candidates = Vec::new();
+    if own.strain > STRAINED || error > POOR {
+        let kinds = robot.joint_kinds();
+        let alike =
+            |other: &&&dyn Model| other.robot().name != robot.name && other.robot().joint_kinds() == kinds;
+        candidates.extend(others.iter().filter(alike).map(|m| Instead::Robot(m.robot().name.to_string())));
+    }
+    if own.strain > OVERSTRAINED || error > BAD {
+        candidates.extend(mistakes(robot, &own));
+    }
+    let instead = better(judged, others, candidates, &own);
+    if !instead.is_empty() {
+        let worst = (JointIndex(worst), error);
+        return Verdict::Better { own: own.relative_error, worst, instead };
+    }
+    if let Some(joint) = impossible(&own, estimated) {
+        return Verdict::Impossible { joint: JointIndex(joint), error: own.per_equation[joint] };
+    }
+    if own.strain > STRAINED {
+        return Verdict::Strained { possible: own.relative_error, free: estimated.relative_error };
+    }
+    Verdict::Plausible
+}
+
+/// The joint of which physics takes most away, where that is more than a quarter of its squared torque and leaves less
+/// than half of it explained.
+fn impossible(own: &PhysicalFit, free: &Estimate) -> Option<usize> {
+    let taken = |j: usize| own.per_equation[j].powi(2) - free.per_equation[j].powi(2);
+    let joint = largest(own.per_equation.len(), taken)?;
+    (own.per_equation[joint] > HALF && taken(joint) > 0.25).then_some(joint)
+}
+
+/// The joint with the largest value.
+fn largest(joints: usize, value: impl Fn(usize) -> f64) -> Option<usize> {
+    (0..joints).max_by(|&a, &b| value(a).total_cmp(&value(b)))
+}
+
+/// What explains the recording far better than what was declared: the best, and other robots that are as good.
+fn better(
+    judged: &Judged<'_>,
+    others: &[&dyn Model],
+    candidates: Vec<Instead>,
+    own: &PhysicalFit,
+) -> Vec<(Instead, f64)> {
+    let mut all: Vec<(f64, Instead, f64)> = candidates
+        .into_iter()
+        .filter_map(|candidate| {
+            let fit = candidate.fit(judged, others)?;
+            let better = ratio(&own.per_equation, &fit.per_equation);
+            (better >= FAR_BETTER).then_some((better, candidate, fit.relative_error))
+        })
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let best = all.first().map_or(0.0, |first| first.0);
+    let robot = |instead: &Instead| matches!(instead, Instead::Robot(_));
+    let first_is_robot = all.first().is_some_and(|(_, instead, _)| robot(instead));
+    all.into_iter()
+        .enumerate()
+        .filter(|(place, (better, instead, _))| {
+            *place == 0 || first_is_robot && robot(instead) && *better > AS_GOOD * best
+        })
+        .map(|(_, (_, instead, error))| (instead, error))
+        .collect()
+}
+
+/// Geometric mean of the joints' errors over those of another fit.
+fn ratio(own: &[f64], other: &[f64]) -> f64 {
+    let pairs: Vec<f64> =
+        own.iter().zip(other).filter(|(a, b)| **a > 0.0 && **b > 0.0).map(|(a, b)| (a / b).ln()).collect();
+    (pairs.iter().sum::<f64>() / pairs.len().max(1) as f64).exp()
+}

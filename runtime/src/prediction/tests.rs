@@ -1,0 +1,171 @@
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+use super::*;
+use crate::estimation::observe::{Equations, ObserveSettings, observe};
+use crate::model::{
+    Drive, Frame, JointKind, Limits, Model, RecursiveModel, Robot, StateSlices, standard_parameters, torques,
+};
+use crate::recording::Trajectory;
+use crate::signal::Motion;
+use rand::{RngExt, SeedableRng};
+
+/// A planar arm of two joints, its standard parameters as base parameters.
+fn arm() -> RecursiveModel {
+    let row = |parent, d| Frame {
+        parent,
+        kind: JointKind::Revolute,
+        gamma: 0.0,
+        b: 0.0,
+        alpha: 0.0,
+        d,
+        theta: 0.0,
+        r: 0.0,
+    };
+    let frames = vec![row(None, 0.0), row(Some(0), 0.5)];
+    let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
+    let robot = Robot::with_standard_as_base("arm", [0.0, -9.81, 0.0], frames, drive, Limits::default());
+    assert_eq!(robot.base.len(), standard_parameters(&robot.frames, &[]).len());
+    RecursiveModel::new(robot).unwrap()
+}
+
+/// Base parameters with an inertia, a first moment, rotors and friction.
+fn chi(model: &dyn Model) -> Vec<f64> {
+    let value = |name: &str| match name {
+        "ZZ1" | "ZZ2" => 0.4,
+        "MX1" | "MX2" => 0.8,
+        "Ia1" | "Ia2" => 0.3,
+        "Fv1" | "Fv2" => 1.5,
+        "Fc1" | "Fc2" => 2.0,
+        _ => 0.0,
+    };
+    model.robot().base.iter().map(|b| value(&b.name)).collect()
+}
+
+const RATE: f64 = 500.0;
+
+/// Joints that swing, with their exact derivatives, `late` seconds late torques and white noise.
+fn swinging(model: &dyn Model, chi: &[f64], late: f64, noise: f64) -> Motion {
+    let samples = 6000;
+    let of = |f: &dyn Fn(f64) -> f64, shift: f64| -> Vec<f64> {
+        (0..samples).map(|k| f(k as f64 / RATE - shift)).collect()
+    };
+    let signals = |shift: f64| -> [Vec<Vec<f64>>; 3] {
+        let (a, b) = (2.1_f64, 3.4_f64);
+        [
+            vec![of(&|t| (a * t).sin(), shift), of(&|t| (b * t).cos(), shift)],
+            vec![of(&|t| a * (a * t).cos(), shift), of(&|t| -b * (b * t).sin(), shift)],
+            vec![of(&|t| -a * a * (a * t).sin(), shift), of(&|t| -b * b * (b * t).cos(), shift)],
+        ]
+    };
+    let mut random = rand_pcg::Pcg64::seed_from_u64(3);
+    let [q, dq, ddq] = signals(late);
+    let mut torque = torques(model, chi, StateSlices::new(&q, &dq, &ddq).states());
+    for value in torque.iter_mut().flatten() {
+        *value += noise * (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
+    }
+    let [q, dq, ddq] = signals(0.0);
+    Motion { name: "swing".into(), rate: RATE, start: 0.0, q, dq, ddq, torque, fixed: vec![], spoiled: 20 }
+}
+
+fn settings(band: f64) -> ObserveSettings {
+    ObserveSettings { band, ..ObserveSettings::default() }
+}
+
+fn standard(chi: &[f64]) -> Predictor<'_> {
+    Predictor { chi, effects: &[], delay: 0.0 }
+}
+
+#[test]
+fn the_figure_is_that_of_an_observation_of_the_same_rows() {
+    let model = arm();
+    let truth = chi(&model);
+    let motions = [swinging(&model, &truth, 0.0, 0.2)];
+    let other: Vec<f64> = truth.iter().map(|x| 1.1 * x).collect();
+    let observed = observe(&model, &motions, Equations::Torque, None, &settings(25.0), None).unwrap();
+    let evaluation = evaluate(&model, &[standard(&other)], &motions, &settings(25.0), &[]).unwrap();
+    let (ours, theirs) = (&evaluation.predictions[0].errors, observed_errors(&observed, &other));
+    approx::assert_relative_eq!(ours.relative_error, theirs.relative_error, max_relative = 1e-9);
+    for (a, b) in ours.per_joint.iter().zip(&theirs.per_joint) {
+        approx::assert_relative_eq!(a, b, max_relative = 1e-9);
+    }
+    assert_eq!(evaluation.left_out, observed.left_out);
+    assert_eq!(evaluation.band, 25.0);
+}
+
+#[test]
+fn a_delay_that_is_known_leaves_no_error() {
+    let model = arm();
+    let truth = chi(&model);
+    let motions = [swinging(&model, &truth, 0.006, 0.0)];
+    let late = Predictor { delay: 0.006, ..standard(&truth) };
+    let evaluation = evaluate(&model, &[standard(&truth), late], &motions, &settings(25.0), &[]).unwrap();
+    let error = |k: usize| evaluation.predictions[k].errors.relative_error;
+    assert!(error(0) > 0.01, "{}", error(0));
+    assert!(error(1) < 1e-4, "{}", error(1));
+}
+
+#[test]
+fn white_noise_is_told_and_taken_away() {
+    let model = arm();
+    let truth = chi(&model);
+    let (noise, band) = (1.0, 25.0);
+    let motions = [swinging(&model, &truth, 0.0, noise)];
+    let evaluation = evaluate(&model, &[standard(&truth)], &motions, &settings(band), &[]).unwrap();
+    let error = &evaluation.predictions[0].errors;
+    let told = evaluation.noise_matters().expect("there is nothing but noise");
+    approx::assert_relative_eq!(told.relative_error, error.relative_error, max_relative = 0.15);
+    assert!(above_noise(error, told).relative_error < 0.6 * error.relative_error);
+    let clean = [swinging(&model, &truth, 0.0, 1e-3)];
+    let half: Vec<f64> = truth.iter().map(|x| 0.5 * x).collect();
+    let evaluation = evaluate(&model, &[standard(&half)], &clean, &settings(band), &[]).unwrap();
+    assert_eq!(evaluation.noise_matters(), None);
+}
+
+#[test]
+fn rows_that_reach_into_a_window_are_left_out_for_every_model() {
+    let model = arm();
+    let truth = chi(&model);
+    let mut motion = swinging(&model, &truth, 0.0, 0.0);
+    for k in 2000..2500 {
+        motion.torque[1][k] += 30.0;
+    }
+    let motions = [motion];
+    let all = evaluate(&model, &[standard(&truth)], &motions, &settings(25.0), &[]).unwrap();
+    let windows = [("swing", [4.0, 5.0]), ("another motion", [0.0, 100.0])];
+    let some = evaluate(&model, &[standard(&truth)], &motions, &settings(25.0), &windows).unwrap();
+    assert!(all.predictions[0].errors.relative_error > 0.1);
+    assert!(some.predictions[0].errors.relative_error < 1e-9);
+    assert_eq!(all.used() - some.used(), some.excluded);
+    assert!(some.excluded > 50);
+    let everything = [("swing", [0.0, 100.0])];
+    let refused = evaluate(&model, &[standard(&truth)], &motions, &settings(25.0), &everything).unwrap_err();
+    assert!(refused.to_string().contains("window"), "{refused}");
+}
+
+#[test]
+fn a_recording_is_not_compared_above_the_band_that_it_carries() {
+    let time: Vec<f64> = (0..4000).map(|k| k as f64 / 100.0).collect();
+    let swing: Vec<f64> = time.iter().map(|t| (2.0 * t).sin()).collect();
+    let trajectory = Trajectory {
+        name: "slow".into(),
+        position: vec![swing.clone()],
+        velocity: None,
+        torque: vec![swing],
+        fixed: vec![],
+        time,
+    };
+    for (asked, expected) in [(None, 10.0), (Some(40.0), 10.0), (Some(4.0), 4.0)] {
+        let prepared =
+            Comparison { band: asked, ..Comparison::default() }.prepare(std::slice::from_ref(&trajectory));
+        assert_eq!(prepared.unwrap().settings.band, expected, "{asked:?}");
+    }
+}
+
+#[test]
+fn parameters_of_another_model_are_an_error() {
+    let model = arm();
+    let motions = [swinging(&model, &chi(&model), 0.0, 0.0)];
+    let few = [1.0, 2.0];
+    let error = evaluate(&model, &[standard(&few)], &motions, &settings(25.0), &[]).unwrap_err();
+    assert!(matches!(error, PredictionError::Parameters { found: 2, .. }), "{error}");
+}

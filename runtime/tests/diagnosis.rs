@@ -1,0 +1,281 @@
+//! Diagnoses of simulated recordings whose hidden physics is known: two small robots, three random motions of 6 s in
+//! closed loop, 500 Hz, the robots' nominal noise.
+//!
+//! Sizes are clearly visible ones by `docs/visible.md`. Each test prints what it took and what was found:
+//! `cargo test -p dynid-runtime --test diagnosis -- --nocapture`.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::time::Instant;
+
+use common::{Hidden, SimulatedRobot, planar, scara};
+use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Settings, Silent, diagnose};
+use dynid_runtime::effects::{EffectKind, Place};
+use dynid_runtime::model::Robot;
+use dynid_runtime::recording::Trajectory;
+
+/// Motions of a recording.
+const MOTIONS: u64 = 3;
+/// Length of each, s.
+const LENGTH: f64 = 6.0;
+/// Seeds of the motions and the noise of the recording that is diagnosed, and of the baseline.
+const SEED: u64 = 1;
+const BASELINE_SEED: u64 = 51;
+
+/// Diagnoses a robot in which something is hidden.
+fn diagnosed(robot: &SimulatedRobot, hidden: &Hidden) -> Diagnosis {
+    run(robot, hidden, &[])
+}
+
+/// The same against a baseline: other motions of the robot before anything was hidden in it.
+fn diagnosed_against_baseline(robot: &SimulatedRobot, hidden: &Hidden) -> Diagnosis {
+    let before =
+        robot.record(&robot.motions(MOTIONS, LENGTH, BASELINE_SEED), &Hidden::nothing(), BASELINE_SEED);
+    run(robot, hidden, &before)
+}
+
+fn run(robot: &SimulatedRobot, hidden: &Hidden, baseline: &[Trajectory]) -> Diagnosis {
+    let start = Instant::now();
+    let motions = robot.record(&robot.motions(MOTIONS, LENGTH, SEED), hidden, SEED);
+    let simulated = start.elapsed().as_secs_f64();
+    // The tests themselves are parallel.
+    let mut settings = Settings::default();
+    settings.threads = 1;
+    let diagnosis = diagnose(&robot.model, &motions, baseline, &settings, &Silent).unwrap();
+    let took = start.elapsed().as_secs_f64() - simulated;
+    eprintln!(
+        "{}: simulated in {simulated:.1} s, diagnosed in {took:.1} s",
+        std::thread::current().name().unwrap_or("")
+    );
+    for finding in &diagnosis.findings {
+        let quantities: Vec<String> = finding
+            .parameters
+            .iter()
+            .map(|(name, p)| format!("{name} {:.4} +- {:.4} {}", p.value, p.sigma, p.unit))
+            .collect();
+        eprintln!("  {} {:?}: {}", finding.effect, finding.joints, quantities.join(", "));
+    }
+    diagnosis
+}
+
+/// Asserts that one effect is named, on these joints (numbers j), and nothing else.
+fn assert_only(diagnosis: &Diagnosis, effect: EffectKind, joints: &[usize]) {
+    let named: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.as_slice())).collect();
+    assert_eq!(named, [(effect.id(), joints)]);
+}
+
+/// Asserts that a quantity of the one finding is within four of its standard deviations of the truth.
+fn assert_within_four_sigma(diagnosis: &Diagnosis, quantity: &str, truth: f64) {
+    assert_close(diagnosis, quantity, truth, 0.0);
+}
+
+/// The same for a factor on a torque that the model itself predicts (load, friction of the baseline). Its column is
+/// made of estimated parameters and counts as known: the standard deviation has nothing of their uncertainty and is
+/// too small by a factor of two and more, so that a fiftieth of the truth is allowed beside it.
+fn assert_factor(diagnosis: &Diagnosis, quantity: &str, truth: f64) {
+    assert_close(diagnosis, quantity, truth, 0.02 * truth.abs());
+}
+
+fn assert_close(diagnosis: &Diagnosis, quantity: &str, truth: f64, more: f64) {
+    let found = &diagnosis.findings[0].parameters[quantity];
+    let off = (found.value - truth).abs();
+    assert!(
+        found.sigma > 0.0 && off < 4.0 * found.sigma + more,
+        "{quantity}: {} +- {}, truth {truth}",
+        found.value,
+        found.sigma
+    );
+    // An estimate with a huge standard deviation would be within four of them, too.
+    assert!(found.sigma < 0.2 * truth.abs(), "{quantity}: {} +- {}", found.value, found.sigma);
+}
+
+#[test]
+fn friction_that_falls_from_rest_is_named_stribeck() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::Stribeck, Place::Joint(1), &[0.3], &[3.0]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::Stribeck, &[2]);
+    assert_within_four_sigma(&diagnosis, "fs", 3.0);
+    assert_within_four_sigma(&diagnosis, "vs", 0.3);
+}
+
+#[test]
+fn friction_that_grows_with_the_load_is_named_with_its_coefficient() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::LoadDependentFriction, Place::Joint(0), &[], &[0.1]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::LoadDependentFriction, &[1]);
+    assert_factor(&diagnosis, "mu", 0.1);
+}
+
+#[test]
+fn friction_that_bends_with_speed_is_named_with_its_power() {
+    let robot = scara();
+    let hidden = Hidden::effect(EffectKind::NonlinearViscous, Place::Joint(1), &[0.5], &[4.0]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::NonlinearViscous, &[2]);
+    assert_within_four_sigma(&diagnosis, "p", 0.5);
+    // What was hidden is 4 N.m at 1 rad/s; what is found is the torque at v0.
+    let v0 = diagnosis.findings[0].parameters["v0"].value;
+    assert_within_four_sigma(&diagnosis, "f", 4.0 * v0.sqrt());
+}
+
+#[test]
+fn friction_that_differs_by_direction_is_named() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::AsymmetricFriction, Place::Joint(0), &[], &[0.5]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::AsymmetricFriction, &[1]);
+    assert_within_four_sigma(&diagnosis, "half_difference", 0.5);
+}
+
+#[test]
+fn friction_that_varies_along_the_travel_is_named_with_its_wave_number() {
+    let robot = scara();
+    let hidden = Hidden::effect(EffectKind::PositionDependentFriction, Place::Joint(0), &[2.0], &[1.2, 0.9]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::PositionDependentFriction, &[1]);
+    assert_within_four_sigma(&diagnosis, "amplitude", 1.5);
+    assert_within_four_sigma(&diagnosis, "wave_number", 2.0);
+}
+
+#[test]
+fn a_spring_on_a_revolute_joint_is_told_from_gravity() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::Spring, Place::Joint(1), &[], &[2.0]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::Spring, &[2]);
+    assert_within_four_sigma(&diagnosis, "k", 2.0);
+}
+
+#[test]
+fn a_spring_on_a_slide_is_named_in_newton_per_metre() {
+    let robot = scara();
+    let hidden = Hidden::effect(EffectKind::Spring, Place::Joint(2), &[], &[100.0]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::Spring, &[3]);
+    assert_within_four_sigma(&diagnosis, "k", 100.0);
+    assert_eq!(diagnosis.findings[0].parameters["k"].unit, "N/m");
+}
+
+#[test]
+fn a_ripple_once_a_motor_turn_is_named_with_its_order() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::TorqueRipple, Place::Joint(0), &[50.0], &[0.8, 0.6]);
+    let diagnosis = diagnosed(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::TorqueRipple, &[1]);
+    assert_within_four_sigma(&diagnosis, "amplitude", 1.0);
+    assert_within_four_sigma(&diagnosis, "order_per_motor_turn", 1.0);
+}
+
+#[test]
+fn torques_that_are_late_are_named_a_delay() {
+    let robot = planar();
+    let late = |motion: &mut Trajectory| {
+        for torque in &mut motion.torque {
+            torque.rotate_right(4);
+        }
+    };
+    let diagnosis = diagnosed(&robot, &Hidden::in_recording(late));
+    assert_only(&diagnosis, EffectKind::TimeDelay, &[]);
+    // Four samples of 2 ms.
+    assert_within_four_sigma(&diagnosis, "delay", 0.008);
+}
+
+#[test]
+fn a_body_at_the_flange_is_weighed_against_the_baseline() {
+    let robot = planar();
+    let (mass, x) = (0.15, 0.4);
+    // XX XY XZ YY YZ ZZ MX MY MZ M of a point on x of the last link.
+    let about = mass * x * x;
+    let inertial = [0.0, 0.0, 0.0, about, 0.0, about, mass * x, 0.0, 0.0, mass];
+    let hidden = Hidden::effect(EffectKind::Payload, Place::Link(1), &[], &inertial);
+    let diagnosis = diagnosed_against_baseline(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::Payload, &[]);
+    assert_within_four_sigma(&diagnosis, "mass", mass);
+    // The standard deviation of the centre is that for a known mass.
+    let parameters = &diagnosis.findings[0].parameters;
+    let (of_mass, of_x) = (&parameters["mass"], &parameters["x"]);
+    let sigma = of_x.sigma.hypot(of_x.value * of_mass.sigma / of_mass.value);
+    assert!((of_x.value - x).abs() < 4.0 * sigma, "x: {} +- {sigma}, truth {x}", of_x.value);
+}
+
+#[test]
+fn a_base_that_was_tilted_is_named_with_both_angles() {
+    let robot = scara();
+    let (about_x, about_y) = (0.03_f64, 0.015_f64);
+    let tilt = move |robot: &mut Robot| {
+        let [_, _, g] = robot.gravity;
+        // Turned about y, then about x.
+        robot.gravity =
+            [g * about_y.sin(), -g * about_y.cos() * about_x.sin(), g * about_y.cos() * about_x.cos()];
+    };
+    let hidden = Hidden::in_robot(move |world| world.change_table(tilt).unwrap());
+    let diagnosis = diagnosed_against_baseline(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::BaseTilt, &[]);
+    assert_within_four_sigma(&diagnosis, "tilt_1", about_x);
+    assert_within_four_sigma(&diagnosis, "tilt_2", about_y);
+}
+
+#[test]
+fn friction_that_grew_since_the_baseline_is_a_level_change() {
+    let robot = scara();
+    let grown = 0.25;
+    let hidden = Hidden::in_robot(move |world| world.scale_friction(1, 1.0 + grown));
+    let diagnosis = diagnosed_against_baseline(&robot, &hidden);
+    assert_only(&diagnosis, EffectKind::FrictionLevelChange, &[2]);
+    assert_factor(&diagnosis, "factor", 1.0 + grown);
+}
+
+#[test]
+fn a_torque_constant_that_is_wrong_since_the_baseline_is_named() {
+    let robot = planar();
+    let wrong = |motion: &mut Trajectory| motion.torque[0].iter_mut().for_each(|x| *x *= 1.1);
+    let diagnosis = diagnosed_against_baseline(&robot, &Hidden::in_recording(wrong));
+    assert_only(&diagnosis, EffectKind::TorqueConstantError, &[1]);
+    assert_factor(&diagnosis, "factor", 1.1);
+}
+
+/// The two are one on a planar arm: of what is not estimated, only the length between the axes ties inertia to gravity.
+#[test]
+fn a_wrong_time_base_that_no_motion_tells_from_a_wrong_length_is_named_with_it() {
+    let robot = planar();
+    let slow = |motion: &mut Trajectory| motion.time.iter_mut().for_each(|t| *t *= 1.1);
+    let diagnosis = diagnosed(&robot, &Hidden::in_recording(slow));
+    let mut named: Vec<&str> = diagnosis.findings.iter().map(|f| f.effect.as_str()).collect();
+    named.extend(diagnosis.findings.iter().filter_map(|f| f.alternatives.first()).map(|a| a.effect.as_str()));
+    named.extend(diagnosis.cannot_tell.iter().flat_map(|c| &c.between).map(String::as_str));
+    named.sort_unstable();
+    named.dedup();
+    assert_eq!(named, ["geometry_error", "wrong_sample_rate"]);
+}
+
+#[test]
+fn nothing_is_named_on_a_planar_arm_that_hides_nothing() {
+    assert!(diagnosed(&planar(), &Hidden::nothing()).findings.is_empty());
+}
+
+#[test]
+fn nothing_is_named_on_an_arm_with_a_slide_that_hides_nothing() {
+    assert!(diagnosed(&scara(), &Hidden::nothing()).findings.is_empty());
+}
+
+#[test]
+fn nothing_is_named_where_nothing_changed_since_the_baseline() {
+    assert!(diagnosed_against_baseline(&scara(), &Hidden::nothing()).findings.is_empty());
+}
+
+#[test]
+fn a_recording_with_too_little_motion_is_refused() {
+    let robot = scara();
+    let mut motions = robot.record(&robot.motions(1, LENGTH, SEED), &Hidden::nothing(), SEED);
+    for motion in &mut motions {
+        motion.time.truncate(200);
+        for signal in motion.position.iter_mut().chain(&mut motion.torque) {
+            signal.truncate(200);
+        }
+    }
+    let refused = diagnose(&robot.model, &motions, &[], &Settings::default(), &Silent).unwrap_err();
+    assert!(matches!(refused, DiagnosisError::TooLittleMotion { .. }), "{refused}");
+}

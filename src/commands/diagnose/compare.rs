@@ -1,0 +1,59 @@
+//! The models before and after a diagnosis, on the recording and on a test recording.
+
+use dynid_runtime::diagnosis::Diagnosis;
+use dynid_runtime::effects::EffectTerm;
+use dynid_runtime::model::Model;
+use dynid_runtime::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate};
+
+use crate::arguments::{DiagnosisOptions, Source};
+use crate::errors::prediction_failure;
+use crate::failure::Failure;
+use crate::pages::diagnosis::Tested;
+use crate::recorded::{Measured, measure};
+
+/// The errors on the recording itself, but for windows in which something pushed the robot. `None` where it is too
+/// short for the rows of the comparison.
+pub(super) fn fitted(
+    measured: &Measured,
+    diagnosis: &Diagnosis,
+    options: &DiagnosisOptions,
+) -> Option<Evaluation> {
+    let model = measured.dynamics.model();
+    let comparison = options.comparison(model.robot().joints());
+    let prepared = comparison.prepare(&measured.trajectories).ok()?;
+    let pushed = diagnosis.findings.iter().flat_map(|f| &f.contacts);
+    let windows: Vec<(&str, [f64; 2])> = pushed.map(|w| (w.motion.as_str(), w.window)).collect();
+    before_and_after(model, diagnosis, &prepared, &windows).ok()
+}
+
+/// The errors on a recording that took no part.
+pub(super) fn tested(
+    source: &Source,
+    diagnosis: &Diagnosis,
+    options: &DiagnosisOptions,
+) -> Result<Tested, Failure> {
+    let measured = measure(source)?;
+    let model = measured.dynamics.model();
+    let prepared = options
+        .comparison(model.robot().joints())
+        .prepare(&measured.trajectories)
+        .map_err(|error| prediction_failure(&source.recording, &error))?;
+    let evaluation = before_and_after(model, diagnosis, &prepared, &[])
+        .map_err(|error| prediction_failure(&source.recording, &error))?;
+    Ok(Tested { name: measured.title, evaluation })
+}
+
+/// The standard model and the model with the findings, on the same rows. The skew that the diagnosis took out of the
+/// recording belongs to both.
+fn before_and_after(
+    model: &dyn Model,
+    diagnosis: &Diagnosis,
+    prepared: &Prepared,
+    windows: &[(&str, [f64; 2])],
+) -> Result<Evaluation, PredictionError> {
+    let terms = diagnosis.terms();
+    let predictor = |chi, effects| Predictor { chi, effects, delay: diagnosis.delay };
+    let none: &[EffectTerm] = &[];
+    let models = [predictor(&diagnosis.standard.chi, none), predictor(&diagnosis.model.chi, &terms)];
+    evaluate(model, &models, &prepared.motions, &prepared.settings, windows)
+}

@@ -1,0 +1,68 @@
+//! What `diagnose` prints.
+
+use dynid_runtime::diagnosis::{Diagnosis, Finding};
+use dynid_runtime::report::{percent, significant};
+
+use super::diagnosis::{Extras, confidence_words, error_rows};
+use crate::errors::noise_words;
+use crate::output::table;
+use crate::recorded::{Measured, left_out_words};
+use crate::words::joint_words;
+
+/// The verdict, the errors and the findings for a terminal.
+pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> String {
+    let mut text = format!("{}: {}\n", diagnosis.robot, measured.title);
+    for line in left_out_words(&measured.rows) {
+        text.push_str(&format!("{line}\n"));
+    }
+    text.push('\n');
+    for sentence in &diagnosis.verdict {
+        text.push_str(&format!("{sentence}\n"));
+    }
+    text.push('\n');
+    let header = ["<relative error of the torques", "<band", "before", "after"];
+    text.push_str(&table(&header, error_rows(diagnosis, extras)));
+    for evaluation in extras.fitted.iter().chain(extras.tested.iter().map(|t| &t.evaluation)) {
+        if let Some(words) = noise_words(evaluation) {
+            text.push_str(&format!("\n{words}"));
+        }
+    }
+    if let Some(Err(reason)) = &extras.forward {
+        text.push_str(&format!("\n{reason}"));
+    }
+    for finding in &diagnosis.findings {
+        text.push_str(&found(finding));
+    }
+    for c in &diagnosis.cannot_tell {
+        text.push_str(&format!(
+            "\n\ncannot tell {} on {} apart: {}",
+            c.between.join(" and "),
+            joint_words(&c.joints),
+            c.experiment
+        ));
+    }
+    text
+}
+
+fn found(finding: &Finding) -> String {
+    let mut text = String::new();
+    text.push_str(&format!("\n\n{} on {}\n", finding.effect, joint_words(&finding.joints)));
+    text.push_str(&format!("  {}\n", finding.sentence));
+    let numbers: Vec<String> = finding
+        .parameters
+        .iter()
+        .map(|(name, p)| {
+            let sigma =
+                if p.sigma > 0.0 { format!(" +- {}", significant(p.sigma, 2)) } else { String::new() };
+            format!("{name} {}{sigma} {}", significant(p.value, 4), p.unit)
+        })
+        .collect();
+    text.push_str(&format!("  {}\n", numbers.join(", ")));
+    text.push_str(&format!(
+        "  held-out error of its joints {} -> {}, {}",
+        percent(finding.held_out_before),
+        percent(finding.held_out_after),
+        confidence_words(finding.confidence)
+    ));
+    text
+}

@@ -1,0 +1,108 @@
+//! Whether a recording can be one of its robot, in words.
+
+use std::path::Path;
+
+use dynid_runtime::estimation::Estimate;
+use dynid_runtime::estimation::observe::Observation;
+use dynid_runtime::model::{JointIndex, Robot};
+use dynid_runtime::plausibility::{AngleUnit, Instead, Judged, Signal, Verdict, judge};
+use dynid_runtime::recording::Side;
+use dynid_runtime::report::percent;
+
+use crate::failure::Failure;
+use crate::models;
+use crate::recorded::Recorded;
+
+/// Checks that the recording can be one of its robot; a warning for the person, if there is one to give.
+///
+/// # Errors
+/// [`Failure::Data`] where something else explains the recording far better, or where physics takes away what the
+/// free fit explains of a joint.
+pub fn check(
+    path: &Path,
+    recorded: &Recorded,
+    torques: &Observation,
+    estimated: &Estimate,
+) -> Result<Option<String>, Failure> {
+    let model = recorded.dynamics.model();
+    let judged = Judged {
+        model,
+        motions: &recorded.motions,
+        settings: &recorded.settings,
+        motor_side: recorded.side == Side::Motor,
+    };
+    let robot = model.robot();
+    let refused = |words: String| {
+        Err(Failure::Data(format!("{}: {words}. (--implausible identifies all the same)", path.display())))
+    };
+    match judge(&judged, torques, estimated, models::all()) {
+        Verdict::Better { own, worst: (joint, error), instead } => {
+            let names: Vec<String> = instead.iter().map(|(what, _)| words(what, robot)).collect();
+            let Some((first, best)) = instead.first() else { return Ok(None) };
+            refused(format!(
+                "this cannot be a recording of {} as it is described: the best parameters that such a robot can have \
+                 leave {} of the torques unexplained (joint {}: {}); {} leaves {}. {}",
+                robot.name,
+                percent(own),
+                robot.joint_number(joint),
+                percent(error),
+                names.join(" or "),
+                percent(*best),
+                advice(first),
+            ))
+        }
+        Verdict::Impossible { joint, error } => refused(format!(
+            "no {} can have made this recording: without negative inertias or friction that drives, the best parameters \
+             leave {} of the torque of joint {} unexplained. It is a recording of another robot, or the sign, order, unit \
+             or offset of a column is wrong",
+            robot.name,
+            percent(error),
+            robot.joint_number(joint)
+        )),
+        Verdict::Strained { possible, free } => Ok(Some(format!(
+            "some parameters are none that a robot can have (a negative inertia, friction that drives): the best possible \
+             ones leave {} of the torques unexplained, these {}. A filtered or delayed torque signal does that; so do a \
+             wrong table, sign, order, unit or offset",
+            percent(possible),
+            percent(free)
+        ))),
+        _ => Ok(None),
+    }
+}
+
+fn advice(instead: &Instead) -> &'static str {
+    match instead {
+        Instead::Robot(_) => {
+            "Name that robot; if the robot is right, look for a wrong sign, order of columns, unit or offset"
+        }
+        Instead::Sign { .. } => "Change it with a negative `gain`, or in the robot's `drive: gear`",
+        Instead::Exchange { .. } => "Check the order of `columns`",
+        Instead::Unit(_) => "Check `unit`",
+        Instead::Offset { .. } => "Check `offset`, and theta in the robot's table",
+        _ => "Check the recording's YAML",
+    }
+}
+
+fn words(instead: &Instead, robot: &Robot) -> String {
+    let name = |of: Signal| match of {
+        Signal::Position => "position",
+        Signal::Torque => "torque",
+        Signal::Both => "position and torque",
+    };
+    let number = |joint: JointIndex| robot.joint_number(joint);
+    match instead {
+        Instead::Robot(robot) => robot.clone(),
+        Instead::Sign { of, joint } => {
+            format!("the opposite sign of the {} of joint {}", name(*of), number(*joint))
+        }
+        Instead::Exchange { of, joints: [a, b] } => {
+            format!("exchanging {} of joints {} and {}", name(*of), number(*a), number(*b))
+        }
+        Instead::Unit(AngleUnit::Degrees) => "reading angles in degrees".to_owned(),
+        Instead::Unit(AngleUnit::Radians) => "reading angles in radians".to_owned(),
+        Instead::Offset { joint, degrees } => {
+            format!("an offset of {degrees} degrees on the position of joint {}", number(*joint))
+        }
+        _ => "something else".to_owned(),
+    }
+}
