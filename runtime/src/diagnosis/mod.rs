@@ -8,7 +8,11 @@
 //!    parameters, and judged on motion that was held out; the best that holds becomes part of the model; then again.
 //!    Rows are smoothed by two windows: as slow as the motion (friction, load, springs, bodies), and faster (ripple,
 //!    elasticity, backlash). On a short recording, where one law hides another, two of a joint are tried together.
-//! 4. What was accepted is reconsidered, pruned and explained.
+//! 4. A law is named only where it stands out of the variation that is there anyway (between units of the baseline, or
+//!    of the recording), is larger than what the torques repeat to, and is told from rivals on other joints. Position
+//!    noise times inertia and short presliding are always fitted and never named.
+//! 5. Against a baseline, friction is free in the recording from the start; where it has changed it is named last.
+//! 6. What was accepted is reconsidered, pruned and explained.
 //!
 //! Every threshold is in `rules.rs`, with the reason for its value.
 //!
