@@ -461,7 +461,7 @@ mod tests {
 
     #[test]
     fn a_law_that_varies_anyway_is_no_change_however_well_its_noise_is_known() {
-        let [calibrated, naive] = rates(5, 12, true, 0.0, 0.3, 0.01);
+        let [calibrated, naive] = rates(5, 12, true, 0.0, 1.0, 0.01);
         println!("calibrated {calibrated}, without {naive}");
         assert!(calibrated < 0.025, "{calibrated}");
         assert!(naive > 0.2, "{naive}");
@@ -477,9 +477,9 @@ mod tests {
 
     #[test]
     fn a_change_that_stands_out_of_the_variation_is_found_at_a_level_over_many_candidates() {
-        let [changed, _] = rates(8, 12, true, 3.0, 0.3, 1e-4);
+        let [changed, _] = rates(8, 12, true, 5.0, 0.3, 1e-4);
         assert!(changed > 0.7, "{changed}");
-        let [alone, _] = rates(9, 10, false, 1.0, 0.05, 1e-4);
+        let [alone, _] = rates(9, 10, false, 1.6, 0.05, 1e-4);
         assert!(alone > 0.9, "{alone}");
     }
 
