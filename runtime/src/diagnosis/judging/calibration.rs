@@ -14,6 +14,7 @@ use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rules::{CALIBRATION_RIDGE, HIGHEST_AR_ORDER, LEAST_EIGENVALUE, OWN_FRACTION};
 use crate::parallel;
 use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::Range;
 
 /// What a law is judged against: everything by row, over all rows of all joints.
@@ -28,7 +29,7 @@ pub(in crate::diagnosis) struct Regressors<'a> {
 }
 
 /// A law's statistic in the recording and its variation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::diagnosis) struct Calibrated {
     /// Wald's statistic in a residual made white.
     pub squares: f64,
@@ -38,8 +39,6 @@ pub(in crate::diagnosis) struct Calibrated {
     pub lambda: f64,
     /// Units that this mean is of.
     pub units: usize,
-    /// What the law takes away in each unit, where the recording is compared with itself.
-    pub by_unit: Vec<f64>,
 }
 
 impl Calibrated {
@@ -73,7 +72,7 @@ pub(in crate::diagnosis) fn calibrate(
     };
     let files = blocks.files.len();
     let is_target = |f: usize| units.units.iter().any(|u| u.file == f && u.target);
-    let (found, nulls, by_unit) = if units.change() {
+    let (found, nulls) = if units.change() {
         let old: Vec<usize> = (0..files).filter(|&f| !is_target(f)).collect();
         let baseline = sum(&mut old.iter().map(|&f| &blocks.files[f]));
         let fresh = sum(&mut (0..files).filter(|&f| is_target(f)).map(|f| &blocks.files[f]));
@@ -92,7 +91,7 @@ pub(in crate::diagnosis) fn calibrate(
             .filter_map(|u| gain(&others(u), &blocks.units[u], p, k, common))
             .map(|(squares, numbers)| squares / numbers as f64)
             .collect();
-        (found, nulls, Vec::new())
+        (found, nulls)
     } else {
         let whole = sum(&mut blocks.units.iter());
         let nothing = DMatrix::zeros(p + k + 1, p + k + 1);
@@ -101,8 +100,7 @@ pub(in crate::diagnosis) fn calibrate(
             .filter_map(|u| gain(&(&whole - &blocks.units[u]), &blocks.units[u], p, k, true))
             .map(|(squares, numbers)| squares / numbers as f64)
             .collect();
-        let by_unit = shares(&whole, &blocks.units, p, k);
-        (found, nulls, by_unit)
+        (found, nulls)
     };
     let count = nulls.len();
     let mean = nulls.iter().sum::<f64>() / count.max(1) as f64;
@@ -110,36 +108,17 @@ pub(in crate::diagnosis) fn calibrate(
     let longer =
         if units.change() { (units.target_duration / units.duration.max(1e-9)).max(1.0) } else { 1.0 };
     let lambda = 1.0 + (mean - 1.0).max(0.0) * longer;
-    Some(Calibrated { squares: found.0, numbers: found.1, lambda, units: count, by_unit })
+    Some(Calibrated { squares: found.0, numbers: found.1, lambda, units: count })
 }
 
-/// What `k` columns beside `p` others take away in each of the parts, all fitted to the whole.
-fn shares(whole: &DMatrix<f64>, parts: &[DMatrix<f64>], p: usize, k: usize) -> Vec<f64> {
-    let solved = |n: usize| -> Option<DVector<f64>> {
-        let (factor, scale) = factored(&whole.view((0, 0), (n, n)).into_owned())?;
-        let v = DVector::from_fn(n, |i, _| whole[(i, p + k)] * scale[i]);
-        Some(factor.solve(&v).component_mul(&scale))
-    };
-    let (Some(without), Some(with)) = (solved(p), solved(p + k)) else { return Vec::new() };
-    let squares = |m: &DMatrix<f64>, x: &DVector<f64>| {
-        let n = x.len();
-        let v = DVector::from_fn(n, |i, _| m[(i, p + k)]);
-        x.dot(&(m.view((0, 0), (n, n)) * x)) - 2.0 * x.dot(&v)
-    };
-    parts.iter().map(|m| squares(m, &without) - squares(m, &with)).collect()
-}
-
-/// Probability that a law which takes away more than its rival does so by accident: their difference unit by unit
-/// (Vuong 1989 for laws that are not nested, with Student's distribution for few units).
-pub(in crate::diagnosis) fn rival_p_value(law: &Calibrated, rival: &Calibrated) -> f64 {
-    let ahead: Vec<f64> = law.by_unit.iter().zip(&rival.by_unit).map(|(a, b)| a - b).collect();
-    let n = ahead.len() as f64;
-    if n < 3.0 {
-        return 0.5;
-    }
-    let mean = ahead.iter().sum::<f64>() / n;
-    let variance = ahead.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
-    Evidence::student(mean / (variance / n).sqrt().max(1e-300), n - 1.0).p_value
+/// Probability that a law is ahead of a rival by `ahead` squares only by accident.
+///
+/// Where one of two laws that are not nested is true, the difference of what they explain has a standard deviation of
+/// at most twice the root of what the true one explains (Cox 1961; the two have nothing in common at worst), all in
+/// units of the variation that is there anyway.
+pub(in crate::diagnosis) fn rival_p_value(law: &Calibrated, ahead: f64) -> f64 {
+    let deviation = 2.0 * (law.lambda * law.squares).max(f64::MIN_POSITIVE).sqrt();
+    Normal::standard().sf(ahead / deviation)
 }
 
 /// Inner products without any law, joint by joint: the same for all laws of a round.
@@ -511,5 +490,31 @@ mod tests {
         let regressors =
             Regressors { shared: &shared, y: &y, free: &[vec![]], of_joint: std::slice::from_ref(&all) };
         assert_eq!(alone(&units(10, false), &regressors, &[column], &y, false), None);
+    }
+
+    #[test]
+    fn of_two_laws_the_true_one_is_told_apart_only_where_it_is_well_ahead() {
+        let mut rng = Pcg64::seed_from_u64(12);
+        let rows = 10 * ROWS;
+        let units = units(10, false);
+        let all = 0..rows;
+        let mut wrong = 0;
+        let mut right = 0;
+        for _ in 0..200 {
+            let law = wave(&mut rng, rows);
+            let other = wave(&mut rng, rows);
+            // A rival that has half of its squares in common with the law.
+            let rival: Vec<f64> = law.iter().zip(&other).map(|(a, b)| a + b).collect();
+            let y: Vec<f64> = noise(&mut rng, rows).iter().zip(&law).map(|(n, l)| n + 0.4 * l).collect();
+            let regressors =
+                Regressors { shared: &[], y: &y, free: &[vec![]], of_joint: std::slice::from_ref(&all) };
+            let judged = |law: &[f64]| alone(&units, &regressors, &[law.to_vec()], &y, false);
+            let (Some(a), Some(b)) = (judged(&law), judged(&rival)) else { continue };
+            right += usize::from(rival_p_value(&a, a.squares - b.squares) < 0.05);
+            wrong += usize::from(rival_p_value(&b, b.squares - a.squares) < 0.05);
+        }
+        println!("{right} right, {wrong} wrong of 200");
+        assert!(wrong <= 4, "{wrong}");
+        assert!(right > 40, "{right}");
     }
 }

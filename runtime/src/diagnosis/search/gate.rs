@@ -121,7 +121,7 @@ pub(in crate::diagnosis) struct SmallLaw {
 pub(in crate::diagnosis) enum Standing {
     /// It explains more than each of them, and not by accident.
     Ahead,
-    /// It cannot be told from this one of the round, which is sure enough itself.
+    /// It cannot be told from this one of the round.
     Tied(usize),
     /// One of them explains more.
     Beaten,
@@ -206,7 +206,6 @@ impl Search<'_> {
         against: &Backgrounds,
         ranked: &[Ranked],
         candidate: usize,
-        least_confidence: f64,
     ) -> Standing {
         let law = self.of(&ranked[candidate]).1;
         let Some(own) = self.gate(against, &ranked[candidate]) else { return Standing::Beaten };
@@ -224,16 +223,10 @@ impl Search<'_> {
         for (&k, other) in rivals.iter().zip(&gates) {
             let Some(other) = other else { continue };
             let ahead = worth(&own.calibrated) - worth(&other.calibrated);
-            let evidence = other.calibrated.evidence(other.calibrated.lambda);
-            let sure = evidence.confidence(self.tries()) >= least_confidence;
-            let doubt = match own.calibrated.by_unit.is_empty() {
-                true => f64::from(ahead < penalty),
-                false => rival_p_value(&own.calibrated, &other.calibrated),
-            };
             if ahead < -penalty {
                 return Standing::Beaten;
             }
-            if sure && doubt > TOLD_APART {
+            if rival_p_value(&own.calibrated, ahead) > TOLD_APART {
                 standing = Standing::Tied(k);
             }
         }

@@ -85,7 +85,7 @@ impl Search<'_> {
             }
             let gate = self.judged_by_gate(&against, &ranked[*k], tries, settings.least_confidence);
             let Outcome::Passes { confidence: calibrated, significance, inflation } = gate else { continue };
-            match self.standing(&against, &ranked, *k, settings.least_confidence) {
+            match self.standing(&against, &ranked, *k) {
                 Standing::Ahead => {}
                 Standing::Tied(rival) => {
                     let rival = self.of(&ranked[rival]).1;
