@@ -83,6 +83,10 @@ impl Search<'_> {
             if self.nested_case_suffices(&ranked, candidate, verdict) {
                 continue;
             }
+            // On one joint alone a law's rivals on others are not seen: what was tied with one stays so.
+            if joint.is_some() && self.is_tied(candidate) {
+                continue;
+            }
             let gate = self.judged_by_gate(&against, &ranked[*k], tries, settings.least_confidence);
             let Outcome::Passes { confidence: calibrated, significance, inflation } = gate else { continue };
             match self.standing(&against, &ranked, *k) {
@@ -194,6 +198,12 @@ impl Search<'_> {
                 && candidate.place == more.place
                 && other.verdict.total() > NESTED_CASE_SUFFICES * verdict.total()
         })
+    }
+
+    /// Whether the last round over all joints could not tell a candidate from another.
+    fn is_tied(&self, candidate: &Candidate) -> bool {
+        let law = (candidate.effect, candidate.place);
+        self.ties.iter().any(|tie| (0..2).any(|k| (tie.effects[k], tie.places[k]) == law))
     }
 
     /// The winner as a term, its shape refined on all motion.

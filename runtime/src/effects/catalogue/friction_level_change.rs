@@ -60,7 +60,8 @@ impl JointLaw for FrictionLevelChange {
     }
 
     fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
-        vec![vec![]]
+        // The search takes the baseline's own coefficients for these.
+        vec![vec![], vec![1.0, 1.0]]
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
