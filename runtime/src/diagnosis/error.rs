@@ -39,6 +39,14 @@ pub enum DiagnosisError {
         /// Joints of the robot.
         joints: usize,
     },
+    /// The baseline is of a robot with another number of joints.
+    #[error("the baseline has {given} joints, the recording {joints}: it is another robot's")]
+    OtherBaseline {
+        /// Joints of the baseline.
+        given: usize,
+        /// Joints of the robot.
+        joints: usize,
+    },
     /// No motion at all.
     #[error("the recording has no motion")]
     NoMotion,

@@ -212,6 +212,21 @@ pub struct CannotTell {
     pub experiment: String,
 }
 
+/// A law that is there, and no larger than what the robot's torques repeat to: no finding.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Small {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of the joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// Root mean square of its torque that nothing else explains, on the joint where it stands out most.
+    pub torque: f64,
+    /// How large it had to be to be named.
+    pub least: f64,
+    /// Unit of both.
+    pub unit: String,
+}
+
 /// What nothing explains.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Unexplained {
@@ -304,6 +319,9 @@ pub struct Diagnosis {
     pub findings: Vec<Finding>,
     /// What this motion cannot tell.
     pub cannot_tell: Vec<CannotTell>,
+    /// What is there and too small to be named.
+    #[serde(default)]
+    pub small: Vec<Small>,
     /// What nothing explains.
     pub unexplained: Unexplained,
     /// The verdict in plain sentences.

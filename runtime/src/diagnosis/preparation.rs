@@ -179,6 +179,10 @@ impl Prepared {
         if trajectories.is_empty() {
             return Err(DiagnosisError::NoMotion);
         }
+        let joints = model.robot().joints();
+        if let Some(other) = baseline.iter().find(|t| t.position.len() != joints) {
+            return Err(DiagnosisError::OtherBaseline { given: other.position.len(), joints });
+        }
         let mut motions = Motions::new(model, trajectories, baseline, settings)?;
         let mut aligned = motions.aligned(model);
         let moving = Moving::of(&aligned);

@@ -153,6 +153,41 @@ pub(super) const HIGHEST_CONFIDENCE: f64 = 0.9999;
 /// usual 5 %; `cannot_tell` in `docs/evidence.md`.
 pub(super) const TOLD_APART: f64 = 0.05;
 
+// ---- Calibration --------------------------------------------------------------------------------------------------
+// What a law's statistic is where nothing has changed is measured: between units of the baseline, or of the recording.
+
+/// Highest order of the autoregression that makes a residual white. Statistics: half a second of slow rows; the order
+/// itself is chosen by the Bayesian information criterion.
+pub(super) const HIGHEST_AR_ORDER: usize = 12;
+/// Fewest pairs of rows that an order is estimated from. Statistics: a reflection coefficient of so many has a fifth
+/// as its standard deviation.
+pub(super) const LEAST_AR_PAIRS: usize = 20;
+/// Shortest and longest unit of a baseline, s, and never longer than the recording's motions: a law must show in one,
+/// and what differs between days or poses must not be averaged away. Statistics; not measured on shorter ones.
+pub(super) const UNIT_OF_BASELINE: [f64; 2] = [1.0, 12.0];
+/// Shortest and longest unit where a recording is compared with itself, s. Statistics.
+pub(super) const UNIT_OF_ITSELF: [f64; 2] = [1.0, 8.0];
+/// Units that are wanted, where they are not too short or long. Statistics: a variance of so many has half of its size
+/// as its standard deviation, and a law is certain at a level of 1e-4 from six standard errors on.
+pub(super) const UNITS_WANTED: f64 = 10.0;
+/// Relative ridge of the regressions on white rows. Numerics.
+pub(super) const CALIBRATION_RIDGE: f64 = 1e-10;
+/// Directions of a law with less than this part of its squares are rounding. Numerics.
+pub(super) const LEAST_EIGENVALUE: f64 = 1e-6;
+/// Torques of a joint repeat to this share of their root mean square, where nothing shows that they repeat better.
+/// Mechanics: temperature and load change friction by as much within minutes (Bittencourt and Axelsson 2014).
+pub(super) const REPEATS: f64 = 0.02;
+/// A law on another joint is a rival from this share of a candidate's gain on. Judgement: saves time; a rival with
+/// less cannot come ahead by what whitening changes. Not measured.
+pub(super) const COMPARABLE: f64 = 0.5;
+/// Most such rivals that a candidate is compared with. Judgement: saves time.
+pub(super) const MOST_COMPARED: usize = 6;
+/// Least change of a joint's friction torque that is named, as a share of it. Judgement: a user acts on no less.
+pub(super) const LEAST_FRICTION_CHANGE: f64 = 0.05;
+/// Displacement, as a fraction of a joint's travel, over which friction builds up after a reversal in the nuisance
+/// column: the shortest of the grid of the law itself. Mechanics.
+pub(super) const PRESLIDING_NUISANCE: f64 = 0.002;
+
 // ---- Search -------------------------------------------------------------------------------------------------------
 
 /// A law gives way to its nested special case where that one makes this fraction of its gain. Judgement; backlash

@@ -106,8 +106,10 @@ fn pushed_windows(energies: &Energies, signals: &[Signals], joints: usize) -> Op
         )
     };
     let found: Vec<Vec<[f64; 2]>> = signals.iter().enumerate().map(of_signal).collect();
-    let pushed: f64 = found.iter().map(|w| duration(w)).sum();
-    let all: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
+    // The share that pushes may have is one of the motion that is diagnosed, however long a baseline is.
+    let targets = || signals.iter().zip(&found).filter(|(s, _)| s.is_target);
+    let pushed: f64 = targets().map(|(_, w)| duration(w)).sum();
+    let all: f64 = targets().map(|(s, _)| s.len() as f64 / s.rate).sum();
     (pushed > 0.0 && pushed <= LARGEST_PUSHED_FRACTION * all).then_some(found)
 }
 

@@ -8,10 +8,12 @@ use crate::diagnosis::explanation::{curves, delay, line, words};
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::outcome::{
     CannotTell, Diagnosis, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling, SearchOutcome,
+    Small,
 };
 use crate::diagnosis::rules::{SHIFTED, TOLD_APART};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
+use crate::diagnosis::search::select::Tie;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
 use crate::effects::Abscissa;
@@ -43,7 +45,8 @@ pub(in crate::diagnosis) fn explain(
 
     // 1. What was found: contacts, effects, the delay.
     let effects = (0..model.terms.len()).map(|k| of_term(model, k)).collect::<Result<Vec<_>, _>>()?;
-    let cannot_tell = cannot_tell(model, &effects);
+    let mut cannot_tell = cannot_tell(model, &effects);
+    cannot_tell.extend(search.ties.iter().map(|tie| tied(robot, tie)));
     let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
     findings.extend(effects);
     findings.extend(line::findings(search));
@@ -69,6 +72,7 @@ pub(in crate::diagnosis) fn explain(
         mismatch: curves::mismatch(model, standard),
         verdict: Vec::new(),
         cannot_tell,
+        small: small(search, settings),
         unexplained: curves::unexplained(model),
         shifts: shifts(robot, &standard.estimated, &after),
         standard: standard.estimated.clone(),
@@ -103,6 +107,34 @@ fn cannot_tell(model: &ExtendedModel<'_>, effects: &[Finding]) -> Vec<CannotTell
         }
     }
     list
+}
+
+/// Two laws on different joints that cannot be told apart.
+fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
+    let mut joints: Vec<usize> =
+        (0..2).flat_map(|k| named_on(robot, tie.effects[k], tie.places[k])).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    CannotTell {
+        between: tie.effects.iter().map(|e| e.id().to_string()).collect(),
+        joints,
+        experiment: tie.effects[0].words().experiment.into(),
+    }
+}
+
+/// What is there and below what is named.
+fn small(search: &Search<'_>, settings: &Settings) -> Vec<Small> {
+    let context = &search.model.context;
+    let unit = |own: &[usize]| own.first().map_or("N.m", |&j| context.scales[j].torque_unit());
+    let laws = search.small(settings).into_iter();
+    laws.map(|law| Small {
+        effect: law.effect.id().into(),
+        joints: named_on(context.model.robot(), law.effect, law.place),
+        torque: law.size.law,
+        least: law.size.repeats,
+        unit: unit(&law.own).into(),
+    })
+    .collect()
 }
 
 /// Errors on held-out motion of the standard model and of the model with its terms.

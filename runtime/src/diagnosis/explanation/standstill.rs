@@ -49,6 +49,7 @@ pub(in crate::diagnosis) fn explain(
             by_motion: Vec::new(),
         },
         mismatch,
+        small: Vec::new(),
         cannot_tell: loads(robot, rest),
         unexplained: Unexplained { per_joint: vec![0.0; robot.joints()], ..Unexplained::default() },
         verdict: Vec::new(),

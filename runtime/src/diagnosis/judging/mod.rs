@@ -1,6 +1,8 @@
 //! Judging: what a candidate gains on motion that it was not fitted to, and how sure it is that this is no accident.
 
+pub(in crate::diagnosis) mod ar;
 pub(in crate::diagnosis) mod ar1;
+pub(in crate::diagnosis) mod calibration;
 pub(in crate::diagnosis) mod evidence;
 pub(in crate::diagnosis) mod folds;
 pub(in crate::diagnosis) mod held_out;
@@ -11,3 +13,4 @@ pub(in crate::diagnosis) mod regression;
 pub(in crate::diagnosis) mod significance;
 #[cfg(test)]
 mod tests;
+pub(in crate::diagnosis) mod units;

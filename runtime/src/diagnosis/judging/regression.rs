@@ -78,6 +78,15 @@ impl Regression {
         Ok(())
     }
 
+    /// Takes columns out of the design for good: a term has them from now on.
+    pub fn silence(&mut self, columns: impl Iterator<Item = usize>) {
+        for column in columns {
+            self.design.columns[column].fill(0.0);
+        }
+        self.design.columns.truncate(self.fixed_columns);
+        self.design.refresh();
+    }
+
     /// Number of columns that are always there: base parameters and nuisances.
     pub fn fixed_columns(&self) -> usize {
         self.fixed_columns

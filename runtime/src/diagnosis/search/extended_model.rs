@@ -1,12 +1,14 @@
 //! The standard model with accepted effects, fitted on the rows of both smoothing windows.
 
-use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
+use crate::diagnosis::candidates::nuisances::always_there;
+use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Regression, TermColumns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
+use crate::diagnosis::search::gate::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
 
@@ -15,13 +17,15 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
     pub context: Context<'a>,
     pub slow: Regression,
     pub fast: Regression,
+    /// What evidence on the slow and on the fast rows is compared with.
+    pub benches: [Bench; 2],
     pub terms: Vec<Accepted>,
     /// Whether only what changed since a baseline is looked for.
     pub change: bool,
 }
 
 impl<'a> ExtendedModel<'a> {
-    /// Without any effect; the skew of the torques is always fitted along.
+    /// Without any effect; nuisances are always fitted along.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
@@ -31,12 +35,14 @@ impl<'a> ExtendedModel<'a> {
         fast: Design,
         change: bool,
     ) -> Result<Self, SingularDesign> {
-        let regression = |design: Design| {
-            let delay = delay_columns(&context, &design);
-            Regression::new(design, delay)
+        let regression = |design: Design, window| {
+            let nuisances = always_there(&context, &design, window, change);
+            Regression::new(design, nuisances)
         };
-        let (slow, fast) = (regression(slow)?, regression(fast)?);
-        Ok(Self { context, slow, fast, terms: Vec::new(), change })
+        let slow = regression(slow, SmoothingWindow::Slow)?;
+        let fast = regression(fast, SmoothingWindow::Fast)?;
+        let benches = [&slow, &fast].map(|r| Bench::new(&context, &r.design));
+        Ok(Self { context, slow, fast, benches, terms: Vec::new(), change })
     }
 
     /// The regression on the rows of a window.
@@ -44,6 +50,14 @@ impl<'a> ExtendedModel<'a> {
         match window {
             SmoothingWindow::Slow => &self.slow,
             SmoothingWindow::Fast => &self.fast,
+        }
+    }
+
+    /// What evidence on the rows of a window is compared with.
+    pub fn bench(&self, window: SmoothingWindow) -> &Bench {
+        match window {
+            SmoothingWindow::Slow => &self.benches[0],
+            SmoothingWindow::Fast => &self.benches[1],
         }
     }
 
@@ -86,6 +100,7 @@ impl<'a> ExtendedModel<'a> {
             )?,
             slow: self.slow.clone(),
             fast: self.fast.clone(),
+            benches: self.benches.clone(),
             terms: self.terms.clone(),
             change: self.change,
         };
@@ -104,8 +119,10 @@ impl<'a> ExtendedModel<'a> {
         for (column, &x) in design.columns.iter().zip(chi.iter()) {
             subtract(column, x);
         }
-        for column in delay_columns(&self.context, design) {
-            subtract(&column, chi[design.parameters]);
+        for (k, column) in
+            always_there(&self.context, design, SmoothingWindow::Slow, self.change).iter().enumerate()
+        {
+            subtract(column, chi[design.parameters + k]);
         }
         for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
             let columns =

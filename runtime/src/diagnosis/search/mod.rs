@@ -1,6 +1,8 @@
 //! Search: which candidates become part of the model, one after the other.
 
 pub(in crate::diagnosis) mod extended_model;
+pub(in crate::diagnosis) mod friction_change;
+pub(in crate::diagnosis) mod gate;
 pub(in crate::diagnosis) mod line;
 pub(in crate::diagnosis) mod pair;
 pub(in crate::diagnosis) mod refine;

@@ -54,6 +54,7 @@ impl Search<'_> {
                     verdict: first.verdict.clone(),
                     significance: evidence.significance,
                     confidence: 0.0,
+                    inflation: 1.0,
                     rivals: Vec::new(),
                 })
             })
@@ -72,7 +73,7 @@ impl Search<'_> {
         self.model.terms.push(law.clone());
         self.model.refit()?;
         self.update(joint);
-        let found = self.best(settings, joint, rounds)?.map(|winner| self.accept(&winner));
+        let found = self.best(settings, joint, rounds)?.winner.map(|winner| self.accept(&winner));
         self.model.terms.pop();
         Ok(found)
     }

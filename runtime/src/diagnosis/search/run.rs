@@ -31,6 +31,8 @@ impl Search<'_> {
             progress.at(0.87, "pruning");
             let rejected = self.prune(settings)?;
             if rejected.is_empty() {
+                // 4. Last, friction that has changed: it is free from the start, and no evidence for anything else.
+                self.name_friction_changes(settings)?;
                 return Ok(SearchReport { stop, removed: self.rejected.clone() });
             }
             // 3. What is left may now be explained by something else.
@@ -43,13 +45,14 @@ impl Search<'_> {
         while self.model.terms.len() < settings.most_effects {
             let done = self.model.terms.len() as f64 / settings.most_effects as f64;
             progress.at(0.6 + 0.25 * done, "held-out tests");
-            let mut winner = self.best(settings, None, 1)?;
+            let mut round = self.best(settings, None, 1)?;
             // Compliant transmissions of neighbours ring alike: which one it is shows when both are tuned.
-            if winner.as_ref().is_none_or(|w| self.candidates(w.window)[w.index].fixed.is_some()) {
+            if round.winner.as_ref().is_none_or(|w| self.candidates(w.window)[w.index].fixed.is_some()) {
                 self.polish(settings.threads);
-                winner = self.best(settings, None, 1)?;
+                round = self.best(settings, None, 1)?;
             }
-            let found = match winner {
+            self.ties = round.ties;
+            let found = match round.winner {
                 Some(winner) => vec![self.accept(&winner)],
                 None => self.pair(settings)?.map_or_else(Vec::new, Vec::from),
             };
@@ -69,6 +72,10 @@ impl Search<'_> {
     /// As [`Self::run`].
     pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) -> Result<SearchReport, SingularDesign> {
         for &(effect, joint) in known {
+            if let (EffectKind::FrictionLevelChange, Some(joint)) = (effect, joint) {
+                self.take_friction_change(joint, 0.0, 0.5)?;
+                continue;
+            }
             if effect.form().fixed_amplitude().is_some() {
                 self.polish(self.threads);
             }
@@ -82,8 +89,15 @@ impl Search<'_> {
                 .filter_map(|(index, c)| Some((index, regression.judge(c)?)))
                 .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
             if let Some((index, verdict)) = best {
-                let winner =
-                    Winner { window, index, verdict, significance: 0.0, confidence: 0.5, rivals: vec![] };
+                let winner = Winner {
+                    window,
+                    index,
+                    verdict,
+                    significance: 0.0,
+                    confidence: 0.5,
+                    inflation: 1.0,
+                    rivals: vec![],
+                };
                 let term = self.accept(&winner);
                 self.model.terms.push(term);
                 self.refit_and_update()?;
@@ -100,7 +114,7 @@ impl Search<'_> {
             let old = self.model.terms.remove(k);
             self.refit_and_update()?;
             let joint = (old.own.len() < self.model.slow.design.joints).then(|| old.own[0]);
-            let replacement = self.best(settings, joint, 1)?.map(|w| self.accept(&w));
+            let replacement = self.best(settings, joint, 1)?.winner.map(|w| self.accept(&w));
             let keep = match replacement {
                 Some(new) if new.effect == old.effect && new.place == old.place => Some(Accepted {
                     shape: new.shape,

@@ -8,10 +8,11 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rules::{
     FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, NESTED_CASE_SUFFICES, RIVALS, STRETCHES_PER_LOSS,
 };
+use crate::diagnosis::search::gate::{Backgrounds, Outcome, Standing};
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
-use crate::effects::SmoothingWindow;
+use crate::effects::{EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 
 /// What passed a round: the window of its rows, the candidate's index there, and its verdict.
@@ -21,7 +22,23 @@ pub(in crate::diagnosis) struct Winner {
     pub verdict: Verdict,
     pub significance: f64,
     pub confidence: f64,
+    /// Factor on the standard deviations of its numbers.
+    pub inflation: f64,
     pub rivals: Vec<Rival>,
+}
+
+/// Two laws on different joints that the recording cannot tell apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct Tie {
+    pub effects: [EffectKind; 2],
+    pub places: [Place; 2],
+}
+
+/// What a round of judging came to.
+pub(in crate::diagnosis) struct Round {
+    pub winner: Option<Winner>,
+    /// Laws that would have won, were they not tied with another.
+    pub ties: Vec<Tie>,
 }
 
 /// A candidate of a round: the window of its rows, its index there, and its verdict.
@@ -42,11 +59,13 @@ impl Search<'_> {
         settings: &Settings,
         joint: Option<usize>,
         rounds: usize,
-    ) -> Result<Option<Winner>, SingularDesign> {
+    ) -> Result<Round, SingularDesign> {
+        let mut ties = Vec::new();
+        let against = Backgrounds::default();
         let ranked = self.ranked(joint);
         let holding = self.holding(&ranked, settings);
         let tries = rounds * self.tries();
-        for (h, (k, evidence)) in holding.iter().enumerate() {
+        for (h, (k, _)) in holding.iter().enumerate() {
             let (regression, candidate) = self.of(&ranked[*k]);
             let verdict = &ranked[*k].verdict;
             // Whatever explains more of a joint than something that is no accident is no accident either.
@@ -64,16 +83,36 @@ impl Search<'_> {
             if self.nested_case_suffices(&ranked, candidate, verdict) {
                 continue;
             }
-            return Ok(Some(Winner {
+            // On one joint alone a law's rivals on others are not seen: what was tied with one stays so.
+            if joint.is_some() && self.is_tied(candidate) {
+                continue;
+            }
+            let gate = self.judged_by_gate(&against, &ranked[*k], tries, settings.least_confidence);
+            let Outcome::Passes { confidence: calibrated, significance, inflation } = gate else { continue };
+            match self.standing(&against, &ranked, *k) {
+                Standing::Ahead => {}
+                Standing::Tied(rival) => {
+                    let rival = self.of(&ranked[rival]).1;
+                    ties.push(Tie {
+                        effects: [candidate.effect, rival.effect],
+                        places: [candidate.place, rival.place],
+                    });
+                    continue;
+                }
+                Standing::Beaten => continue,
+            }
+            let winner = Some(Winner {
                 window: ranked[*k].window,
                 index: ranked[*k].index,
                 verdict: verdict.clone(),
-                significance: evidence.significance,
-                confidence,
+                significance,
+                confidence: confidence.min(calibrated),
+                inflation,
                 rivals: self.rivals(&ranked, *k, settings),
-            }));
+            });
+            return Ok(Round { winner, ties });
         }
-        Ok(None)
+        Ok(Round { winner: None, ties })
     }
 
     /// Candidates, on `joint` where one is given, that are not excluded: those that gain most on held-out motion first.
@@ -161,6 +200,12 @@ impl Search<'_> {
         })
     }
 
+    /// Whether the last round over all joints could not tell a candidate from another.
+    fn is_tied(&self, candidate: &Candidate) -> bool {
+        let law = (candidate.effect, candidate.place);
+        self.ties.iter().any(|tie| (0..2).any(|k| (tie.effects[k], tie.places[k]) == law))
+    }
+
     /// The winner as a term, its shape refined on all motion.
     pub(in crate::diagnosis) fn accept(&self, winner: &Winner) -> Accepted {
         let mut term = self.as_term(winner);
@@ -180,6 +225,7 @@ impl Search<'_> {
             fixed: candidate.fixed,
             significance: winner.significance,
             confidence: winner.confidence,
+            inflation: winner.inflation,
             explained_fraction: winner.verdict.explained_fraction,
             rivals: winner.rivals.clone(),
         }

@@ -8,6 +8,7 @@ use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::line::{JointLines, all_lines};
+use crate::diagnosis::search::select::Tie;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::SmoothingWindow;
@@ -23,6 +24,8 @@ pub(in crate::diagnosis) struct Search<'a> {
     pub fast: Vec<Candidate>,
     /// What was taken out again.
     pub rejected: Vec<Accepted>,
+    /// Laws that the last round could not tell from one on another joint.
+    pub ties: Vec<Tie>,
     pub spectra: Vec<OrderSpectrum>,
     /// Ripple that stands out as a line, per joint.
     pub lines: Vec<JointLines>,
@@ -61,7 +64,8 @@ impl<'a> Search<'a> {
         // What this motion cannot show is not tried.
         slow.retain(|c| model.slow.is_identifiable(c));
         fast.retain(|c| model.fast.is_identifiable(c));
-        Self { model, slow, fast, rejected: Vec::new(), spectra, lines, tried, threads }
+        let ties = Vec::new();
+        Self { model, slow, fast, rejected: Vec::new(), ties, spectra, lines, tried, threads }
     }
 
     /// The candidates on the rows of a window.

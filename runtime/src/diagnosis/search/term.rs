@@ -14,6 +14,9 @@ pub(in crate::diagnosis) struct Accepted {
     pub fixed: Option<f64>,
     pub significance: f64,
     pub confidence: f64,
+    /// Factor on the standard deviations of its numbers: what the residual's memory and the variation between units
+    /// add.
+    pub inflation: f64,
     /// Fraction of what held-out motion left open when it was accepted: what its rivals' fractions compare with.
     pub explained_fraction: f64,
     pub rivals: Vec<Rival>,

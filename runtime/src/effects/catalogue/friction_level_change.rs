@@ -52,13 +52,16 @@ impl Effect for FrictionLevelChange {
     }
 }
 
+/// Without a shape, one factor on the friction of the baseline; with the baseline's viscous and Coulomb coefficients as
+/// shape, the change of each of them.
 impl JointLaw for FrictionLevelChange {
-    fn amplitudes(&self, _: &[f64]) -> usize {
-        1
+    fn amplitudes(&self, shape: &[f64]) -> usize {
+        if shape.len() == 2 { 2 } else { 1 }
     }
 
     fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
-        vec![vec![]]
+        // The search takes the baseline's own coefficients for these.
+        vec![vec![], vec![1.0, 1.0]]
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
@@ -69,15 +72,52 @@ impl JointLaw for FrictionLevelChange {
         false
     }
 
-    fn law(&self, _: &Scale, _: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        out[0] = at.friction;
+    fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        if let ([_, _], [viscous, coulomb]) = (shape, &mut *out) {
+            (*viscous, *coulomb) = (at.dq, at.sign);
+        } else {
+            out[0] = at.friction;
+        }
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
         AtRest::Dry
     }
 
-    fn parameters(&self, _: &Scale, _: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        vec![Parameter::new("factor", 1.0 + a[0], s[0], "1")]
+    fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+        let (&[viscous, coulomb], [by_speed, level], [by_speed_sigma, level_sigma]) = (shape, a, s) else {
+            return vec![Parameter::new("factor", 1.0 + a[0], s[0], "1")];
+        };
+        // The factor is that of the friction at half of the joint's top speed.
+        let speed = 0.5 * scale.speed;
+        let whole = (viscous * speed + coulomb).abs().max(1e-12);
+        let factor = 1.0 + (by_speed * speed + level) / whole;
+        let factor_sigma = (by_speed_sigma * speed).hypot(*level_sigma) / whole;
+        let per_speed = if scale.prismatic { "N.s/m" } else { "N.m.s/rad" };
+        vec![
+            Parameter::new("factor", factor, factor_sigma, "1"),
+            Parameter::new("viscous_change", *by_speed, *by_speed_sigma, per_speed),
+            Parameter::new("coulomb_change", *level, *level_sigma, scale.torque_unit()),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_of_both_coefficients_has_the_factor_of_the_friction_at_half_speed() {
+        let scale = Scale { speed: 2.0, range: 1.0, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
+        let shape = [3.0, 1.0];
+        assert_eq!(FrictionLevelChange.amplitudes(&shape), 2);
+        let found = FrictionLevelChange.parameters(&scale, &shape, &[1.0, -0.2], &[0.0, 0.1]);
+        assert!((found[0].value - 1.2).abs() < 1e-12);
+        assert!((found[0].sigma - 0.025).abs() < 1e-12);
+        assert_eq!((found[1].value, found[2].value), (1.0, -0.2));
+        let mut out = [0.0; 2];
+        let at = At { dq: -1.5, sign: -1.0, friction: 9.0, ..At::default() };
+        FrictionLevelChange.law(&scale, &shape, &at, 0.0, &mut out);
+        assert_eq!(out, [-1.5, -1.0]);
     }
 }

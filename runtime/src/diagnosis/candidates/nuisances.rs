@@ -1,0 +1,108 @@
+//! Columns that are always fitted and never named: what every recording of a real robot has, and what other laws would
+//! otherwise be taken for.
+
+use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::PRESLIDING_NUISANCE;
+use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::signal::{Stencil, central_difference};
+
+/// All columns that are fitted beside the base parameters and never named: the skew of the torques, the nuisances,
+/// and, against a baseline (`change`), the recording's own friction as the last three of every joint.
+pub(in crate::diagnosis) fn always_there(
+    context: &Context<'_>,
+    design: &Design,
+    window: SmoothingWindow,
+    change: bool,
+) -> Vec<Vec<f64>> {
+    let mut out = delay_columns(context, design);
+    out.extend(nuisance_columns(context, design, window));
+    if change {
+        out.extend(target_friction_columns(context, design));
+    }
+    out
+}
+
+/// Per joint, on all rows: what position noise and the filters of positions and torques leave; and friction that builds
+/// up over a short displacement after a reversal.
+///
+/// On slow rows the first is the second derivative of the model's torque. On fast rows that would be a compliant
+/// transmission to leading order, so it is the model's torque from positions above the band of the motion: position
+/// noise times inertia, and no link that swings.
+fn nuisance_columns(context: &Context<'_>, design: &Design, window: SmoothingWindow) -> Vec<Vec<f64>> {
+    let mut out = Vec::new();
+    for j in 0..design.joints {
+        let mut on_joint = Vec::new();
+        for (k, s) in context.signals.iter().enumerate() {
+            let rigid = &context.torques[k].rigid[j];
+            let column = match window {
+                SmoothingWindow::Slow => twice_differentiated(rigid, s.rate),
+                SmoothingWindow::Fast => {
+                    rigid.iter().zip(context.load_in_driving_band(k, j)).map(|(all, low)| all - low).collect()
+                }
+            };
+            design.sample(j, k, &column, &mut on_joint);
+        }
+        let mut column = vec![0.0; design.rows.len()];
+        column[design.of_joint(j)].copy_from_slice(&on_joint);
+        out.push(column);
+        let shape = [PRESLIDING_NUISANCE * context.scales[j].range];
+        out.extend(dense_columns(
+            context,
+            design,
+            EffectKind::PreslidingHysteresis,
+            Place::Joint(j),
+            &shape,
+            false,
+        ));
+    }
+    // Columns keep their number and order: what is no number is left at zero, and then not fitted.
+    for column in out.iter_mut().filter(|c| c.iter().any(|x| !x.is_finite())) {
+        column.fill(0.0);
+    }
+    out
+}
+
+/// Viscous friction, Coulomb friction and an offset of one joint, on the joint's rows.
+pub(in crate::diagnosis) fn friction_columns(
+    context: &Context<'_>,
+    design: &Design,
+    joint: usize,
+) -> Vec<Vec<f64>> {
+    let mut out = vec![Vec::new(); 3];
+    for (k, s) in context.signals.iter().enumerate() {
+        let sign: Vec<f64> = s.dq[joint].iter().map(|v| if *v > 0.0 { 1.0 } else { -1.0 }).collect();
+        let one = vec![1.0; s.len()];
+        for (column, series) in out.iter_mut().zip([&s.dq[joint], &sign, &one]) {
+            design.sample(joint, k, series, column);
+        }
+    }
+    out
+}
+
+/// The friction columns of every joint, on the rows of the recording that is diagnosed and zero on a baseline's:
+/// three for each joint.
+fn target_friction_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
+    let mut out = Vec::new();
+    for j in 0..design.joints {
+        let range = design.of_joint(j);
+        for on_joint in friction_columns(context, design, j) {
+            let mut column = vec![0.0; design.rows.len()];
+            for (r, value) in range.clone().zip(on_joint) {
+                if context.signals[design.rows[r].signal].is_target {
+                    column[r] = value;
+                }
+            }
+            out.push(column);
+        }
+    }
+    out
+}
+
+fn twice_differentiated(x: &[f64], rate: f64) -> Vec<f64> {
+    let (mut once, mut twice) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    central_difference(x, rate, Stencil::Seven, &mut once);
+    central_difference(&once, rate, Stencil::Seven, &mut twice);
+    twice
+}

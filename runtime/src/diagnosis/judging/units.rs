@@ -1,0 +1,149 @@
+//! A recording cut into units of a few seconds: what a law's evidence is compared between.
+
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::{UNIT_OF_BASELINE, UNIT_OF_ITSELF, UNITS_WANTED};
+use std::ops::Range;
+
+/// One unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct Unit {
+    /// Motion that it is a part of.
+    pub file: usize,
+    /// Whether it belongs to the recording that is diagnosed.
+    pub target: bool,
+}
+
+/// Rows of all joints, cut into units.
+#[derive(Debug, Clone)]
+pub(in crate::diagnosis) struct Units {
+    pub units: Vec<Unit>,
+    /// Rows of each joint in each unit: `[joint][unit]`.
+    pub rows: Vec<Vec<Range<usize>>>,
+    /// Neighbouring rows without a gap, never across the border of a unit: `[joint][..]`.
+    pub stretches: Vec<Vec<Range<usize>>>,
+    /// Mean duration of a unit of the baseline, or of the recording where there is none, s.
+    pub duration: f64,
+    /// Mean duration of a motion of the recording, s.
+    pub target_duration: f64,
+}
+
+impl Units {
+    /// Units of a design: as long as the recording's motions where there is a baseline, else about ten.
+    pub fn of(design: &Design) -> Self {
+        let files = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
+        let fresh: Vec<bool> =
+            (0..files).map(|f| design.segments.iter().any(|s| s.signal == f && s.is_target)).collect();
+        // First and last place of each motion, counted in rows.
+        let mut spans = vec![(usize::MAX, 0); files];
+        for row in &design.rows {
+            let place = row.centre / design.spacing(row.signal);
+            let span = &mut spans[row.signal];
+            *span = (span.0.min(place), span.1.max(place));
+        }
+        let seconds = |f: usize| match spans[f] {
+            (first, last) if first <= last => (last - first + 1) as f64 * design.step,
+            _ => 0.0,
+        };
+        let sum = |target: bool| (0..files).filter(|&f| fresh[f] == target).map(seconds).sum::<f64>();
+        let motions = fresh.iter().filter(|f| **f).count().max(1) as f64;
+        let target_duration = sum(true) / motions;
+        let change = fresh.iter().any(|f| !f);
+        let wanted = if change {
+            target_duration.min(sum(false) / UNITS_WANTED).clamp(UNIT_OF_BASELINE[0], UNIT_OF_BASELINE[1])
+        } else {
+            (sum(true) / UNITS_WANTED).clamp(UNIT_OF_ITSELF[0], UNIT_OF_ITSELF[1])
+        };
+        let mut units = Vec::new();
+        let mut first_unit = vec![0; files];
+        let mut counts = vec![1; files];
+        for f in 0..files {
+            first_unit[f] = units.len();
+            counts[f] = if change && fresh[f] { 1 } else { (seconds(f) / wanted).round().max(1.0) as usize };
+            units.extend(vec![Unit { file: f, target: fresh[f] }; counts[f]]);
+        }
+        let cut: Vec<usize> = (0..files).filter(|&f| fresh[f] != change).collect();
+        let duration = cut.iter().map(|&f| seconds(f)).sum::<f64>()
+            / cut.iter().map(|&f| counts[f]).sum::<usize>().max(1) as f64;
+        let of = |r: usize| {
+            let row = design.rows[r];
+            let (first, last) = spans[row.signal];
+            let place = row.centre / design.spacing(row.signal);
+            let unit = first_unit[row.signal] + (place - first) * counts[row.signal] / (last - first + 1);
+            (unit, place)
+        };
+        let (mut rows, mut stretches) = (Vec::new(), Vec::new());
+        for j in 0..design.joints {
+            let mut of_units = vec![0..0; units.len()];
+            let mut of_joint: Vec<Range<usize>> = Vec::new();
+            let mut before = None;
+            for r in design.of_joint(j) {
+                let (unit, place) = of(r);
+                let range: &mut Range<usize> = &mut of_units[unit];
+                let start = if range.end == 0 { r } else { range.start };
+                *range = start..r + 1;
+                match of_joint.last_mut() {
+                    Some(last) if before == Some((unit, place.wrapping_sub(1))) => last.end = r + 1,
+                    _ => of_joint.push(r..r + 1),
+                }
+                before = Some((unit, place));
+            }
+            rows.push(of_units);
+            stretches.push(of_joint);
+        }
+        Self { units, rows, stretches, duration, target_duration }
+    }
+
+    /// Whether there is a baseline.
+    pub fn change(&self) -> bool {
+        self.units.iter().any(|u| !u.target)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two joints with rows every 0.02 s, `seconds` in each segment (motion, is_target).
+    fn design(segments: &[(usize, bool)], seconds: f64) -> Design {
+        let rows = (seconds / 0.02) as usize;
+        let all = 2 * segments.len() * rows;
+        Design::made_up(2, segments, rows, vec![vec![1.0; all]], vec![0.0; all])
+    }
+
+    #[test]
+    fn a_recording_on_its_own_is_cut_into_about_ten_units_of_at_least_a_second() {
+        let long = Units::of(&design(&[(0, true), (0, true)], 12.0));
+        assert_eq!(long.units.len(), 10);
+        assert!(!long.change());
+        assert!((long.duration - 2.4).abs() < 0.05, "{}", long.duration);
+        let short = Units::of(&design(&[(0, true)], 4.0));
+        assert_eq!(short.units.len(), 4);
+    }
+
+    #[test]
+    fn a_long_baseline_has_units_as_long_as_the_recording_and_a_short_one_has_enough_of_them() {
+        let long = Units::of(&design(&[(0, false), (1, false), (2, true)], 40.0));
+        assert_eq!(long.units.iter().filter(|u| u.target).count(), 1);
+        assert!((long.duration - 8.0).abs() < 0.1, "{}", long.duration);
+        let short = Units::of(&design(&[(0, false), (1, true)], 10.0));
+        assert_eq!(short.units.iter().filter(|u| !u.target).count(), 10);
+        assert!((short.target_duration - 10.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn stretches_end_at_gaps_and_at_the_borders_of_units_and_hold_every_row_once() {
+        let mut design = design(&[(0, true)], 4.0);
+        for r in design.of_joint(1) {
+            design.rows[r].centre += if r >= design.of_joint(1).start + 30 { 5 } else { 0 };
+        }
+        let units = Units::of(&design);
+        for j in 0..2 {
+            let rows: Vec<usize> = units.stretches[j].iter().cloned().flatten().collect();
+            assert_eq!(rows, design.of_joint(j).collect::<Vec<usize>>());
+            let in_units: usize = units.rows[j].iter().map(|r| r.len()).sum();
+            assert_eq!(in_units, rows.len());
+        }
+        assert_eq!(units.stretches[0].len(), units.units.len());
+        assert_eq!(units.stretches[1].len(), units.units.len() + 1);
+    }
+}
