@@ -219,7 +219,8 @@ impl Sums {
 
     /// Capped at the smallest residual: noise that a model has explained is none.
     fn noise(&self) -> Option<Errors> {
-        let capped = |(j, noise): (usize, &f64)| self.left.iter().fold(*noise, |least, left| least.min(left[j]));
+        let capped =
+            |(j, noise): (usize, &f64)| self.left.iter().fold(*noise, |least, left| least.min(left[j]));
         let noise: Vec<f64> = self.noise.as_ref()?.iter().enumerate().map(capped).collect();
         Some(Errors::of_squares(&noise, &self.whole))
     }
