@@ -51,6 +51,7 @@ pub mod observe;
 mod outcome;
 mod physical;
 mod piecewise;
+mod recorded;
 mod residuals;
 mod robust;
 mod solve;
@@ -66,5 +67,6 @@ pub use outcome::{
 };
 pub use physical::{PhysicalFit, physical_fit};
 pub use piecewise::Piecewise;
+pub use recorded::{ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording};
 pub use residuals::{errors_against, per_equation, relative_error};
 pub use solve::{RANK_TOLERANCE, Solution};
