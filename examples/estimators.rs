@@ -158,7 +158,7 @@ fn one_seed(
     let weighted = estimate(&torques, &EstimateSettings::for_method(Method::IdimWls));
     let sigma_of = |trajectory: usize, equation: usize| {
         let of = |e: &&EquationError| e.trajectory == trajectory && e.equation == equation;
-        weighted.errors.iter().find(of).map_or(1.0, |e| e.sigma)
+        weighted.errors.iter().find(of).and_then(|e| e.sigma).unwrap_or(1.0)
     };
     let sigmas: Vec<f64> = observation.groups.iter().map(|g| sigma_of(g.trajectory, g.equation)).collect();
     if let Ok(found) = instrumental_variables(&observation, &sigmas) {

@@ -116,10 +116,9 @@ fn standstill(speeds: &[f64], joints: usize) -> Standstill {
 }
 
 impl Sampling {
-    /// As settings of the observation in a band.
-    pub fn settings(&self, joints: usize, band: f64) -> ObserveSettings {
+    /// As settings of the observation; the band is chosen with the recording.
+    pub fn settings(&self, joints: usize) -> ObserveSettings {
         ObserveSettings {
-            band,
             rate: self.rows.rate,
             standstill: self.rows.standstill(joints),
             threads: self.rows.threads,

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use dynid_runtime::estimation::observe::{Equations, Observation, ObserveError, ObserveSettings, observe};
-use dynid_runtime::estimation::{Bandwidth, Piecewise, choose_bandwidth};
+use dynid_runtime::estimation::observe::{Equations, Observation, ObserveError, ObserveSettings};
+use dynid_runtime::estimation::{
+    ObserveRecordingError, ObservedRecording, RecordedSettings, observe_recording,
+};
 use dynid_runtime::model::Robot;
-use dynid_runtime::recording::{Loader, Manifest, RecordingError, RowReport, Side, Trajectory, load};
-use dynid_runtime::signal::{Motion, Preparation, SignalError, prepare_all};
+use dynid_runtime::recording::{Manifest, RecordingError, RowReport, Side, Trajectory, load};
+use dynid_runtime::signal::{Motion, SignalError, prepare_all};
 
 use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
@@ -107,9 +109,10 @@ pub fn measure_as(
 pub fn prepared(measured: Measured, options: &Source, sampling: &Sampling) -> Result<Recorded, Failure> {
     let Measured { dynamics, title, robot, side, trajectories, mut rows } = measured;
     let joints = dynamics.model().robot().joints();
-    let (preparation, settings) = bandwidth(options, sampling, &trajectories, joints)?;
-    let (motions, too_short) = prepare_all(&trajectories, &preparation)
-        .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
+    let failed = |error: SignalError| Failure::Data(in_recording(&options.recording, &error));
+    let (preparation, settings) =
+        recorded_settings(sampling, joints).chosen(&trajectories).map_err(failed)?;
+    let (motions, too_short) = prepare_all(&trajectories, &preparation).map_err(failed)?;
     rows.too_short = too_short.iter().map(SignalError::to_string).collect();
     Ok(Recorded { dynamics, title, robot, side, motions, rows, settings })
 }
@@ -122,9 +125,6 @@ pub fn read(options: &Source, sampling: &Sampling) -> Result<Recorded, Failure> 
     prepared(measure(options)?, options, sampling)
 }
 
-/// Rows of a piece of a long recording: what is in memory at once is a few times as much.
-pub const PIECE: usize = 100_000;
-
 /// A recording that was observed.
 pub struct Observed {
     /// The recording; of a long one the motions of its first pieces only.
@@ -135,7 +135,7 @@ pub struct Observed {
     pub whole: bool,
 }
 
-/// Reads and observes a recording. One of more than [`PIECE`] rows is read, prepared, observed and dropped piece by
+/// Reads and observes a recording. One of more than [`dynid_runtime::estimation::PIECE`] rows is read, prepared, observed and dropped piece by
 /// piece; the band and the speeds of standstill then are those of its first pieces.
 ///
 /// # Errors
@@ -145,74 +145,25 @@ pub fn read_observed(
     sampling: &Sampling,
     equations: &[Equations],
 ) -> Result<Observed, Failure> {
-    let failure = |error: ObserveError| observe_failure(&options.recording, &error);
     let (manifest, dynamics, robot) = opened(options)?;
     let window = window(options.from, options.to)?;
     let model = dynamics.model();
-    let mut loader = Loader::new(&manifest, model.robot(), PIECE).map_err(recording_failure)?;
-    let mut first = Vec::new();
-    let mut names = vec![None; manifest.trajectories.len()];
-    let (mut rows, mut long) = (0, false);
-    while let Some(piece) = next_piece(&mut loader, window)? {
-        rows += piece.time.len();
-        first.push((loader.window(), piece));
-        long = rows > PIECE;
-        if long {
-            break;
-        }
-    }
-    if first.is_empty() {
-        return Err(nothing_in_window(options));
-    }
-    if !long {
-        let rows = LeftOut { rows: loader.into_report(), too_short: Vec::new() };
-        let trajectories = first.into_iter().map(|(_, piece)| piece).collect();
-        let (title, side) = (manifest.title, manifest.side);
-        let measured = Measured { dynamics, title, robot, side, trajectories, rows };
-        let recorded = prepared(measured, options, sampling)?;
-        let bar = Bar::new("samples");
-        let progress = |done, all| bar.at(done, all);
-        let model = recorded.dynamics.model();
-        let observations = equations
-            .iter()
-            .map(|&e| observe(model, &recorded.motions, e, None, &recorded.settings, Some(&progress)))
-            .collect::<Result<_, _>>()
-            .map_err(failure)?;
-        return Ok(Observed { recorded, observations, whole: true });
-    }
-    // Pieces of one window of the recording are one trajectory: they get its first piece's name.
-    let mut named = |window: usize, mut piece: Trajectory| {
-        if let Some(name) = names.get_mut(window) {
-            piece.name = name.get_or_insert(piece.name).clone();
-        }
-        piece
-    };
-    let first: Vec<Trajectory> = first.into_iter().map(|(window, piece)| named(window, piece)).collect();
-    let (preparation, settings) = bandwidth(options, sampling, &first, model.robot().joints())?;
-    let (mut all, motions) =
-        Piecewise::new(model, equations, first, preparation, settings.clone()).map_err(failure)?;
-    while let Some(piece) = next_piece(&mut loader, window)? {
-        all.add(&named(loader.window(), piece)).map_err(failure)?;
-    }
-    let (observations, too_short) = all.finish().map_err(failure)?;
-    let rows = LeftOut { rows: loader.into_report(), too_short };
-    let (title, side) = (manifest.title.clone(), manifest.side);
-    let recorded = Recorded { title, robot, side, motions, rows, settings, dynamics };
-    Ok(Observed { recorded, observations, whole: false })
-}
-
-/// The next piece that has rows within the window.
-fn next_piece(loader: &mut Loader<'_>, window: Option<[f64; 2]>) -> Result<Option<Trajectory>, Failure> {
-    while let Some(piece) = loader.next_trajectory().map_err(recording_failure)? {
-        let inside = match window {
-            Some(window) => piece.within(window),
-            None => Some(piece),
-        };
-        if inside.is_some() {
-            return Ok(inside);
-        }
-    }
-    Ok(None)
+    let settings = recorded_settings(sampling, model.robot().joints());
+    let bar = Bar::new("samples");
+    let progress = |done, all| bar.at(done, all);
+    let observed = observe_recording(&manifest, model, window, equations, &settings, Some(&progress));
+    drop(bar);
+    let observed = observed.map_err(|error| match error {
+        ObserveRecordingError::Recording(error) => recording_failure(error),
+        ObserveRecordingError::NothingInWindow { .. } => nothing_in_window(options),
+        ObserveRecordingError::Observe(error) => observe_failure(&options.recording, &error),
+        other => Failure::Input(in_recording(&options.recording, &other)),
+    })?;
+    let ObservedRecording { observations, motions, whole, settings, rows, left_out } = observed;
+    let rows = LeftOut { rows, too_short: left_out };
+    let (title, side) = (manifest.title, manifest.side);
+    let recorded = Recorded { dynamics, title, robot, side, motions, rows, settings };
+    Ok(Observed { recorded, observations, whole })
 }
 
 /// The manifest, the robot that is meant, and how it is found again.
@@ -232,22 +183,8 @@ fn nothing_in_window(options: &Source) -> Failure {
 }
 
 /// How a recording is filtered and sampled, by the rule or as asked for.
-fn bandwidth(
-    options: &Source,
-    sampling: &Sampling,
-    trajectories: &[Trajectory],
-    joints: usize,
-) -> Result<(Preparation, ObserveSettings), Failure> {
-    let (band, cutoff) = match sampling.band {
-        Some(band) => (band, Bandwidth::cutoff_of(band, trajectories)),
-        None => {
-            let chosen = choose_bandwidth(trajectories)
-                .map_err(|error| Failure::Data(in_recording(&options.recording, &error)))?;
-            (chosen.band, Some(chosen.cutoff))
-        }
-    };
-    let preparation = Preparation { cutoff: sampling.rows.cutoff.or(cutoff), ..Preparation::default() };
-    Ok((preparation, sampling.settings(joints, band)))
+fn recorded_settings(sampling: &Sampling, joints: usize) -> RecordedSettings {
+    RecordedSettings { band: sampling.band, cutoff: sampling.rows.cutoff, rows: sampling.settings(joints) }
 }
 
 /// What the observation refuses, as the end of a command.

@@ -121,24 +121,8 @@ pub fn what_can_be_seen(
     let _ = writeln!(text, "| effect | magnitude | {} |", header.join(" | "));
     line(&mut text, &format!("|---|---|{}", "---|".repeat(columns.len())));
     for effect in EffectKind::ALL {
-        let of = |robot: &str, size: usize| -> Vec<&Hidden> {
-            (cases.iter().zip(seen))
-                .filter(|(c, _)| c.robot == robot && c.size == size)
-                .filter_map(|(_, hidden)| hidden.as_ref()?.iter().find(|h| h.effect == effect))
-                .collect()
-        };
-        let cells: Vec<String> = columns
-            .iter()
-            .map(|(robot, size)| {
-                let own = of(robot, *size);
-                if own.is_empty() {
-                    return "-".to_owned();
-                }
-                let visible = median(own.iter().map(|h| h.visible).collect());
-                let magnitude = median(own.iter().map(|h| h.magnitude).collect());
-                format!("{visible:.1} ({})", significant(magnitude, 2))
-            })
-            .collect();
+        let cells: Vec<String> =
+            columns.iter().map(|(robot, size)| seen_cell(cases, seen, effect, robot, *size)).collect();
         if cells.iter().any(|cell| cell != "-") {
             let _ = writeln!(
                 text,
@@ -150,6 +134,26 @@ pub fn what_can_be_seen(
         }
     }
     text
+}
+
+/// Medians of what of an effect can be seen in the cases of a robot and size, and of the magnitude that it takes.
+fn seen_cell(
+    cases: &[Case],
+    seen: &[Option<Vec<Hidden>>],
+    effect: EffectKind,
+    robot: &str,
+    size: usize,
+) -> String {
+    let own: Vec<&Hidden> = (cases.iter().zip(seen))
+        .filter(|(c, _)| c.robot == robot && c.size == size)
+        .filter_map(|(_, hidden)| hidden.as_ref()?.iter().find(|h| h.effect == effect))
+        .collect();
+    if own.is_empty() {
+        return "-".to_owned();
+    }
+    let visible = median(own.iter().map(|h| h.visible).collect());
+    let magnitude = median(own.iter().map(|h| h.magnitude).collect());
+    format!("{visible:.1} ({})", significant(magnitude, 2))
 }
 
 fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options) {

@@ -188,6 +188,14 @@ pub fn push(
     let last = robot.joint_of_frame().iter().rposition(Option::is_some).unwrap_or(0);
     let force = [size * flat * around.cos(), size * flat * around.sin(), size * up];
     let motion = crate::motions::name(0);
-    world.put_push(ContactForce { motion, window, link: last + 1, force, mean_force: force });
+    world.put_push(ContactForce {
+        motion,
+        window,
+        link: last + 1,
+        force,
+        mean_force: force,
+        edges: None,
+        joint_torques: Vec::new(),
+    });
     Ok(vec![("force", size), ("from", window[0]), ("to", window[1])])
 }

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use dynid::models;
-use dynid::recorded::PIECE;
 use dynid::robots;
+use dynid_runtime::estimation::PIECE;
 use dynid_runtime::estimation::observe::{Equations, ObserveSettings};
 use dynid_runtime::estimation::{EstimateSettings, Method, Piecewise, estimate};
 use dynid_runtime::model::{Model, RecursiveModel};

@@ -1,23 +1,25 @@
 //! `dynid challenge DIR`: diagnoses recordings with hidden effects, and only then reads what was hidden.
 
+mod words;
+
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use dynid_runtime::diagnosis::scoring::{Hidden, LEAST_GAP, Naming, Scored, TestErrors, label};
+use dynid_runtime::diagnosis::scoring::{Hidden, Naming, Scored, TestErrors};
 use dynid_runtime::diagnosis::{Diagnosis, Progress, Settings, diagnose, fit_known};
 use dynid_runtime::effects::{EffectKind, EffectTerm};
 use dynid_runtime::model::{JointNumber, Model};
 use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
 use dynid_runtime::recording::{Manifest, Trajectory, load};
-use dynid_runtime::report::{percent, significant};
 
 use crate::errors::prediction_failure;
 use crate::failure::{Failure, file_failure};
-use crate::output::{Bar, print, table, write_json};
+use crate::output::{Bar, print, write_json};
 use crate::recorded::recording_failure;
 use crate::robots::{Dynamics, resolve};
 use crate::truth::read_truth;
+use words::{details, for_programs, summary};
 
 /// Which cases, and where the score goes.
 #[derive(Debug, Args)]
@@ -74,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(&summary(&scores));
         if arguments.details {
             for (case, diagnosed) in cases.iter().zip(&diagnosed) {
-                print(&details(&case.name, diagnosed));
+                print(&details(&case.name, diagnosed.outcome.as_ref().ok()));
             }
         }
     }
@@ -230,120 +232,4 @@ impl Case {
         let effects: Vec<(EffectKind, Option<usize>)> = hidden.iter().map(|h| (h.effect, joint(h))).collect();
         Ok(fit_known(self.model(), &motions, &baseline, &effects, settings).ok())
     }
-}
-
-fn summary(scores: &[Scored]) -> String {
-    let words = |list: &[String]| list.join(" ");
-    let rows = scores
-        .iter()
-        .map(|s| {
-            let error = |get: fn(&TestErrors) -> Option<f64>| {
-                s.test.as_ref().and_then(get).map_or("-".into(), percent)
-            };
-            let verdict = match (s.solved, s.gap_closed) {
-                (None, _) => "no truth",
-                (Some(true), Some(_)) => "solved",
-                (Some(true), None) => "solved, by naming",
-                (Some(false), _) => "not solved",
-            };
-            vec![
-                s.case.clone(),
-                words(&s.naming.named),
-                words(&s.naming.missed),
-                words(&s.naming.false_alarms),
-                error(|t| Some(t.before)),
-                error(|t| Some(t.after)),
-                error(|t| t.true_effect),
-                s.gap_closed.map_or_else(|| "-".to_owned(), percent),
-                significant(s.seconds, 2),
-                verdict.to_owned(),
-            ]
-        })
-        .collect();
-    let header = [
-        "<case",
-        "<named",
-        "<missed",
-        "<false alarms",
-        "before",
-        "after",
-        "true effect",
-        "gap closed",
-        "s",
-        "<",
-    ];
-    let mut text = table(&header, rows);
-    for s in scores {
-        if let Some(reason) = &s.refused {
-            text.push_str(&format!("\n{}: no diagnosis: {reason}", s.case));
-        }
-    }
-    let judged = |by_naming: bool| {
-        let of: Vec<bool> =
-            scores.iter().filter(|s| s.gap_closed.is_none() == by_naming).filter_map(|s| s.solved).collect();
-        (of.iter().filter(|solved| **solved).count(), of.len())
-    };
-    let ((naming, by_naming), (test, by_test)) = (judged(true), judged(false));
-    text.push_str(&format!(
-        "\n\n{} of {} cases solved: {test} of {by_test} judged by naming and by the error on test.yaml, {naming} of \
-         {by_naming} by naming only (nothing hidden, or a gap on test.yaml below {} of the error)",
-        naming + test,
-        by_naming + by_test,
-        percent(LEAST_GAP)
-    ));
-    text
-}
-
-fn details(name: &str, diagnosed: &Diagnosed) -> String {
-    let mut text = format!("\n{name}");
-    let Ok(found) = &diagnosed.outcome else { return text };
-    for line in &found.verdict {
-        text.push_str(&format!("\n  {line}"));
-    }
-    for f in &found.findings {
-        let numbers: Vec<String> = f
-            .parameters
-            .iter()
-            .map(|(name, p)| {
-                format!("{name} {} +- {} {}", significant(p.value, 4), significant(p.sigma, 2), p.unit)
-            })
-            .collect();
-        text.push_str(&format!(
-            "\n  {}: share {}, confidence {:.4}; {}",
-            label(&f.effect, &f.joints),
-            percent(f.share),
-            f.confidence,
-            numbers.join(", ")
-        ));
-        for a in &f.alternatives {
-            text.push_str(&format!("\n    not {}: {}", label(&a.effect, &a.joints), a.why_not));
-        }
-    }
-    for c in &found.cannot_tell {
-        text.push_str(&format!("\n  cannot tell {}", label(&c.between.join(" from "), &c.joints)));
-    }
-    for m in &found.mismatch {
-        text.push_str(&format!("\n  joint {}: {} of the mismatch, {}", m.joint, percent(m.share), m.where_));
-    }
-    text.push_str(&format!(
-        "\n  held out ({}) {} -> {}, skew {} ms, unexplained {}",
-        found.held_out.how,
-        percent(found.held_out.before),
-        percent(found.held_out.after),
-        significant(1e3 * found.delay, 3),
-        percent(found.unexplained.share)
-    ));
-    text
-}
-
-fn for_programs(scores: &[Scored]) -> serde_json::Value {
-    let count = |holds: &dyn Fn(&Scored) -> bool| scores.iter().filter(|s| holds(s)).count();
-    let judged = |s: &Scored| s.solved.is_some();
-    serde_json::json!({
-        "cases": scores,
-        "solved": count(&|s| s.solved == Some(true)),
-        "judged": count(&judged),
-        "judged_by_naming_only": count(&|s| judged(s) && s.gap_closed.is_none()),
-        "solved_by_naming_only": count(&|s| s.solved == Some(true) && s.gap_closed.is_none()),
-    })
 }

@@ -1,17 +1,18 @@
 //! `dynid simulate MODEL|ROBOT`: a closed loop, written as a recording.
 
+mod elastic;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::effects::EffectTerm;
-use dynid_runtime::model::{JointIndex, JointNumber, Model, Robot};
+use dynid_runtime::model::{Model, Robot};
 use dynid_runtime::model_file::{Identified, to_yaml};
 use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
 use dynid_runtime::simulation::{
-    ElasticJoint, LoopSettings, Plant, Reference, Residue, Simulation, SimulationError, World,
-    check_standard, simulate,
+    LoopSettings, Plant, Reference, Residue, Simulation, SimulationError, World, check_standard, simulate,
 };
 
 use crate::failure::{Failure, file_failure};
@@ -19,7 +20,7 @@ use crate::motions::{MotionOptions, check_size, read as read_motions};
 use crate::output::{Bar, make_folder, print, table, write};
 use crate::robots::{Dynamics, resolve};
 use crate::saved::{known_parameters, own_dynamics, read_model};
-use crate::words::joint_number;
+use elastic::elastic_joint;
 
 /// What to simulate, and where to put it.
 #[derive(Debug, Args)]
@@ -245,27 +246,6 @@ fn plant<'m>(
             let effects = if beyond { vec![residue.boxed()] } else { Vec::new() };
             Plant::with_effects(model, standard, &elastic, effects).map_err(failed)
         }
-    }
-}
-
-fn elastic_joint(robot: &Robot, text: &str) -> Result<ElasticJoint, Failure> {
-    let wrong = || Failure::Input(format!("--elastic {text}: expected JOINT:STIFFNESS[:DAMPING[:PLAY]]"));
-    let mut fields = text.split(':');
-    let number: usize = fields.next().and_then(|x| x.parse().ok()).ok_or_else(wrong)?;
-    let JointIndex(joint) = robot.joint_index(JointNumber(number)).ok_or_else(|| {
-        let known: Vec<String> = (0..robot.joints()).map(|j| joint_number(robot, j)).collect();
-        Failure::Input(format!(
-            "--elastic {text}: the joints of {} are {}, not {number}",
-            robot.name,
-            known.join(", ")
-        ))
-    })?;
-    let numbers: Vec<f64> = fields.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
-    match numbers[..] {
-        [stiffness] => Ok(ElasticJoint { joint, stiffness, damping: 0.0, play: 0.0 }),
-        [stiffness, damping] => Ok(ElasticJoint { joint, stiffness, damping, play: 0.0 }),
-        [stiffness, damping, play] => Ok(ElasticJoint { joint, stiffness, damping, play }),
-        _ => Err(wrong()),
     }
 }
 

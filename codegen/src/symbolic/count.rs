@@ -1,6 +1,7 @@
 //! Operation counts.
 
-use super::graph::{Expr, Graph, Node};
+use super::expr::{Expr, Node};
+use super::graph::Graph;
 use std::fmt;
 
 /// Arithmetic of one evaluation.

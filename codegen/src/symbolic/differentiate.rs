@@ -1,6 +1,7 @@
 //! Derivatives of expressions.
 
-use super::graph::{Expr, Graph, Node, Symbol};
+use super::expr::{Expr, Node, Symbol};
+use super::graph::Graph;
 use std::collections::HashMap;
 
 impl Graph {

@@ -1,6 +1,7 @@
 //! Numeric value of expressions: for tests and for counting nothing by accident.
 
-use super::graph::{Expr, Graph, Node, Symbol};
+use super::expr::{Expr, Node, Symbol};
+use super::graph::Graph;
 
 /// Values of the inputs.
 #[derive(Debug, Clone, Default, PartialEq)]

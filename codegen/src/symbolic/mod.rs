@@ -13,14 +13,18 @@
 //! ```
 
 mod angle;
+mod arithmetic;
 mod count;
 mod differentiate;
 mod evaluate;
+mod expr;
 mod graph;
 mod schedule;
+mod trigonometry;
 
 pub use angle::{Angle, ConstantAngle};
 pub use count::OperationCounts;
 pub use evaluate::Point;
-pub use graph::{Expr, Graph, Node, Symbol};
+pub use expr::{Expr, Node, Symbol};
+pub use graph::Graph;
 pub use schedule::schedule;

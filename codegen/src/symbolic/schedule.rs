@@ -1,6 +1,7 @@
 //! The order in which nodes are computed.
 
-use super::graph::{Expr, Graph, Node};
+use super::expr::{Expr, Node};
+use super::graph::Graph;
 
 /// For each output, the operations to be done before it that no earlier output has done.
 ///

@@ -11,6 +11,9 @@ use crate::signal::Motion;
 ///
 /// `chi` are the base parameters that were identified together with the terms. Contacts belong to the recording they
 /// were seen in and add nothing.
+///
+/// # Errors
+/// Terms or motions that do not fit the robot.
 pub fn term_torques(
     model: &dyn Model,
     chi: &[f64],

@@ -1,6 +1,6 @@
 //! Whether a term that comes from a file can be evaluated on a robot.
 
-use super::{At, EffectTerm, Form, Place, Scale};
+use super::{At, EffectTerm, Form, JointLaw, Place, Scale};
 use crate::model::{JointNumber, Robot};
 
 /// What of a term cannot be.
@@ -29,22 +29,7 @@ impl EffectTerm {
             }
         }
         match self.effect.form() {
-            Form::Joint(law) => {
-                self.check_joint(robot)?;
-                let lengths: Vec<usize> = law.shapes(&WIDE).iter().map(Vec::len).collect();
-                self.check_shape(&lengths)?;
-                self.check_amplitudes(&[law.amplitudes(&self.shape)])?;
-                let scale = self.scale.map_or(WIDE, Scale::from);
-                let mut out = vec![0.0; self.amplitude.len()];
-                for dq in [0.0, 1e-3, -1.0] {
-                    let memory = law.advance(&self.shape, 0.0, dq);
-                    law.law(&scale, &self.shape, &At { dq, sign: 1.0, ..At::default() }, memory, &mut out);
-                    if out.iter().any(|x| !x.is_finite()) {
-                        return wrong("shape", format!("no {} has {:?}", self.effect.id(), self.shape));
-                    }
-                }
-                Ok(())
-            }
+            Form::Joint(law) => self.check_law(law, robot),
             Form::Compliance(law) => {
                 self.check_joint(robot)?;
                 self.check_shape(&law.shapes().iter().map(|s| s.len()).collect::<Vec<_>>())?;
@@ -57,16 +42,8 @@ impl EffectTerm {
                 Ok(())
             }
             Form::Sensitivity(law) => {
-                let variants = law.variants(robot).len();
-                let known = if law.together() { 1 } else { variants };
-                let Place::Variant(v) = self.place else { return self.wrong_place("variant") };
-                if v >= known {
-                    return wrong(
-                        "place.variant",
-                        format!("{v}: {} has {known} on {}", self.effect.id(), robot.name),
-                    );
-                }
-                Ok(())
+                let known = if law.together() { 1 } else { law.variants(robot).len() };
+                self.check_variant(known, robot)
             }
             Form::Body(_) => match self.place {
                 Place::Link(frame) if frame < robot.frames.len() => Ok(()),
@@ -83,15 +60,43 @@ impl EffectTerm {
                 }
                 self.check_shape(&[1])
             }
-            Form::Window => {
-                let known = |link: usize| (1..=robot.frames.len()).contains(&link);
-                match self.wrenches.iter().position(|w| !known(w.link)) {
-                    Some(k) => {
-                        wrong(format!("wrenches[{k}].link"), format!("{} has no such link", robot.name))
-                    }
-                    None => Ok(()),
-                }
+            Form::Window => self.check_wrenches(robot),
+        }
+    }
+
+    /// A law of a joint: its shape is one that the law offers, and its torque is finite.
+    fn check_law(&self, law: &dyn JointLaw, robot: &Robot) -> Result<(), TermError> {
+        self.check_joint(robot)?;
+        let lengths: Vec<usize> = law.shapes(&WIDE).iter().map(Vec::len).collect();
+        self.check_shape(&lengths)?;
+        self.check_amplitudes(&[law.amplitudes(&self.shape)])?;
+        let scale = self.scale.map_or(WIDE, Scale::from);
+        let mut out = vec![0.0; self.amplitude.len()];
+        for dq in [0.0, 1e-3, -1.0] {
+            let memory = law.advance(&self.shape, 0.0, dq);
+            law.law(&scale, &self.shape, &At { dq, sign: 1.0, ..At::default() }, memory, &mut out);
+            if out.iter().any(|x| !x.is_finite()) {
+                return wrong("shape", format!("no {} has {:?}", self.effect.id(), self.shape));
             }
+        }
+        Ok(())
+    }
+
+    /// One of the `known` numbers of the model that the effect can be an error of.
+    fn check_variant(&self, known: usize, robot: &Robot) -> Result<(), TermError> {
+        let Place::Variant(v) = self.place else { return self.wrong_place("variant") };
+        if v < known {
+            return Ok(());
+        }
+        wrong("place.variant", format!("{v}: {} has {known} on {}", self.effect.id(), robot.name))
+    }
+
+    /// Forces of a contact on links that the robot has.
+    fn check_wrenches(&self, robot: &Robot) -> Result<(), TermError> {
+        let known = |link: usize| (1..=robot.frames.len()).contains(&link);
+        match self.wrenches.iter().position(|w| !known(w.link)) {
+            Some(k) => wrong(format!("wrenches[{k}].link"), format!("{} has no such link", robot.name)),
+            None => Ok(()),
         }
     }
 

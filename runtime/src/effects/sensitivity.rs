@@ -65,6 +65,9 @@ pub trait Sensitivity: Sync {
 }
 
 /// A model whose derivatives have no entry left out: entries that vanish only because gravity is vertical count.
+///
+/// # Errors
+/// A robot whose table the recursive model cannot be made of.
 pub fn derivable(robot: &crate::model::Robot) -> Result<RecursiveModel, RecursiveModelError> {
     let mut tilted = robot.clone();
     tilted.gravity = [1.3, -2.1, -9.4];

@@ -1,13 +1,15 @@
 //! The estimators: IDIM and PIM, ordinary and weighted least squares.
 
+use super::Factor;
 use super::blocks::block_sigmas;
 use super::essential::eliminate;
 use super::observe::{Equations, Observation};
-use super::outcome::{EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning};
+use super::outcome::{Essential, Estimate, Method, ParameterEstimate, Solver, Warning};
+use super::residuals::{errors_of, per_equation, relative_error};
 use super::robust::reweight;
 use super::solve::{Solution, back_substitute};
 use super::total::{NoGenericSolution, total_least_squares};
-use super::weights::{Weights, equal, from_own_fits, iterate, residual_norm, solve_active, stack};
+use super::weights::{Weights, equal, from_own_fits, iterate, solve_active, stack};
 use crate::model::JointNumber;
 
 /// How parameters are estimated from an observation.
@@ -69,15 +71,10 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
         if settings.weighted { choose_weights(counted, &active, first, &mut warnings) } else { first };
     let stacked = stack(counted, &weights.sigma).select(&active);
     let mut solution = stacked.solve();
-    if settings.solver == Solver::Total {
-        let exact: Vec<bool> = active.iter().map(|&l| observation.exact[l]).collect();
-        match total_least_squares(&stacked, &exact) {
-            Ok(chi) => {
-                solution.residual_norm = stacked.residual_norm(&chi);
-                solution.chi = chi;
-            }
-            Err(NoGenericSolution) => warnings.push(Warning::NoTotalSolution),
-        }
+    if settings.solver == Solver::Total
+        && solve_total(observation, &active, &stacked, &mut solution) == Err(NoGenericSolution)
+    {
+        warnings.push(Warning::NoTotalSolution);
     }
 
     let chi = spread(&solution.chi, &active, observation.unknowns.len());
@@ -95,11 +92,7 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
     }
     let errors = errors_of(observation, &chi, &weights.sigma, settings.weighted);
     let per_equation = per_equation(observation, &chi);
-    for (equation, &relative_error) in per_equation.iter().enumerate() {
-        if relative_error > 1.0 {
-            warnings.push(Warning::NotExplained { joint: joint_of(observation, equation), relative_error });
-        }
-    }
+    warnings.extend(not_explained(observation, &per_equation));
     let essential =
         settings.r_sigma.map(|r_sigma| simplified(counted, &active, &weights, r_sigma, settings.weighted));
     Estimate {
@@ -116,6 +109,31 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
         warnings,
         essential,
     }
+}
+
+/// Replaces the values of a least-squares solution by those of total least squares.
+fn solve_total(
+    observation: &Observation,
+    active: &[usize],
+    stacked: &Factor,
+    solution: &mut Solution,
+) -> Result<(), NoGenericSolution> {
+    let exact: Vec<bool> = active.iter().map(|&l| observation.exact[l]).collect();
+    let chi = total_least_squares(stacked, &exact)?;
+    solution.residual_norm = stacked.residual_norm(&chi);
+    solution.chi = chi;
+    Ok(())
+}
+
+/// The equations of which the model explains less than no model at all.
+fn not_explained(observation: &Observation, per_equation: &[f64]) -> Vec<Warning> {
+    let worse = per_equation.iter().enumerate().filter(|(_, error)| **error > 1.0);
+    worse
+        .map(|(equation, &relative_error)| Warning::NotExplained {
+            joint: joint_of(observation, equation),
+            relative_error,
+        })
+        .collect()
 }
 
 fn method_of(observation: &Observation, settings: &EstimateSettings) -> Method {
@@ -219,71 +237,6 @@ fn strongest(observation: &Observation, direction: &[f64], active: &[usize]) -> 
     shares.retain(|&(share, _)| share > 0.3 * largest);
     shares.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     shares.into_iter().map(|(_, l)| observation.unknowns[l].clone()).collect()
-}
-
-fn errors_of(observation: &Observation, chi: &[f64], sigma: &[f64], weighted: bool) -> Vec<EquationError> {
-    observation
-        .groups
-        .iter()
-        .zip(sigma)
-        .filter(|(g, _)| g.factor.rows() > 0)
-        .map(|(g, &sigma)| {
-            let residual = residual_norm(g, chi);
-            let rows = g.factor.rows();
-            EquationError {
-                trajectory: g.trajectory,
-                equation: g.equation,
-                sigma: if weighted { sigma } else { residual / (rows as f64).sqrt() },
-                relative_error: ratio(residual, g.factor.norm_y()),
-                rows,
-            }
-        })
-        .collect()
-}
-
-/// ||Y - W chi|| / ||Y|| of each equation over all trajectories, for any parameters.
-pub fn per_equation(observation: &Observation, chi: &[f64]) -> Vec<f64> {
-    let equations = observation.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
-    (0..equations)
-        .map(|equation| {
-            let own = observation.groups.iter().filter(|g| g.equation == equation);
-            let (e, y) = own.fold((0.0, 0.0), |(e, y), g| {
-                (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2))
-            });
-            ratio(e.sqrt(), y.sqrt())
-        })
-        .collect()
-}
-
-/// ||Y - W chi|| / ||Y|| over all equations and trajectories, for any parameters.
-pub fn relative_error(observation: &Observation, chi: &[f64]) -> f64 {
-    let (e, y) = observation
-        .groups
-        .iter()
-        .fold((0.0, 0.0), |(e, y), g| (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2)));
-    ratio(e.sqrt(), y.sqrt())
-}
-
-/// Relative errors, overall and per equation, of a model whose effects have been taken from the torques of
-/// `unexplained`: what W chi leaves of them, against the torques of `measured`, the same rows before that.
-pub fn errors_against(unexplained: &Observation, measured: &Observation, chi: &[f64]) -> (f64, Vec<f64>) {
-    let equations = measured.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
-    let mut left = vec![0.0; equations];
-    let mut whole = vec![0.0; equations];
-    for group in &unexplained.groups {
-        if let Some(left) = left.get_mut(group.equation) {
-            *left += residual_norm(group, chi).powi(2);
-        }
-    }
-    for group in &measured.groups {
-        whole[group.equation] += group.factor.norm_y().powi(2);
-    }
-    let overall = ratio(left.iter().sum::<f64>().sqrt(), whole.iter().sum::<f64>().sqrt());
-    (overall, left.iter().zip(&whole).map(|(e, y)| ratio(e.sqrt(), y.sqrt())).collect())
-}
-
-fn ratio(e: f64, y: f64) -> f64 {
-    if y > 0.0 { e / y } else { 0.0 }
 }
 
 fn simplified(

@@ -51,13 +51,15 @@ pub mod observe;
 mod outcome;
 mod physical;
 mod piecewise;
+mod recorded;
+mod residuals;
 mod robust;
 mod solve;
 mod total;
 mod weights;
 
 pub use bandwidth::{Bandwidth, choose_bandwidth};
-pub use estimate::{EstimateSettings, errors_against, estimate, per_equation, relative_error};
+pub use estimate::{EstimateSettings, estimate};
 pub use factor::{BLOCK_ROWS, Factor};
 pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
 pub use outcome::{
@@ -65,4 +67,6 @@ pub use outcome::{
 };
 pub use physical::{PhysicalFit, physical_fit};
 pub use piecewise::Piecewise;
+pub use recorded::{ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording};
+pub use residuals::{errors_against, per_equation, relative_error};
 pub use solve::{RANK_TOLERANCE, Solution};

@@ -120,8 +120,8 @@ pub struct EquationError {
     pub trajectory: usize,
     /// Joint (0-based), or 0 for the power model.
     pub equation: usize,
-    /// N.m, N or W.
-    pub sigma: f64,
+    /// N.m, N or W; `None` where every row is zero, so that there is no error to speak of.
+    pub sigma: Option<f64>,
     /// ||Y - W chi|| / ||Y|| over the rows that were used.
     pub relative_error: f64,
     /// Rows that were used.
@@ -144,6 +144,7 @@ pub struct BlockWeight {
 /// What a person should know about an estimate before believing it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
+#[non_exhaustive]
 pub enum Warning {
     /// The data do not determine a parameter; its value was set to zero.
     NotDetermined {

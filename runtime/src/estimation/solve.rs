@@ -55,10 +55,9 @@ fn solve(factor: &Factor) -> Solution {
     let r = qr.r();
     let mut qty = y.clone();
     qr.q_tr_mul(&mut qty);
-    let x = r.solve_upper_triangular(&qty.rows(0, rank)).unwrap_or_else(|| DVector::zeros(rank));
-    let inverse = r
-        .solve_upper_triangular(&DMatrix::identity(rank, rank))
-        .unwrap_or_else(|| DMatrix::zeros(rank, rank));
+    let x = r.solve_upper_triangular(&qty.rows(0, rank));
+    let inverse = r.solve_upper_triangular(&DMatrix::identity(rank, rank));
+    let (Some(x), Some(inverse)) = (x, inverse) else { return undetermined(factor) };
 
     let mut chi = vec![0.0; k];
     let mut variance = vec![f64::INFINITY; k];
@@ -70,6 +69,22 @@ fn solve(factor: &Factor) -> Solution {
     let residual_norm = factor.residual_norm(&chi);
     let degrees_of_freedom = factor.rows().saturating_sub(rank);
     Solution { kept, chi, variance, residual_norm, degrees_of_freedom, condition, weakest, dependent }
+}
+
+/// The solution where no column is independent of the others: every unknown stands alone.
+fn undetermined(factor: &Factor) -> Solution {
+    let k = factor.unknowns();
+    let chi = vec![0.0; k];
+    Solution {
+        kept: Vec::new(),
+        variance: vec![f64::INFINITY; k],
+        residual_norm: factor.residual_norm(&chi),
+        degrees_of_freedom: factor.rows(),
+        condition: 1.0,
+        weakest: vec![0.0; k],
+        dependent: (0..k).map(|l| vec![l]).collect(),
+        chi,
+    }
 }
 
 /// Parameters and the diagonal of (WT W)^-1 of a factor whose columns are known to be independent.

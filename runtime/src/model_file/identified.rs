@@ -282,7 +282,7 @@ fn equation_rows(rows: &LeftOut, trajectories: &[String], errors: &[EquationErro
         fixed: rows.fixed,
         windows: rows.windows,
         edges: rows.edges,
-        sigma: error.map(|e| e.sigma),
+        sigma: error.and_then(|e| e.sigma),
         relative_error: error.map(|e| e.relative_error),
     }
 }

@@ -36,7 +36,11 @@ pub struct JointRows {
 pub struct Evaluation {
     /// One for each model, in the order in which they were given.
     pub predictions: Vec<Prediction>,
-    /// Relative error that white noise of the level found above the band makes; `None` where it cannot be estimated.
+    /// Relative error that white noise of the level found above the band makes, joint by joint no more than what the
+    /// best of the models leaves; `None` where it cannot be estimated.
+    ///
+    /// It is an upper bound: where a controller answers to the noise of its encoders, torques are rougher above the
+    /// band than in it. Noise that equals an error says that nothing of this error is known to be more than noise.
     pub noise: Option<Errors>,
     /// Band of the rows, Hz.
     pub band: f64,
@@ -213,7 +217,11 @@ impl Sums {
         }
     }
 
+    /// Capped at the smallest residual: noise that a model has explained is none.
     fn noise(&self) -> Option<Errors> {
-        self.noise.as_ref().map(|noise| Errors::of_squares(noise, &self.whole))
+        let capped =
+            |(j, noise): (usize, &f64)| self.left.iter().fold(*noise, |least, left| least.min(left[j]));
+        let noise: Vec<f64> = self.noise.as_ref()?.iter().enumerate().map(capped).collect();
+        Some(Errors::of_squares(&noise, &self.whole))
     }
 }

@@ -132,6 +132,27 @@ fn white_noise_is_told_and_taken_away() {
 }
 
 #[test]
+fn noise_that_is_rougher_above_the_band_is_told_as_no_more_than_the_error() {
+    let model = arm();
+    let truth = chi(&model);
+    let mut motions = [swinging(&model, &truth, 0.0, 0.01)];
+    // Differences of white noise: their density grows with the square of the frequency.
+    let mut random = rand_pcg::Pcg64::seed_from_u64(9);
+    for series in &mut motions[0].torque {
+        let white: Vec<f64> = series.iter().map(|_| random.random_range(-1.0..1.0)).collect();
+        series.iter_mut().zip(white.windows(2)).for_each(|(x, w)| *x += w[1] - w[0]);
+    }
+    let half: Vec<f64> = truth.iter().map(|x| 0.5 * x).collect();
+    let models = [standard(&truth), standard(&half)];
+    let evaluation = evaluate(&model, &models, &motions, &settings(25.0), &[]).unwrap();
+    let error = &evaluation.predictions[0].errors;
+    let noise = evaluation.noise.as_ref().expect("the recording is long enough");
+    assert_eq!(noise.relative_error, error.relative_error);
+    assert_eq!(above_noise(error, noise).relative_error, 0.0);
+    assert!(above_noise(&evaluation.predictions[1].errors, noise).relative_error > 0.1);
+}
+
+#[test]
 fn rows_that_reach_into_a_window_are_left_out_for_every_model() {
     let model = arm();
     let truth = chi(&model);

@@ -8,7 +8,7 @@ use super::manifest::{Channel, Manifest, Side};
 use super::source::Source;
 use super::unit::{Quantity, Unit};
 use super::{RecordingError, Rows};
-use crate::model::{JointIndex, JointKind, Robot};
+use crate::model::{JointIndex, JointKind, JointNumber, Robot};
 
 /// What is the same for all windows.
 pub(super) struct Conversions {
@@ -60,8 +60,7 @@ fn conversion(
     quantity: &str,
     channel: &Channel,
 ) -> Result<Conversion, RecordingError> {
-    let kinds = robot.joint_kinds();
-    let joints = kinds.len();
+    let joints = robot.joints();
     let per_joint = |key: &str, found: usize, one_for_all: bool| {
         if found == joints || found == 0 || (one_for_all && found == 1) {
             return Ok(());
@@ -77,32 +76,10 @@ fn conversion(
     per_joint("offset", channel.offset.len(), false)?;
     per_joint("gain", channel.gain.len(), false)?;
     let mut gain = channel.gain.clone();
-    let motor = manifest.side == Side::Motor;
-    for (j, kind) in kinds.iter().enumerate() {
-        let linear = *kind == JointKind::Prismatic;
-        let [angular_unit, linear_unit] = match quantity {
-            "position" => [Quantity::Angle, Quantity::Length],
-            "velocity" => [Quantity::AngularVelocity, Quantity::LinearVelocity],
-            _ => [Quantity::Torque, Quantity::Force],
-        };
+    for (j, kind) in robot.joint_kinds().into_iter().enumerate() {
         let Some(unit) = channel.unit.get(j).or(channel.unit.first()) else { continue };
-        // A motor may drive a prismatic joint by an angle; on the joint side the unit must be the joint's.
-        let fits = match unit.quantity {
-            Quantity::Raw => true,
-            q if motor => q == angular_unit || q == linear_unit,
-            q => q == if linear { linear_unit } else { angular_unit },
-        };
-        let number = robot.joint_number(JointIndex(j));
-        if !fits {
-            let kind = if linear { "prismatic" } else { "revolute" };
-            let wanted = Unit::names_of(&[if linear { linear_unit } else { angular_unit }]);
-            let message = format!(
-                "`{}` does not fit joint {number}, which is {kind}: expected one of {wanted} \
-                 (a list gives every joint its own)",
-                unit.name
-            );
-            return Err(manifest.error(&[quantity, "unit"], &message));
-        }
+        check_unit(unit, quantity, kind, manifest.side, robot.joint_number(JointIndex(j)))
+            .map_err(|message| manifest.error(&[quantity, "unit"], &message))?;
         if unit.quantity == Quantity::Raw && channel.gain.is_empty() {
             let message =
                 format!("`{}` needs a `gain`, the SI value of one {} for each joint", unit.name, unit.name);
@@ -120,6 +97,37 @@ fn conversion(
     let mut offset = channel.offset.clone();
     offset.resize(joints, 0.0);
     Ok(Conversion { offset, gain })
+}
+
+/// Whether a unit of a channel is one of the joint's, or of its motor's.
+fn check_unit(
+    unit: &Unit,
+    quantity: &str,
+    kind: JointKind,
+    side: Side,
+    number: JointNumber,
+) -> Result<(), String> {
+    let [angular_unit, linear_unit] = match quantity {
+        "position" => [Quantity::Angle, Quantity::Length],
+        "velocity" => [Quantity::AngularVelocity, Quantity::LinearVelocity],
+        _ => [Quantity::Torque, Quantity::Force],
+    };
+    let linear = kind == JointKind::Prismatic;
+    // A motor may drive a prismatic joint by an angle; on the joint side the unit must be the joint's.
+    let fits = match unit.quantity {
+        Quantity::Raw => true,
+        q if side == Side::Motor => q == angular_unit || q == linear_unit,
+        q => q == if linear { linear_unit } else { angular_unit },
+    };
+    if fits {
+        return Ok(());
+    }
+    let kind = if linear { "prismatic" } else { "revolute" };
+    let wanted = Unit::names_of(&[if linear { linear_unit } else { angular_unit }]);
+    Err(format!(
+        "`{}` does not fit joint {number}, which is {kind}: expected one of {wanted} (a list gives every joint its own)",
+        unit.name
+    ))
 }
 
 /// Appends rows `run` of a channel, in SI and on the joint side.

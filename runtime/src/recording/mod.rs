@@ -28,6 +28,7 @@ mod channel;
 mod column;
 mod error;
 mod fields;
+mod files;
 #[cfg(test)]
 mod folder;
 mod load;

@@ -83,46 +83,37 @@ impl<R: Read> TableReader<R> {
                 break;
             }
         }
-        let first = loop {
-            match reader.next_line()? {
-                None => {
-                    let message = "the file holds no rows".into();
-                    return Err(RecordingError::Table { file: file.into(), line: 1, message });
-                }
-                Some((from, to)) if !is_passed_over(&reader.buffer[from..to]) => break (from, to),
-                Some(_) => {}
-            }
-        };
-        if let Some(message) = no_text(&reader.buffer[first.0..first.1]) {
-            return Err(RecordingError::Table {
-                file: file.into(),
-                line: reader.line,
-                message: message.into(),
-            });
-        }
+        let first = reader.first_line()?;
         let names = split(&reader.buffer[first.0..first.1], layout.delimiter);
         reader.fields = names.len();
-        let mut indices = Vec::with_capacity(wanted.len());
-        for column in wanted {
-            indices.push(find(column, &names, layout.header).map_err(|message| RecordingError::Table {
-                file: file.into(),
-                line: reader.line,
-                message,
-            })?);
-        }
-        reader.plan = vec![None; indices.iter().max().map_or(0, |m| m + 1)];
-        for (slot, &index) in indices.iter().enumerate() {
-            if reader.plan[index].replace(slot).is_some() {
-                let message = format!("column {index} is asked for twice");
-                return Err(RecordingError::Table { file: file.into(), line: reader.line, message });
-            }
-        }
+        reader.plan =
+            plan(&names, wanted, layout.header).map_err(|message| reader.error(reader.line, message))?;
         if !layout.header {
             // The first line is a row.
             reader.start = first.0;
             reader.line -= 1;
         }
         Ok(reader)
+    }
+
+    /// The first line that says something, as a range of the buffer.
+    fn first_line(&mut self) -> Result<(usize, usize), RecordingError> {
+        loop {
+            match self.next_line()? {
+                None => return Err(self.error(1, "the file holds no rows".into())),
+                Some((from, to)) if is_passed_over(&self.buffer[from..to]) => {}
+                Some((from, to)) => {
+                    return match no_text(&self.buffer[from..to]) {
+                        Some(message) => Err(self.error(self.line, message.into())),
+                        None => Ok((from, to)),
+                    };
+                }
+            }
+        }
+    }
+
+    fn error(&self, line: u64, message: String) -> RecordingError {
+        RecordingError::Table { file: self.file.clone(), line, message }
     }
 
     /// What messages call the file.
@@ -294,6 +285,18 @@ impl<R: Read> TableReader<R> {
         }
         Ok(self.whole > 0)
     }
+}
+
+/// For each column of the file up to the last wanted one: which wanted column it is.
+fn plan(names: &[&[u8]], wanted: &[Column], header: bool) -> Result<Vec<Option<usize>>, String> {
+    let indices = wanted.iter().map(|column| find(column, names, header)).collect::<Result<Vec<_>, _>>()?;
+    let mut plan = vec![None; indices.iter().max().map_or(0, |m| m + 1)];
+    for (slot, &index) in indices.iter().enumerate() {
+        if plan[index].replace(slot).is_some() {
+            return Err(format!("column {index} is asked for twice"));
+        }
+    }
+    Ok(plan)
 }
 
 #[cfg(test)]

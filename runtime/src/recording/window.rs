@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use super::channel::{Conversions, convert};
-use super::manifest::{Channel, Manifest, Time, Window};
+use super::files::{Clock, Files, Slot};
+use super::manifest::{Manifest, Window};
 use super::reach::Reach;
 use super::screen::{Fault, Piece, screen};
 use super::source::Source;
-use super::{Column, Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RecordingError, RowReport, Rows, Trajectory};
+use super::{Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RecordingError, RowReport, Rows, Trajectory};
 use crate::model::{JointNumber, Robot};
 
 /// Rows taken from every file at a time.
@@ -18,9 +19,9 @@ pub(super) struct Open {
     name: String,
     sources: Vec<(Source, Rows)>,
     clock: Clock,
-    position: Vec<(usize, usize)>,
-    velocity: Vec<(usize, usize)>,
-    torque: Vec<(usize, usize)>,
+    position: Vec<Slot>,
+    velocity: Vec<Slot>,
+    torque: Vec<Slot>,
     fixed: Vec<usize>,
     from: f64,
     to: f64,
@@ -32,79 +33,25 @@ pub(super) struct Open {
     motions: usize,
 }
 
-/// Where time comes from.
-enum Clock {
-    /// Seconds a row.
-    Step(f64),
-    /// A column: seconds per unit, and the stamp that is t = 0 once it is known.
-    Stamps { source: usize, slot: usize, factor: f64, origin: Option<f64> },
-}
-
 impl Open {
     pub(super) fn new(manifest: &Manifest, robot: &Robot, window: &Window) -> Result<Self, RecordingError> {
-        let mut files: Vec<(String, Vec<Column>)> = Vec::new();
-        let mut find = |file: &Option<String>, column: &Column| -> Result<(usize, usize), RecordingError> {
-            let Some(file) = file.as_ref().or(window.file.as_ref()).or(manifest.position.file.as_ref())
-            else {
-                return Err(manifest.error(&["trajectories"], "a trajectory names no `file`"));
-            };
-            let source = files.iter().position(|(f, _)| f == file).unwrap_or_else(|| {
-                files.push((file.clone(), Vec::new()));
-                files.len() - 1
-            });
-            let columns = &mut files[source].1;
-            let slot = columns.iter().position(|c| c == column).unwrap_or_else(|| {
-                columns.push(column.clone());
-                columns.len() - 1
-            });
-            Ok((source, slot))
+        let mut files = Files::new(manifest, window);
+        let position = files.channel(&manifest.position)?;
+        let velocity = match &manifest.velocity {
+            Some(channel) => files.channel(channel)?,
+            None => Vec::new(),
         };
-        let mut all = |channel: &Channel| -> Result<Vec<(usize, usize)>, RecordingError> {
-            channel.columns.iter().map(|c| find(&channel.file, c)).collect()
-        };
-        let position = all(&manifest.position)?;
-        let velocity = manifest.velocity.as_ref().map(&mut all).transpose()?.unwrap_or_default();
-        let torque = all(&manifest.torque)?;
-        let clock = match &manifest.time {
-            Time::Rate(rate) => Clock::Step(1.0 / rate),
-            Time::Column { column, unit, from_first_row, file } => {
-                let (source, slot) = find(file, column)?;
-                Clock::Stamps { source, slot, factor: unit.factor, origin: (!from_first_row).then_some(0.0) }
-            }
-        };
-        let sources = files
-            .iter()
-            .map(|(file, columns)| {
-                let source = Source::open(&manifest.folder.join(file), file, &manifest.layout, columns)?;
-                Ok((source, Rows::new(columns.len())))
-            })
-            .collect::<Result<Vec<_>, RecordingError>>()?;
-        let mut fixed = Vec::new();
-        for &number in &window.fixed {
-            let Some(joint) = robot.joint_index(JointNumber(number)) else {
-                let message = format!("`fixed` names joint {number}, which {} does not have", robot.name);
-                return Err(manifest.error(&["trajectories", "fixed"], &message));
-            };
-            fixed.push(joint.0);
-        }
-        fixed.sort_unstable();
-        fixed.dedup();
-        let file = window.file.as_ref().or(manifest.position.file.as_ref());
-        let mut name = file.cloned().unwrap_or_default();
-        match (window.from, window.to) {
-            (Some(from), Some(to)) => name.push_str(&format!(" {from} s to {to} s")),
-            (Some(from), None) => name.push_str(&format!(" from {from} s")),
-            (None, Some(to)) => name.push_str(&format!(" to {to} s")),
-            (None, None) => {}
-        }
+        let torque = files.channel(&manifest.torque)?;
+        let clock = files.clock()?;
+        let sources = files.open()?;
         Ok(Self {
-            name,
+            name: name_of(manifest, window),
             sources,
             clock,
             position,
             velocity,
             torque,
-            fixed,
+            fixed: fixed_joints(manifest, robot, window)?,
             from: window.from.unwrap_or(f64::NEG_INFINITY),
             to: window.to.unwrap_or(f64::INFINITY),
             rows_read: 0,
@@ -169,23 +116,8 @@ impl Open {
     }
 
     fn take_block(&mut self, conversions: &Conversions, piece: &mut Piece, count: usize) {
-        let time = self.times(count);
-        // Rows of the window, in runs; a row without a readable time belongs where the one before it does.
-        let mut runs: Vec<Range<usize>> = Vec::new();
-        for (row, t) in time.iter().enumerate() {
-            if t.is_finite() {
-                self.inside = *t >= self.from && *t <= self.to;
-            }
-            match runs.last_mut() {
-                _ if !self.inside => {}
-                Some(run) if run.end == row => run.end = row + 1,
-                _ => runs.push(row..row + 1),
-            }
-        }
-        let mut faults: Vec<(usize, usize)> = Vec::new();
-        for (s, (_, rows)) in self.sources.iter().enumerate() {
-            faults.extend(rows.faults.iter().enumerate().map(|(f, _)| (s, f)));
-        }
+        let time = self.clock.times(&self.sources, self.rows_read, count);
+        let runs = self.runs_inside(&time);
         let lines = &self.sources[self.position[0].0].1.lines;
         for run in runs {
             let base = piece.time.len();
@@ -216,30 +148,36 @@ impl Open {
                     convert(&self.sources, places, conversion, matrix, run.clone(), out);
                 }
             }
-            for &(s, f) in &faults {
-                let (source, rows) = &self.sources[s];
-                let (row, reason, column) = rows.faults[f];
-                let fault_row = base + row.wrapping_sub(run.start);
-                if run.contains(&row) {
-                    let what = match column {
-                        Some(column) => format!("{reason} in column {column}"),
-                        None => reason.to_string(),
-                    };
-                    let elsewhere = Some((source.file().to_string(), rows.lines[row]));
-                    piece.faults.push(Fault { row: fault_row, reason, what, elsewhere });
-                }
-            }
+            self.note_faults(run, base, piece);
         }
     }
 
-    fn times(&mut self, count: usize) -> Vec<f64> {
-        match &mut self.clock {
-            Clock::Step(step) => (0..count as u64).map(|k| (self.rows_read + k) as f64 * *step).collect(),
-            Clock::Stamps { source, slot, factor, origin } => {
-                let stamps = &self.sources[*source].1.columns[*slot];
-                *origin = origin.or_else(|| stamps.iter().copied().find(|t| t.is_finite()));
-                let first = origin.unwrap_or_default();
-                stamps.iter().map(|t| (t - first) * *factor).collect()
+    /// Rows of the window, in runs; a row without a readable time belongs where the one before it does.
+    fn runs_inside(&mut self, time: &[f64]) -> Vec<Range<usize>> {
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for (row, t) in time.iter().enumerate() {
+            if t.is_finite() {
+                self.inside = *t >= self.from && *t <= self.to;
+            }
+            match runs.last_mut() {
+                _ if !self.inside => {}
+                Some(run) if run.end == row => run.end = row + 1,
+                _ => runs.push(row..row + 1),
+            }
+        }
+        runs
+    }
+
+    /// Notes the faults of a run of rows, the first of which is row `base` of the piece.
+    fn note_faults(&self, run: Range<usize>, base: usize, piece: &mut Piece) {
+        for (source, rows) in &self.sources {
+            for &(row, reason, column) in rows.faults.iter().filter(|fault| run.contains(&fault.0)) {
+                let what = match column {
+                    Some(column) => format!("{reason} in column {column}"),
+                    None => reason.to_string(),
+                };
+                let elsewhere = Some((source.file().to_string(), rows.lines[row]));
+                piece.faults.push(Fault { row: base + row - run.start, reason, what, elsewhere });
             }
         }
     }
@@ -331,4 +269,31 @@ impl Open {
         report.merge(own);
         Ok(())
     }
+}
+
+/// What the motions of a window are called.
+fn name_of(manifest: &Manifest, window: &Window) -> String {
+    let mut name = Files::main(manifest, window).cloned().unwrap_or_default();
+    match (window.from, window.to) {
+        (Some(from), Some(to)) => name.push_str(&format!(" {from} s to {to} s")),
+        (Some(from), None) => name.push_str(&format!(" from {from} s")),
+        (None, Some(to)) => name.push_str(&format!(" to {to} s")),
+        (None, None) => {}
+    }
+    name
+}
+
+/// The joints (0-based) that are fixed in a window, ascending.
+fn fixed_joints(manifest: &Manifest, robot: &Robot, window: &Window) -> Result<Vec<usize>, RecordingError> {
+    let mut fixed = Vec::new();
+    for &number in &window.fixed {
+        let Some(joint) = robot.joint_index(JointNumber(number)) else {
+            let message = format!("`fixed` names joint {number}, which {} does not have", robot.name);
+            return Err(manifest.error(&["trajectories", "fixed"], &message));
+        };
+        fixed.push(joint.0);
+    }
+    fixed.sort_unstable();
+    fixed.dedup();
+    Ok(fixed)
 }

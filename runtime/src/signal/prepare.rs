@@ -77,11 +77,8 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
     let grid = UniformGrid::of(name, &trajectory.time, settings.rate)?;
     let rate = grid.rate;
     let cutoff = settings.cutoff.unwrap_or_else(|| Preparation::default_cutoff(rate));
-    let filter = Butterworth::low_pass(settings.order, cutoff, rate)?;
-    let stencil = settings.stencil.unwrap_or_else(|| Stencil::accurate_to(0.25 * cutoff / rate, 0.005));
-    // A pass starts at rest; padding until that start has died out leaves only the kink of the reflected end.
-    let padding = filter.padding().max(filter.settling(DECAYED));
-    let edge_samples = padding + 2 * stencil.half_width();
+    let filters = Filters::new(settings, cutoff, rate)?;
+    let edge_samples = filters.edge_samples();
     let needed = 2 * edge_samples + 1;
     if grid.len < needed {
         return Err(SignalError::TooShort {
@@ -91,34 +88,18 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
             purpose: "filter and differentiate the positions",
         });
     }
-    let filtered = |values: &[f64]| {
-        let mut out = Vec::new();
-        filter.zero_phase_into(values, padding, &mut out).map(|()| out)
-    };
-    let derivative = |values: &[f64]| {
-        let mut out = vec![0.0; values.len()];
-        central_difference(values, rate, stencil, &mut out);
-        out
-    };
-    let inside = edge_samples..grid.len - edge_samples;
-    let speed = |j: usize, q: &[f64]| {
-        let recorded = match trajectory.velocity.as_ref().and_then(|velocity| velocity.get(j)) {
-            Some(velocity) if settings.velocity != VelocitySource::Positions => grid.resample(velocity),
-            _ => return Ok(derivative(q)),
-        };
-        let smooth = filtered(&recorded)?;
-        if settings.velocity == VelocitySource::Recorded {
-            return Ok(smooth);
-        }
-        let raw = derivative(&grid.resample(&trajectory.position[j]));
-        let ours = derivative(q);
-        let agrees = agree(&smooth[inside.clone()], &ours[inside.clone()], rate);
-        Ok(if agrees && roughness(&recorded) < roughness(&raw) { smooth } else { ours })
-    };
     let joints = parallel::map(settings.threads, trajectory.position.len(), |j| {
-        let q = filtered(&grid.resample(&trajectory.position[j]))?;
-        let dq = speed(j, &q)?;
-        let ddq = derivative(&dq);
+        let position = grid.resample(&trajectory.position[j]);
+        let q = filters.filtered(&position)?;
+        let recorded = match trajectory.velocity.as_ref().and_then(|velocity| velocity.get(j)) {
+            Some(velocity) if settings.velocity != VelocitySource::Positions => Some(grid.resample(velocity)),
+            _ => None,
+        };
+        let dq = match recorded {
+            Some(recorded) => filters.speed(settings.velocity, &recorded, &position, &q)?,
+            None => filters.derivative(&q),
+        };
+        let ddq = filters.derivative(&dq);
         Ok::<_, SignalError>([q, dq, ddq])
     });
     let [mut q, mut dq, mut ddq] = [Vec::new(), Vec::new(), Vec::new()];
@@ -139,6 +120,60 @@ pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion
         fixed: trajectory.fixed.clone(),
         edge_samples,
     })
+}
+
+/// The position filter and the differences at one rate.
+struct Filters {
+    filter: Butterworth,
+    stencil: Stencil,
+    padding: usize,
+    rate: f64,
+}
+
+impl Filters {
+    fn new(settings: &Preparation, cutoff: f64, rate: f64) -> Result<Self, SignalError> {
+        let filter = Butterworth::low_pass(settings.order, cutoff, rate)?;
+        let stencil = settings.stencil.unwrap_or_else(|| Stencil::accurate_to(0.25 * cutoff / rate, 0.005));
+        // A pass starts at rest; padding until that start has died out leaves only the kink of the reflected end.
+        let padding = filter.padding().max(filter.settling(DECAYED));
+        Ok(Self { filter, stencil, padding, rate })
+    }
+
+    /// Samples at each end that the edge effects of the filter and of two differences reach.
+    fn edge_samples(&self) -> usize {
+        self.padding + 2 * self.stencil.half_width()
+    }
+
+    fn filtered(&self, values: &[f64]) -> Result<Vec<f64>, SignalError> {
+        let mut out = Vec::new();
+        self.filter.zero_phase_into(values, self.padding, &mut out).map(|()| out)
+    }
+
+    fn derivative(&self, values: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; values.len()];
+        central_difference(values, self.rate, self.stencil, &mut out);
+        out
+    }
+
+    /// The velocity where one was recorded: that, or the differences of the filtered positions `q`, whichever `source`
+    /// asks for.
+    fn speed(
+        &self,
+        source: VelocitySource,
+        recorded: &[f64],
+        position: &[f64],
+        q: &[f64],
+    ) -> Result<Vec<f64>, SignalError> {
+        let smooth = self.filtered(recorded)?;
+        if source == VelocitySource::Recorded {
+            return Ok(smooth);
+        }
+        let raw = self.derivative(position);
+        let ours = self.derivative(q);
+        let inside = self.edge_samples()..q.len() - self.edge_samples();
+        let agrees = agree(&smooth[inside.clone()], &ours[inside], self.rate);
+        Ok(if agrees && roughness(recorded) < roughness(&raw) { smooth } else { ours })
+    }
 }
 
 /// Prepares the trajectories of a recording. Those that are too short to be filtered, as pieces between two gaps may

@@ -72,6 +72,7 @@ pub struct DidimEstimate {
 
 /// Why there is no DIDIM estimate.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum DidimError {
     /// The start parameters cannot be simulated.
     #[error(transparent)]

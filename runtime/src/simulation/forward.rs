@@ -64,25 +64,9 @@ impl Plant<'_> {
             }
         }
         if !self.effects.is_empty() {
-            for j in 0..n {
-                work.motor_q[j] = q[self.motor[j]];
-                work.motor_dq[j] = dq[self.motor[j]];
-            }
-            let at = Instant { time, q: &work.motor_q, dq: &work.motor_dq, load: &work.load };
-            work.extra.fill(0.0);
-            work.joint_levels.fill([0.0; 2]);
-            for effect in &self.effects {
-                effect.torque(&at, &mut work.extra);
-                effect.dry_friction(&at, &mut work.joint_levels);
-            }
-            for j in 0..n {
-                right[self.motor[j]] -= work.extra[j];
-            }
-            for (level, element) in work.levels.iter_mut().zip(&self.friction.elements) {
-                let more = element.joint.map_or([0.0; 2], |j| work.joint_levels[j]);
-                *level = more.map(|x| (element.level + x).max(0.0));
-            }
+            self.add_effects(at, right);
         }
+        let work = &mut self.work;
         for ((element, hold), level) in self.friction.elements.iter().zip(hold).zip(&work.levels) {
             match hold {
                 Hold::Sticking => {}
@@ -91,6 +75,31 @@ impl Plant<'_> {
             }
         }
         if cholesky::factor(d, &mut work.mass) { Ok(()) } else { Err(SimulationError::MassMatrix { time }) }
+    }
+
+    /// Torques of the effects, and the levels of dry friction with theirs.
+    fn add_effects(&mut self, at: &Driven<'_>, right: &mut [f64]) {
+        let &Driven { time, q, dq, .. } = at;
+        let n = self.joints;
+        let work = &mut self.work;
+        for j in 0..n {
+            work.motor_q[j] = q[self.motor[j]];
+            work.motor_dq[j] = dq[self.motor[j]];
+        }
+        let at = Instant { time, q: &work.motor_q, dq: &work.motor_dq, load: &work.load };
+        work.extra.fill(0.0);
+        work.joint_levels.fill([0.0; 2]);
+        for effect in &self.effects {
+            effect.torque(&at, &mut work.extra);
+            effect.dry_friction(&at, &mut work.joint_levels);
+        }
+        for j in 0..n {
+            right[self.motor[j]] -= work.extra[j];
+        }
+        for (level, element) in work.levels.iter_mut().zip(&self.friction.elements) {
+            let more = element.joint.map_or([0.0; 2], |j| work.joint_levels[j]);
+            *level = more.map(|x| (element.level + x).max(0.0));
+        }
     }
 
     /// Fills `response` = M⁻¹·Gᵀ, A and b for the elements in `chosen`, for accelerations `free` without them.

@@ -60,7 +60,15 @@ pub fn observe(
         let samples = motion.q.first().map_or(0, Vec::len);
         let valid = motion.edge_samples..samples.saturating_sub(motion.edge_samples).max(motion.edge_samples);
         let grid = decimator.kept_rows(valid);
-        let selection = select::select(trajectory, motion, equations, &decimator, grid, &detected, settings)?;
+        let candidates = select::Candidates {
+            trajectory,
+            motion,
+            decimator: &decimator,
+            grid,
+            detected: &detected,
+            settings,
+        };
+        let selection = select::select(&candidates, equations)?;
         let columns = source.equations();
         prepared.push(Prepared { source, motion, decimator, grid, equations: columns, selection });
     }

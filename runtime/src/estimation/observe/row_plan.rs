@@ -1,7 +1,7 @@
 //! Which rows a motion has, without the columns: for what is compared on the rows of an observation.
 
 use super::error::ObserveError;
-use super::select::{self, LeftOut, Selection, select};
+use super::select::{self, Candidates, LeftOut, Selection, select};
 use super::settings::{Equations, ObserveSettings};
 use super::source::check_shape;
 use crate::model::{JointIndex, Robot};
@@ -39,8 +39,9 @@ pub(crate) fn row_plans(
             check_shape(robot, motion)?;
             let decimator = decimator(motion.rate, settings)?;
             let grid = decimator.kept_rows(valid_samples(motion));
-            let selection =
-                select(trajectory, motion, Equations::Torque, &decimator, grid, &detected, settings)?;
+            let candidates =
+                Candidates { trajectory, motion, decimator: &decimator, grid, detected: &detected, settings };
+            let selection = select(&candidates, Equations::Torque)?;
             let (used, left_out) = selection
                 .into_iter()
                 .map(|Selection { used, left_out }| {

@@ -33,15 +33,23 @@ pub(super) struct Selection {
     pub left_out: LeftOut,
 }
 
-pub(super) fn select(
-    trajectory: usize,
-    motion: &Motion,
-    equations: Equations,
-    decimator: &Decimator,
-    grid: KeptRows,
-    detected: &StandstillSpeeds,
-    settings: &ObserveSettings,
-) -> Result<Vec<Selection>, ObserveError> {
+/// The rows that a motion can have at all, and by what some of them are left out.
+pub(super) struct Candidates<'a> {
+    /// Index of the motion.
+    pub trajectory: usize,
+    pub motion: &'a Motion,
+    /// What brings a signal at the full rate to the rows.
+    pub decimator: &'a Decimator,
+    /// Where the rows lie.
+    pub grid: KeptRows,
+    /// Speeds of standstill as all motions show them.
+    pub detected: &'a StandstillSpeeds,
+    pub settings: &'a ObserveSettings,
+}
+
+/// Which rows of each equation are used.
+pub(super) fn select(rows: &Candidates<'_>, equations: Equations) -> Result<Vec<Selection>, ObserveError> {
+    let &Candidates { trajectory, motion, decimator, grid, detected, settings } = rows;
     let n = motion.dq.len();
     let samples = motion.q.first().map_or(0, Vec::len);
     let possible = samples.div_ceil(grid.step);

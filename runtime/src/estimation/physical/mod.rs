@@ -62,11 +62,11 @@ pub fn physical_fit(robot: &Robot, observation: &Observation, estimate: &Estimat
     })
 }
 
-/// The standard deviation of each group's errors; `None` where an equation has none.
+/// The standard deviation of each group's errors, 1 for a group of zeros; `None` where an equation has none.
 fn sigmas(observation: &Observation, estimate: &Estimate) -> Option<Vec<f64>> {
     let of = |trajectory, equation| {
-        let found =
-            estimate.errors.iter().find(|e| e.trajectory == trajectory && e.equation == equation)?.sigma;
+        let found = estimate.errors.iter().find(|e| e.trajectory == trajectory && e.equation == equation)?;
+        let found = found.sigma.unwrap_or(1.0);
         (found > 0.0).then_some(found)
     };
     let sigma = |g: &super::observe::EquationFactor| match g.factor.rows() {

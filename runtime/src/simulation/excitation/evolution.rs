@@ -30,22 +30,8 @@ pub(crate) fn maximise(
     if n == 0 {
         return best;
     }
-    let size = n as f64;
-    let offspring = 4 + (3.0 * size.ln()) as usize;
-    let parents = offspring / 2;
-    let raw: Vec<f64> = (0..parents).map(|k| (parents as f64 + 0.5).ln() - ((k + 1) as f64).ln()).collect();
-    let sum: f64 = raw.iter().sum();
-    let weights: Vec<f64> = raw.iter().map(|w| w / sum).collect();
-    let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
-    let cs = (effective + 2.0) / (size + effective + 5.0);
-    let damping = 1.0 + cs + 2.0 * (((effective - 1.0) / (size + 1.0)).sqrt() - 1.0).max(0.0);
-    let cc = (4.0 + effective / size) / (size + 4.0 + 2.0 * effective / size);
-    let separable = (size + 2.0) / 3.0;
-    let c1 = (separable * 2.0 / ((size + 1.3) * (size + 1.3) + effective)).min(0.5);
-    let cmu = (separable * 2.0 * (effective - 2.0 + 1.0 / effective)
-        / ((size + 2.0) * (size + 2.0) + effective))
-        .min(1.0 - c1);
-    let expected = size.sqrt() * (1.0 - 1.0 / (4.0 * size) + 1.0 / (21.0 * size * size));
+    let Strategy { offspring, weights, effective, cs, damping, cc, c1, cmu, expected } =
+        Strategy::of(n as f64);
 
     let mut random = Pcg64::seed_from_u64(seed);
     let mut mean = start.to_vec();
@@ -91,6 +77,51 @@ pub(crate) fn maximise(
         }
     }
     best
+}
+
+/// The constants of the strategy, by the names of the paper.
+struct Strategy {
+    /// Points of a generation.
+    offspring: usize,
+    /// Weights of the better half.
+    weights: Vec<f64>,
+    /// Effective number of parents.
+    effective: f64,
+    /// Learning rate of the path of the step size.
+    cs: f64,
+    /// Damping of the step size.
+    damping: f64,
+    /// Learning rate of the path of the variances.
+    cc: f64,
+    /// Learning rate of the variances from their path.
+    c1: f64,
+    /// Learning rate of the variances from the better half.
+    cmu: f64,
+    /// Expected length of a normal vector.
+    expected: f64,
+}
+
+impl Strategy {
+    /// For a number of unknowns.
+    fn of(size: f64) -> Self {
+        let offspring = 4 + (3.0 * size.ln()) as usize;
+        let parents = offspring / 2;
+        let raw: Vec<f64> =
+            (0..parents).map(|k| (parents as f64 + 0.5).ln() - ((k + 1) as f64).ln()).collect();
+        let sum: f64 = raw.iter().sum();
+        let weights: Vec<f64> = raw.iter().map(|w| w / sum).collect();
+        let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
+        let cs = (effective + 2.0) / (size + effective + 5.0);
+        let damping = 1.0 + cs + 2.0 * (((effective - 1.0) / (size + 1.0)).sqrt() - 1.0).max(0.0);
+        let cc = (4.0 + effective / size) / (size + 4.0 + 2.0 * effective / size);
+        let separable = (size + 2.0) / 3.0;
+        let c1 = (separable * 2.0 / ((size + 1.3) * (size + 1.3) + effective)).min(0.5);
+        let cmu = (separable * 2.0 * (effective - 2.0 + 1.0 / effective)
+            / ((size + 2.0) * (size + 2.0) + effective))
+            .min(1.0 - c1);
+        let expected = size.sqrt() * (1.0 - 1.0 / (4.0 * size) + 1.0 / (21.0 * size * size));
+        Self { offspring, weights, effective, cs, damping, cc, c1, cmu, expected }
+    }
 }
 
 fn rank(value: f64) -> f64 {

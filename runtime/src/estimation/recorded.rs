@@ -1,0 +1,168 @@
+//! A recording from its files to observations: whole where it fits into memory, else piece by piece.
+
+use super::observe::{Equations, Observation, ObserveError, ObserveSettings, Progress, observe};
+use super::{Bandwidth, Piecewise, choose_bandwidth};
+use crate::model::Model;
+use crate::recording::{Loader, Manifest, RecordingError, RowReport, Trajectory};
+use crate::signal::{Motion, Preparation, SignalError, prepare_all};
+
+/// Rows of a piece of a long recording: what is in memory at once is a few times as much.
+pub const PIECE: usize = 100_000;
+
+/// How a recording is filtered and sampled: in a given band, or in the one that the recording carries.
+#[derive(Debug, Clone, Default)]
+pub struct RecordedSettings {
+    /// Band of the rows, Hz; `None`: by [`choose_bandwidth`].
+    pub band: Option<f64>,
+    /// Cut-off of the position filter, Hz; `None`: that of the band.
+    pub cutoff: Option<f64>,
+    /// Everything else of the rows; its own band is not used.
+    pub rows: ObserveSettings,
+}
+
+impl RecordedSettings {
+    /// The filters and the rows for these trajectories.
+    ///
+    /// # Errors
+    /// Trajectories that no band can be chosen from.
+    pub fn chosen(&self, trajectories: &[Trajectory]) -> Result<(Preparation, ObserveSettings), SignalError> {
+        let (band, cutoff) = match self.band {
+            Some(band) => (band, Bandwidth::cutoff_of(band, trajectories)),
+            None => {
+                let chosen = choose_bandwidth(trajectories)?;
+                (chosen.band, Some(chosen.cutoff))
+            }
+        };
+        let preparation = Preparation { cutoff: self.cutoff.or(cutoff), ..Preparation::default() };
+        Ok((preparation, ObserveSettings { band, ..self.rows.clone() }))
+    }
+}
+
+/// A recording that was observed.
+#[derive(Debug)]
+pub struct ObservedRecording {
+    /// One observation of the whole recording for each kind of equations that was asked for.
+    pub observations: Vec<Observation>,
+    /// Its motions; of a long recording those of its first pieces only.
+    pub motions: Vec<Motion>,
+    /// Whether the motions are the whole recording.
+    pub whole: bool,
+    /// How the equations were sampled.
+    pub settings: ObserveSettings,
+    /// Rows that could not be right.
+    pub rows: RowReport,
+    /// Motions, or pieces of them, that gave no rows, and why.
+    pub left_out: Vec<String>,
+}
+
+/// Why a recording cannot be observed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ObserveRecordingError {
+    /// A file cannot be read or does not fit the robot.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// No row lies in the window.
+    #[error("no row lies between {} s and {} s", window[0], window[1])]
+    NothingInWindow {
+        /// The window, s.
+        window: [f64; 2],
+    },
+    /// Its motions cannot be filtered or observed.
+    #[error(transparent)]
+    Observe(#[from] ObserveError),
+}
+
+impl From<SignalError> for ObserveRecordingError {
+    fn from(error: SignalError) -> Self {
+        Self::Observe(error.into())
+    }
+}
+
+/// Reads the rows of a recording within a `window` of time, s, and observes them.
+///
+/// A recording of more than [`PIECE`] rows is read, prepared, observed and dropped piece by piece; the band and the
+/// speeds of standstill then are those of its first pieces. `progress` is told of a shorter one only.
+///
+/// # Errors
+/// Files that cannot be read or do not fit the robot, a window without rows, motions that cannot be filtered or
+/// observed.
+pub fn observe_recording(
+    manifest: &Manifest,
+    model: &dyn Model,
+    window: Option<[f64; 2]>,
+    equations: &[Equations],
+    settings: &RecordedSettings,
+    progress: Option<Progress<'_>>,
+) -> Result<ObservedRecording, ObserveRecordingError> {
+    let mut pieces = Pieces {
+        loader: Loader::new(manifest, model.robot(), PIECE)?,
+        window,
+        names: vec![None; manifest.trajectories.len()],
+    };
+    let mut first = Vec::new();
+    let (mut rows, mut long) = (0, false);
+    while !long && let Some(piece) = pieces.next()? {
+        rows += piece.1.time.len();
+        first.push(piece);
+        long = rows > PIECE;
+    }
+    if first.is_empty() {
+        let window = window.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        return Err(ObserveRecordingError::NothingInWindow { window });
+    }
+    if !long {
+        let trajectories: Vec<Trajectory> = first.into_iter().map(|(_, piece)| piece).collect();
+        let (preparation, settings) = settings.chosen(&trajectories)?;
+        let (motions, too_short) = prepare_all(&trajectories, &preparation)?;
+        let observations = equations
+            .iter()
+            .map(|&equations| observe(model, &motions, equations, None, &settings, progress))
+            .collect::<Result<_, _>>()?;
+        let left_out = too_short.iter().map(SignalError::to_string).collect();
+        let rows = pieces.loader.into_report();
+        return Ok(ObservedRecording { observations, motions, whole: true, settings, rows, left_out });
+    }
+    let first: Vec<Trajectory> =
+        first.into_iter().map(|(window, piece)| pieces.named(window, piece)).collect();
+    let (preparation, settings) = settings.chosen(&first)?;
+    let (mut all, motions) = Piecewise::new(model, equations, first, preparation, settings.clone())?;
+    while let Some((window, piece)) = pieces.next()? {
+        all.add(&pieces.named(window, piece))?;
+    }
+    let (observations, left_out) = all.finish()?;
+    let rows = pieces.loader.into_report();
+    Ok(ObservedRecording { observations, motions, whole: false, settings, rows, left_out })
+}
+
+/// The pieces of a recording that have rows within a window of time.
+struct Pieces<'a> {
+    loader: Loader<'a>,
+    window: Option<[f64; 2]>,
+    /// For each trajectory of the manifest the name of its first piece.
+    names: Vec<Option<String>>,
+}
+
+impl Pieces<'_> {
+    /// The next piece, and the trajectory of the manifest that it is of.
+    fn next(&mut self) -> Result<Option<(usize, Trajectory)>, RecordingError> {
+        while let Some(piece) = self.loader.next_trajectory()? {
+            let inside = match self.window {
+                Some(window) => piece.within(window),
+                None => Some(piece),
+            };
+            if let Some(piece) = inside {
+                return Ok(Some((self.loader.window(), piece)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A piece under the name of the first piece of its trajectory: together they are one motion.
+    fn named(&mut self, window: usize, mut piece: Trajectory) -> Trajectory {
+        if let Some(name) = self.names.get_mut(window) {
+            piece.name = name.get_or_insert(piece.name).clone();
+        }
+        piece
+    }
+}

@@ -1,0 +1,77 @@
+//! What parameters leave of the measured torques: relative errors per equation and overall.
+
+use super::observe::Observation;
+use super::outcome::EquationError;
+use super::weights::residual_norm;
+
+/// The errors of each equation in each trajectory; `sigma` are those of the weights, one per group.
+pub(super) fn errors_of(
+    observation: &Observation,
+    chi: &[f64],
+    sigma: &[f64],
+    weighted: bool,
+) -> Vec<EquationError> {
+    observation
+        .groups
+        .iter()
+        .zip(sigma)
+        .filter(|(g, _)| g.factor.rows() > 0)
+        .map(|(g, &sigma)| {
+            let residual = residual_norm(g, chi);
+            let (rows, norm_y) = (g.factor.rows(), g.factor.norm_y());
+            let sigma = if weighted { sigma } else { residual / (rows as f64).sqrt() };
+            EquationError {
+                trajectory: g.trajectory,
+                equation: g.equation,
+                sigma: (residual > 0.0 || norm_y > 0.0).then_some(sigma),
+                relative_error: ratio(residual, norm_y),
+                rows,
+            }
+        })
+        .collect()
+}
+
+/// ||Y - W chi|| / ||Y|| of each equation over all trajectories, for any parameters.
+pub fn per_equation(observation: &Observation, chi: &[f64]) -> Vec<f64> {
+    let equations = observation.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
+    (0..equations)
+        .map(|equation| {
+            let own = observation.groups.iter().filter(|g| g.equation == equation);
+            let (e, y) = own.fold((0.0, 0.0), |(e, y), g| {
+                (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2))
+            });
+            ratio(e.sqrt(), y.sqrt())
+        })
+        .collect()
+}
+
+/// ||Y - W chi|| / ||Y|| over all equations and trajectories, for any parameters.
+pub fn relative_error(observation: &Observation, chi: &[f64]) -> f64 {
+    let (e, y) = observation
+        .groups
+        .iter()
+        .fold((0.0, 0.0), |(e, y), g| (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2)));
+    ratio(e.sqrt(), y.sqrt())
+}
+
+/// Relative errors, overall and per equation, of a model whose effects have been taken from the torques of
+/// `unexplained`: what W chi leaves of them, against the torques of `measured`, the same rows before that.
+pub fn errors_against(unexplained: &Observation, measured: &Observation, chi: &[f64]) -> (f64, Vec<f64>) {
+    let equations = measured.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
+    let mut left = vec![0.0; equations];
+    let mut whole = vec![0.0; equations];
+    for group in &unexplained.groups {
+        if let Some(left) = left.get_mut(group.equation) {
+            *left += residual_norm(group, chi).powi(2);
+        }
+    }
+    for group in &measured.groups {
+        whole[group.equation] += group.factor.norm_y().powi(2);
+    }
+    let overall = ratio(left.iter().sum::<f64>().sqrt(), whole.iter().sum::<f64>().sqrt());
+    (overall, left.iter().zip(&whole).map(|(e, y)| ratio(e.sqrt(), y.sqrt())).collect())
+}
+
+fn ratio(e: f64, y: f64) -> f64 {
+    if y > 0.0 { e / y } else { 0.0 }
+}
