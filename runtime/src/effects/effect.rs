@@ -63,6 +63,9 @@ pub struct Properties {
     /// Whether it is drawn along the motion, torque times the direction. Friction opposes the motion: over anything
     /// but the speed, both directions would hide each other.
     pub along_motion: bool,
+    /// Whether it is a law of friction that any recording of a robot may have: against a baseline it is then fitted to
+    /// both, and only what differs is a change.
+    pub standing_friction: bool,
 }
 
 /// How much rows are smoothed.

@@ -5,7 +5,7 @@ use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::PRESLIDING_NUISANCE;
-use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::effects::{EffectKind, Place};
 use crate::signal::{Stencil, central_difference};
 
 /// All columns that are fitted beside the base parameters and never named: the skew of the torques, the nuisances,
@@ -13,36 +13,26 @@ use crate::signal::{Stencil, central_difference};
 pub(in crate::diagnosis) fn always_there(
     context: &Context<'_>,
     design: &Design,
-    window: SmoothingWindow,
     change: bool,
 ) -> Vec<Vec<f64>> {
     let mut out = delay_columns(context, design);
-    out.extend(nuisance_columns(context, design, window));
+    out.extend(nuisance_columns(context, design));
     if change {
         out.extend(target_friction_columns(context, design));
     }
     out
 }
 
-/// Per joint, on all rows: what position noise and the filters of positions and torques leave; and friction that builds
-/// up over a short displacement after a reversal.
-///
-/// On slow rows the first is the second derivative of the model's torque. On fast rows that would be a compliant
-/// transmission to leading order, so it is the model's torque from positions above the band of the motion: position
-/// noise times inertia, and no link that swings.
-fn nuisance_columns(context: &Context<'_>, design: &Design, window: SmoothingWindow) -> Vec<Vec<f64>> {
+/// Per joint, on all rows: the second derivative of the model's torque, which is what a difference between the filters
+/// of positions and torques leaves, and position noise times inertia; and friction that builds up over a short
+/// displacement after a reversal.
+fn nuisance_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
     let mut out = Vec::new();
     for j in 0..design.joints {
         let mut on_joint = Vec::new();
         for (k, s) in context.signals.iter().enumerate() {
-            let rigid = &context.torques[k].rigid[j];
-            let column = match window {
-                SmoothingWindow::Slow => twice_differentiated(rigid, s.rate),
-                SmoothingWindow::Fast => {
-                    rigid.iter().zip(context.load_in_driving_band(k, j)).map(|(all, low)| all - low).collect()
-                }
-            };
-            design.sample(j, k, &column, &mut on_joint);
+            let curvature = twice_differentiated(&context.torques[k].rigid[j], s.rate);
+            design.sample(j, k, &curvature, &mut on_joint);
         }
         let mut column = vec![0.0; design.rows.len()];
         column[design.of_joint(j)].copy_from_slice(&on_joint);

@@ -224,11 +224,6 @@ impl<'a> Context<'a> {
             .collect()
     }
 
-    /// Rigid torque of a joint from positions below the band of the ringing, at every sample of a motion.
-    pub fn load_in_driving_band(&self, signal: usize, joint: usize) -> &[f64] {
-        &self.links(signal).load[joint]
-    }
-
     fn links(&self, signal: usize) -> &Links {
         self.links[signal].get_or_init(|| {
             let s = &self.signals[signal];

@@ -35,12 +35,11 @@ impl<'a> ExtendedModel<'a> {
         fast: Design,
         change: bool,
     ) -> Result<Self, SingularDesign> {
-        let regression = |design: Design, window| {
-            let nuisances = always_there(&context, &design, window, change);
+        let regression = |design: Design| {
+            let nuisances = always_there(&context, &design, change);
             Regression::new(design, nuisances)
         };
-        let slow = regression(slow, SmoothingWindow::Slow)?;
-        let fast = regression(fast, SmoothingWindow::Fast)?;
+        let (slow, fast) = (regression(slow)?, regression(fast)?);
         let benches = [&slow, &fast].map(|r| Bench::new(&context, &r.design));
         Ok(Self { context, slow, fast, benches, terms: Vec::new(), change })
     }
@@ -119,9 +118,7 @@ impl<'a> ExtendedModel<'a> {
         for (column, &x) in design.columns.iter().zip(chi.iter()) {
             subtract(column, x);
         }
-        for (k, column) in
-            always_there(&self.context, design, SmoothingWindow::Slow, self.change).iter().enumerate()
-        {
+        for (k, column) in always_there(&self.context, design, self.change).iter().enumerate() {
             subtract(column, chi[design.parameters + k]);
         }
         for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {

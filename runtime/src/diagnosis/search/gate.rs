@@ -136,20 +136,6 @@ pub(in crate::diagnosis) struct Gate {
     pub size: Size,
 }
 
-/// Laws of friction may be there in both recordings; only what differs between them is a change.
-fn may_be_common(effect: EffectKind) -> bool {
-    matches!(
-        effect,
-        EffectKind::Stribeck
-            | EffectKind::NonlinearViscous
-            | EffectKind::LoadDependentFriction
-            | EffectKind::PositionDependentFriction
-            | EffectKind::AsymmetricFriction
-            | EffectKind::PreslidingHysteresis
-            | EffectKind::FrictionDrift
-    )
-}
-
 /// What a round's evidence is worked out beside, on the rows of each window.
 #[derive(Default)]
 pub(in crate::diagnosis) struct Backgrounds {
@@ -189,7 +175,7 @@ impl Search<'_> {
             free: &bench.free,
             of_joint: &bench.of_joint,
         };
-        let common = model.change && may_be_common(candidate.effect);
+        let common = model.change && candidate.effect.properties().standing_friction;
         let background = against
             .of(ranked.window)
             .get_or_init(|| Background::new(&bench.units, &regressors, &before, self.threads));

@@ -24,6 +24,7 @@ const PROPERTIES: Properties = Properties {
     special_case: Some(&super::joint_elasticity::JointElasticity),
     abscissa: Abscissa::Load,
     along_motion: false,
+    standing_friction: false,
 };
 
 /// The effect.

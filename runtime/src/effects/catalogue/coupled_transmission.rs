@@ -22,6 +22,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Speed,
     along_motion: false,
+    standing_friction: false,
 };
 
 /// The effect.

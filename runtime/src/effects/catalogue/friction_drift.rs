@@ -25,6 +25,7 @@ const PROPERTIES: Properties = Properties {
     special_case: Some(&super::friction_level_change::FrictionLevelChange),
     abscissa: Abscissa::Time,
     along_motion: true,
+    standing_friction: true,
 };
 
 /// The effect.

@@ -25,6 +25,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Load,
     along_motion: true,
+    standing_friction: true,
 };
 
 /// The effect.

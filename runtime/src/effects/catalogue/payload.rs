@@ -25,6 +25,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Position,
     along_motion: false,
+    standing_friction: false,
 };
 
 /// The effect.

@@ -26,6 +26,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Speed,
     along_motion: false,
+    standing_friction: true,
 };
 
 /// The effect.

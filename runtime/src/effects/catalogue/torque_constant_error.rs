@@ -25,6 +25,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::ModelTorque,
     along_motion: false,
+    standing_friction: false,
 };
 
 /// The effect.

@@ -26,6 +26,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Acceleration,
     along_motion: false,
+    standing_friction: false,
 };
 
 /// The effect.
