@@ -16,8 +16,10 @@ mod places;
 mod put;
 mod random;
 mod secret;
+mod seen;
 mod size;
 mod visible;
+mod words;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -158,7 +160,7 @@ fn main() -> Result<(), Failure> {
             let model = models::find(&case.robot).ok_or("no such robot")?;
             let recordings = recordings(model, case, true)?;
             dump::write(folder, model.robot(), case, &recordings)?;
-            Ok((page::hidden_in_words(&recordings.hidden), ()))
+            Ok((words::hidden_in_words(&recordings.hidden), ()))
         });
         let failed = failed.into_iter().filter(Option::is_none).count();
         let seconds = start.elapsed().as_secs_f64();
@@ -169,21 +171,21 @@ fn main() -> Result<(), Failure> {
         let seen = in_parallel(&cases, options.threads, |case| {
             let model = models::find(&case.robot).ok_or("no such robot")?;
             let drawn = draw(model, case)?;
-            Ok((page::hidden_in_words(&drawn.hidden), drawn.hidden))
+            Ok((words::hidden_in_words(&drawn.hidden), drawn.hidden))
         });
         let minutes = start.elapsed().as_secs_f64() / 60.0;
-        return finish(&options, &page::what_can_be_seen(&cases, &seen, &options, minutes));
+        return finish(&options, &seen::what_can_be_seen(&cases, &seen, &options, minutes));
     }
     let journal = options.journal.as_deref().map(Journal::open).transpose()?;
     let scores: Vec<Score> = in_parallel(&cases, options.threads, |case| {
         if let Some(score) = journal.as_ref().and_then(|j| j.done(case)) {
-            return Ok((page::in_a_line(&score), score));
+            return Ok((words::in_a_line(&score), score));
         }
         let score = score(case)?;
         if let Some(journal) = &journal {
             journal.add(case, &score)?;
         }
-        Ok((page::in_a_line(&score), score))
+        Ok((words::in_a_line(&score), score))
     })
     .into_iter()
     .map(|score| score.unwrap_or_else(Score::not_simulated))

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use dynid_runtime::effects::EffectKind;
-use dynid_runtime::report::significant;
 
 use crate::hide::Hidden;
 use crate::hiding;
-use crate::size::{SIZES, VISIBLE};
+use crate::size::SIZES;
+use crate::words::{about_sizes, command, hidden_in_words, line, median, others};
 use crate::{Case, Options, Outcome, Score};
 
 /// One row of input to the tables.
@@ -27,133 +27,6 @@ pub fn markdown(cases: &[Case], scores: &[Score], options: &Options) -> String {
     what_is_hidden(&mut text, &effects);
     every_run(&mut text, &all);
     text
-}
-
-/// What was hidden, with its magnitude and how much of it can be seen.
-pub fn hidden_in_words(hidden: &[Hidden]) -> String {
-    let words = |h: &Hidden| {
-        format!("{} {:.3} (visible {:.1})", at(h.effect.id(), &joints_of(h)), h.magnitude, h.visible)
-    };
-    if hidden.is_empty() {
-        "nothing".to_owned()
-    } else {
-        hidden.iter().map(words).collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// A finished run in a line.
-pub fn in_a_line(score: &Score) -> String {
-    let hidden: Vec<String> = score
-        .hidden
-        .iter()
-        .map(|(h, outcome)| {
-            format!("{} (visible {:.1}) {}", at(h.effect.id(), &joints_of(h)), h.visible, outcome.word())
-        })
-        .collect();
-    let mut line = hidden.join(", ");
-    if let Some(reason) = &score.refused {
-        let _ = write!(line, " refused: {reason}");
-    }
-    if !score.others.is_empty() {
-        let _ = write!(line, " besides: {}", others(score));
-    }
-    let _ = write!(line, " ({:.1} s)", score.seconds);
-    line
-}
-
-impl Outcome {
-    fn word(self) -> &'static str {
-        match self {
-            Outcome { named: true, .. } => "named",
-            Outcome { cannot_tell: true, .. } => "cannot tell",
-            _ => "missed",
-        }
-    }
-}
-
-fn joints_of(hidden: &Hidden) -> Vec<usize> {
-    hidden.joint.map(|j| j + 1).into_iter().collect()
-}
-
-fn at(effect: &str, joints: &[usize]) -> String {
-    let on: Vec<String> = joints.iter().map(ToString::to_string).collect();
-    if on.is_empty() { effect.to_owned() } else { format!("{effect}@{}", on.join("+")) }
-}
-
-fn others(score: &Score) -> String {
-    score.others.iter().map(|(effect, joints)| at(effect, joints)).collect::<Vec<_>>().join(" ")
-}
-
-fn line(text: &mut String, words: &str) {
-    text.push_str(words);
-    text.push('\n');
-}
-
-/// What of every effect can be seen, robot by robot, and how much of it that takes.
-pub fn what_can_be_seen(
-    cases: &[Case],
-    seen: &[Option<Vec<Hidden>>],
-    options: &Options,
-    minutes: f64,
-) -> String {
-    let mut text = String::from("# What can be seen of a hidden effect\n\n");
-    let _ = writeln!(
-        text,
-        "Each effect of the catalogue in simulated robots, on random joints and motions: how much of it there must be to \
-         be seen. No diagnosis takes part.\n\n```\n{} --visible{}\n```\n\n{} cases took {minutes:.1} minutes on {} threads.\n",
-        command(options),
-        options.out.as_ref().map_or_else(String::new, |path| format!(" --out {}", path.display())),
-        cases.len(),
-        options.threads
-    );
-    about_sizes(&mut text);
-    line(
-        &mut text,
-        "In each cell the visible size, and the magnitude that it takes; medians over the seeds (of an even number of seeds the upper one).\n",
-    );
-    let columns: Vec<(&String, usize)> = options
-        .robots
-        .iter()
-        .flat_map(|r| (0..SIZES.len()).map(move |s| (r, s)))
-        .filter(|(_, s)| options.sizes.iter().any(|name| name == SIZES[*s]))
-        .collect();
-    let header: Vec<String> = columns.iter().map(|(r, s)| format!("{r}, {}", SIZES[*s])).collect();
-    let _ = writeln!(text, "| effect | magnitude | {} |", header.join(" | "));
-    line(&mut text, &format!("|---|---|{}", "---|".repeat(columns.len())));
-    for effect in EffectKind::ALL {
-        let cells: Vec<String> =
-            columns.iter().map(|(robot, size)| seen_cell(cases, seen, effect, robot, *size)).collect();
-        if cells.iter().any(|cell| cell != "-") {
-            let _ = writeln!(
-                text,
-                "| {} | {} | {} |",
-                effect.id(),
-                hiding::of(effect).map_or("", |h| h.counts),
-                cells.join(" | ")
-            );
-        }
-    }
-    text
-}
-
-/// Medians of what of an effect can be seen in the cases of a robot and size, and of the magnitude that it takes.
-fn seen_cell(
-    cases: &[Case],
-    seen: &[Option<Vec<Hidden>>],
-    effect: EffectKind,
-    robot: &str,
-    size: usize,
-) -> String {
-    let own: Vec<&Hidden> = (cases.iter().zip(seen))
-        .filter(|(c, _)| c.robot == robot && c.size == size)
-        .filter_map(|(_, hidden)| hidden.as_ref()?.iter().find(|h| h.effect == effect))
-        .collect();
-    if own.is_empty() {
-        return "-".to_owned();
-    }
-    let visible = median(own.iter().map(|h| h.visible).collect());
-    let magnitude = median(own.iter().map(|h| h.magnitude).collect());
-    format!("{visible:.1} ({})", significant(magnitude, 2))
 }
 
 fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options) {
@@ -195,47 +68,6 @@ fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options) {
         );
     }
     about_sizes(text);
-}
-
-fn about_sizes(text: &mut String) {
-    let _ = writeln!(
-        text,
-        "The sizes are relative to what can be seen. *Visible* is the torque of the effect that no refit of the standard \
-         parameters can take over, relative to the noise: sqrt(r² - r0²)/r0 of the residuals of the standard model \
-         with and without the effect, on the same motion with the same noise, in a band of 25 Hz or 100 Hz, where it \
-         shows more, on the joint where it shows most (a contact: while it lasts). `small` aims at {}, `medium` at {}, \
-         `large` at {}; where no robot has that much of an effect, at the most that it may have, and the column says \
-         what was seen.\n",
-        VISIBLE[0], VISIBLE[1], VISIBLE[2]
-    );
-}
-
-/// The command that makes a page, up to the file that it goes to.
-fn command(options: &Options) -> String {
-    let mut command = format!(
-        "cargo run --release --example concealment -- --robots {} --sizes {} --seeds {}",
-        options.robots.join(","),
-        options.sizes.join(","),
-        options.seeds
-    );
-    if options.first_seed != 1 {
-        let _ = write!(command, " --first-seed {}", options.first_seed);
-    }
-    if !options.effects.is_empty() {
-        let _ = write!(command, " --effects {}", options.effects.join(","));
-    }
-    if options.pairs {
-        command.push_str(" --pairs");
-    }
-    if let Some(seconds) = options.seconds {
-        let _ = write!(command, " --seconds {seconds}");
-    }
-    command
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// In how many of the runs something holds.

@@ -163,17 +163,7 @@ pub fn derivative(
     let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
     let mut pull = gravity.map(|g| Dual::new(g, 0.0));
     let mut lanes: [Lane; LANES] = std::array::from_fn(|_| Lane::new(n));
-    // The robot itself at every point, seeded: it is the same for all samples.
-    let robots: Vec<(Vec<Link<Wide>>, [Wide; 3])> = (0..points)
-        .map(|point| {
-            let mut seeds = lanes[0].seeds(&mut rows, &mut pull);
-            direction.advance_robot(point, &mut seeds);
-            let (mut rows, mut pull) = (seeds.rows.to_vec(), *seeds.gravity);
-            direction.effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
-            let links = robot.frames.iter().zip(&rows).map(|(f, r)| Link::new(f, &wide_row(r))).collect();
-            (links, pull.map(wide))
-        })
-        .collect();
+    let robots = robots_at(robot, direction, &mut lanes[0], &mut rows, &mut pull);
     let pattern = model.pattern();
     let mut entries = vec![Dual::default(); pattern.columns.len()];
     let mut packed = [0; 3].map(|_| vec![Dual::default(); n]);
@@ -204,6 +194,30 @@ pub fn derivative(
             }
         }
     }
+}
+
+/// Links and gravity of the robot at a point of the path.
+type RobotAt = (Vec<Link<Wide>>, [Wide; 3]);
+
+/// The robot itself at every point of the path, seeded: it is the same for all samples.
+fn robots_at(
+    robot: &crate::model::Robot,
+    direction: &Direction<'_>,
+    lane: &mut Lane,
+    rows: &mut [Row<Dual>],
+    pull: &mut [Dual; 3],
+) -> Vec<RobotAt> {
+    let variant = &direction.variants[direction.which];
+    (0..direction.points())
+        .map(|point| {
+            let mut seeds = lane.seeds(rows, pull);
+            direction.advance_robot(point, &mut seeds);
+            let (mut rows, mut pull) = (seeds.rows.to_vec(), *seeds.gravity);
+            direction.effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
+            let links = robot.frames.iter().zip(&rows).map(|(f, r)| Link::new(f, &wide_row(r))).collect();
+            (links, pull.map(wide))
+        })
+        .collect()
 }
 
 /// Puts the samples side by side: `packed[group][j]` of q, dq, ddq.

@@ -15,10 +15,12 @@ mod escape;
 mod html;
 mod numbers;
 mod plot;
+mod series;
 mod sheet;
 
 pub use escape::escape;
 pub use html::Page;
 pub use numbers::{falls_or_rises, percent, significant};
-pub use plot::{Band, Plot, Role, Series, SeriesKind};
+pub use plot::Plot;
+pub use series::{Band, Role, Series, SeriesKind};
 pub use sheet::{Panel, Sheet};

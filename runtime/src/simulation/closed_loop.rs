@@ -109,7 +109,8 @@ pub fn simulate(
             log.mean.iter_mut().zip(held.iter().zip(&torque)).for_each(|(m, (a, b))| *m = 0.5 * (a + b));
             here.copy_from(&state);
             plant.acceleration(&mut here, &log.mean, &mut acceleration)?;
-            log.record(plant, &state, t, &reading, &acceleration, &mut sensors);
+            let sample = Sample { state: &state, acceleration: &acceleration, reading: &reading };
+            log.record(plant, &sample, &mut sensors);
         }
         if k + 1 < samples {
             for _ in 0..parts {
@@ -161,6 +162,16 @@ fn check(settings: &LoopSettings, reference: &dyn Reference, n: usize) -> Result
     Ok(())
 }
 
+/// What there is to record at a control sample.
+struct Sample<'a> {
+    /// The plant, at the time of the sample.
+    state: &'a State,
+    /// Its accelerations.
+    acceleration: &'a [f64],
+    /// What the encoders say, per joint.
+    reading: &'a [f64],
+}
+
 /// Signals of the rows so far, joint by joint.
 struct Log {
     time: Vec<f64>,
@@ -188,16 +199,9 @@ impl Log {
         }
     }
 
-    fn record(
-        &mut self,
-        plant: &Plant<'_>,
-        state: &State,
-        t: f64,
-        reading: &[f64],
-        acceleration: &[f64],
-        sensors: &mut Sensors<'_>,
-    ) {
-        self.time.push(t);
+    fn record(&mut self, plant: &Plant<'_>, sample: &Sample<'_>, sensors: &mut Sensors<'_>) {
+        let &Sample { state, acceleration, reading } = sample;
+        self.time.push(state.time);
         for (j, &read) in reading.iter().enumerate() {
             self.position[j].push(read);
             self.torque[j].push(sensors.torque(j, self.mean[j]));

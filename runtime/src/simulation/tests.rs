@@ -222,7 +222,7 @@ fn parameters_that_no_robot_has_are_refused_by_name() {
     let ia5 = model.robot().standard.iter().position(|p| p.name == "Ia5").unwrap();
     standard[ia5] = 0.0;
     let refused = check_standard(model.robot(), &standard).unwrap_err();
-    assert!(matches!(refused, SimulationError::NegativeRotor { motor: JointNumber(4), .. }), "{refused}");
+    assert!(matches!(refused, SimulationError::NegativeRotor { motor: JointNumber(5), .. }), "{refused}");
 }
 
 /// A slow wave of every joint about `middle`, as Fourier series that start at rest.
