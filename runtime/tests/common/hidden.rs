@@ -12,6 +12,8 @@ pub struct Hidden {
     pub distort: fn(&mut Trajectory),
 }
 
+// Each test program uses its own part of this.
+#[allow(dead_code)]
 impl Hidden {
     /// Nothing.
     pub fn nothing() -> Self {

@@ -136,10 +136,9 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> Vec<Pushed> {
         let motions: Vec<&[(usize, f64)]> = track.motions.iter().map(|m| m.1.as_slice()).collect();
         let Some(spread) = Spread::of(&motions, &lengths) else { continue };
         let sums = |wanted: bool| -> Vec<Sums> {
-            let of = |(k, (fresh, rows)): (usize, &(bool, Vec<(usize, f64)>))| {
-                (*fresh == wanted && !rows.is_empty()).then(|| Sums::new(k, rows))
-            };
-            track.motions.iter().enumerate().filter_map(of).collect()
+            let motions = track.motions.iter().enumerate();
+            let chosen = motions.filter(|(_, (fresh, rows))| *fresh == wanted && !rows.is_empty());
+            chosen.map(|(k, (_, rows))| Sums::new(k, rows)).collect()
         };
         let (old, fresh) = (sums(false), sums(true));
         let largest = |sums: &[Sums]| -> Vec<f64> {

@@ -141,13 +141,13 @@ mod tests {
         let zero = (0..50)
             .filter(|_| {
                 let values: Vec<f64> = (0..300).map(|_| normal(&mut rng)).collect();
-                Autoregression::fit(&[0..300], &values, HIGHEST_ORDER).order() == 0
+                Autoregression::fit(std::slice::from_ref(&(0..300)), &values, HIGHEST_ORDER).order() == 0
             })
             .count();
         assert!(zero >= 45, "{zero}");
         assert_eq!(Autoregression::fit(&[], &[], HIGHEST_ORDER).order(), 0);
-        let still = Autoregression::fit(&[0..50], &[0.0; 50], HIGHEST_ORDER);
-        assert!(still.whitened(&[0..50], &[0.0; 50]).iter().all(|x| *x == 0.0));
+        let still = Autoregression::fit(std::slice::from_ref(&(0..50)), &[0.0; 50], HIGHEST_ORDER);
+        assert!(still.whitened(std::slice::from_ref(&(0..50)), &[0.0; 50]).iter().all(|x| *x == 0.0));
     }
 
     #[test]

@@ -222,7 +222,7 @@ mod tests {
                 .filter(|_| {
                     let residual = correlated(&mut rng, rows, rho);
                     let waveform = correlated(&mut rng, rows, 0.5);
-                    shift_test(&residual, &waveform, &[0..rows], &[1.0]).p_value < level
+                    shift_test(&residual, &waveform, std::slice::from_ref(&(0..rows)), &[1.0]).p_value < level
                 })
                 .count() as f64;
             let expected = level * f64::from(runs);
@@ -237,6 +237,6 @@ mod tests {
         let noise = correlated(&mut rng, 600, 0.7);
         let waveform = correlated(&mut rng, 600, 0.5);
         let residual: Vec<f64> = noise.iter().zip(&waveform).map(|(n, w)| n + w).collect();
-        assert!(shift_test(&residual, &waveform, &[0..600], &[1.0]).p_value < 1e-6);
+        assert!(shift_test(&residual, &waveform, std::slice::from_ref(&(0..600)), &[1.0]).p_value < 1e-6);
     }
 }

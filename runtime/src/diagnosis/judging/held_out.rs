@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn every_segment_of_the_recording_is_held_out_once_and_none_of_the_baseline() {
         let design = design(&[(0, false), (1, true), (1, true), (2, true)]);
-        let folds = folds(&design, &[1.0]).unwrap();
+        let folds = folds(&design, &[1.0]).expect("a small problem is regular");
         assert_eq!(folds.len(), 3);
         for g in 0..4 {
             let times = folds.iter().filter(|fold| fold.test[g]).count();
@@ -127,14 +127,16 @@ mod tests {
         assert_eq!(forward_cuts(4), [2, 3]);
         assert_eq!(forward_cuts(1), [1, 1]);
         // Three stretches come after the first cut, two of them after the second.
-        let held = HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false).unwrap();
+        let held =
+            HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false).expect("a small problem is regular");
         let segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
         assert_eq!(segments, [5, 6, 7, 6, 7]);
     }
 
     #[test]
     fn of_several_motions_each_is_predicted_from_the_others() {
-        let held = HeldOutSquares::of(&design(&[(0, true), (0, true), (1, true)]), &[1.0], false).unwrap();
+        let held = HeldOutSquares::of(&design(&[(0, true), (0, true), (1, true)]), &[1.0], false)
+            .expect("a small problem is regular");
         let mut segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
         segments.sort_unstable();
         assert_eq!(segments, [0, 1, 2]);
@@ -143,7 +145,8 @@ mod tests {
 
     #[test]
     fn from_a_baseline_alone_all_of_the_recording_is_predicted() {
-        let held = HeldOutSquares::of(&design(&[(0, false), (1, true), (2, true)]), &[1.0], true).unwrap();
+        let held = HeldOutSquares::of(&design(&[(0, false), (1, true), (2, true)]), &[1.0], true)
+            .expect("a small problem is regular");
         assert_eq!(held.by_segment.iter().map(|s| s.0).collect::<Vec<_>>(), [1, 2]);
     }
 

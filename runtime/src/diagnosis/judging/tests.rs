@@ -31,7 +31,7 @@ fn random(seed: u64) -> (Regression, Candidate) {
         y[r] += 2.0 * columns[0][r] - columns[3][r] + 0.8 * own[0][r] - 0.4 * own[1][r];
     }
     let design = Design::made_up(JOINTS, &SEGMENTS, ROWS, columns, y);
-    let regression = Regression::new(design, Vec::new()).unwrap();
+    let regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
     let half = ALL / JOINTS;
     let sparse = own.iter().map(|c| (0..JOINTS).map(|j| (j, c[j * half..(j + 1) * half].to_vec())).collect());
     let trial = Trial::new(&regression.design, vec![1.0], sparse.collect());
@@ -67,7 +67,7 @@ fn explicit(
         .collect();
     let w = DMatrix::from_fn(rows.len(), columns.len(), |i, k| rows[i].1 * columns[k][rows[i].0]);
     let b = DVector::from_fn(rows.len(), |i, _| rows[i].1 * y[rows[i].0]);
-    let x = w.clone().svd(true, true).solve(&b, 1e-14).unwrap();
+    let x = w.clone().svd(true, true).solve(&b, 1e-14).expect("a small problem is regular");
     let left = (b - w * &x).norm_squared();
     (x, left)
 }
@@ -83,8 +83,8 @@ fn amplitudes_and_gain_are_those_of_one_regression_on_all_columns() {
         columns.extend(trial.dense(design));
         let (expected, after) = explicit(&regression, &columns, &design.y, &everything);
 
-        let part = regression.fit.project_out(trial).unwrap();
-        let (amplitude, gain) = part.solve(&candidate).unwrap();
+        let part = regression.fit.project_out(trial).expect("a small problem is regular");
+        let (amplitude, gain) = part.solve(&candidate).expect("a small problem is regular");
         let shift = -(&part.coefficients * &amplitude);
         for k in 0..2 {
             assert!((amplitude[k] - expected[4 + k]).abs() < 1e-5, "{seed}: {amplitude} {expected}");
@@ -101,9 +101,9 @@ fn a_prediction_gains_what_the_squares_of_the_held_out_rows_fall_by() {
     let (regression, candidate) = random(7);
     let (design, trial) = (&regression.design, &candidate.trials[0]);
     let train = [true, true, false];
-    let fit = Fit::new(design, &regression.sigma, train.to_vec()).unwrap();
-    let part = fit.project_out(trial).unwrap();
-    let (amplitude, _) = part.solve(&candidate).unwrap();
+    let fit = Fit::new(design, &regression.sigma, train.to_vec()).expect("a small problem is regular");
+    let part = fit.project_out(trial).expect("a small problem is regular");
+    let (amplitude, _) = part.solve(&candidate).expect("a small problem is regular");
     let prediction = Prediction::new(&fit, trial, &part, amplitude);
 
     let mut columns = design.columns.clone();
@@ -125,9 +125,10 @@ fn a_prediction_gains_what_the_squares_of_the_held_out_rows_fall_by() {
 fn on_some_segments_only_the_amplitude_is_fitted() {
     let (regression, candidate) = random(8);
     let (design, trial) = (&regression.design, &candidate.trials[0]);
-    let whole = regression.fit.project_out(trial).unwrap();
+    let whole = regression.fit.project_out(trial).expect("a small problem is regular");
     let train = [true, false, true];
-    let (amplitude, _) = regression.restricted(&whole, trial, &train).solve(&candidate).unwrap();
+    let (amplitude, _) =
+        regression.restricted(&whole, trial, &train).solve(&candidate).expect("a small problem is regular");
     let columns = whole.columns(design, trial);
     let (expected, _) = explicit(&regression, &columns, &regression.residual(), &train);
     assert!((amplitude - expected).norm() < 1e-5);
@@ -149,7 +150,7 @@ fn what_the_columns_make_themselves_is_not_identifiable() {
 #[test]
 fn a_real_candidate_holds_on_held_out_motion() {
     let (regression, candidate) = random(10);
-    let verdict = regression.judge(&candidate).unwrap();
+    let verdict = regression.judge(&candidate).expect("a small problem is regular");
     assert_eq!(verdict.held_out.len(), SEGMENTS.len());
     assert!(verdict.held_out.iter().all(|gain| *gain > 0.0), "{verdict:?}");
     assert!(verdict.explained_fraction > 0.3 && verdict.explained_fraction < 1.0, "{verdict:?}");
