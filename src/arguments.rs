@@ -94,6 +94,13 @@ pub struct DiagnosisOptions {
     /// of the joint's fastest speed]
     #[arg(long, value_delimiter = ',')]
     pub standstill: Vec<f64>,
+    /// Name less: judge every law beside the nuisances of real recordings and against the variation between stretches
+    /// of the recording itself (with a baseline, its own variation always counts)
+    #[arg(long)]
+    pub cautious: bool,
+    /// Look for pushes that a single joint sees while it moves, too; what a law leaves near a reversal may look like one
+    #[arg(long)]
+    pub single_joint_contacts: bool,
     /// Threads; the result is the same for every number [default: all cores]
     #[arg(long, default_value_t = 0)]
     pub threads: usize,

@@ -97,6 +97,8 @@ fn settings(options: &DiagnosisOptions, joints: usize) -> Settings {
     settings.band = options.band;
     settings.cutoff = options.cutoff;
     settings.standstill_speeds = options.speeds(joints);
+    settings.cautious = options.cautious;
+    settings.single_joint_contacts = options.single_joint_contacts;
     settings.threads = options.threads;
     settings
 }

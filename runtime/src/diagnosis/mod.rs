@@ -289,7 +289,8 @@ fn begin<'a>(
         let fit = Fit::weighted(&rows.slow, &prepared.sigma)?;
         context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
     }
-    let extended = ExtendedModel::new(context, rows.slow, rows.fast, change)?;
+    let calibrated = change || motions.settings().cautious;
+    let extended = ExtendedModel::new(context, rows.slow, rows.fast, change, calibrated)?;
     let mut search = Search::new(extended, &motions.slowest, motions.settings(), progress);
     // No law is tried where only joints that hardly move would show it.
     let judged = &prepared.moving.judged;

@@ -22,6 +22,8 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
     pub terms: Vec<Accepted>,
     /// Whether only what changed since a baseline is looked for.
     pub change: bool,
+    /// Whether laws are judged beside nuisances and against the variation that is there anyway.
+    pub calibrated: bool,
 }
 
 impl<'a> ExtendedModel<'a> {
@@ -34,14 +36,15 @@ impl<'a> ExtendedModel<'a> {
         slow: Design,
         fast: Design,
         change: bool,
+        calibrated: bool,
     ) -> Result<Self, SingularDesign> {
         let regression = |design: Design| {
-            let nuisances = always_there(&context, &design, change);
+            let nuisances = always_there(&context, &design, change, calibrated);
             Regression::new(design, nuisances)
         };
         let (slow, fast) = (regression(slow)?, regression(fast)?);
         let benches = [&slow, &fast].map(|r| Bench::new(&context, &r.design));
-        Ok(Self { context, slow, fast, benches, terms: Vec::new(), change })
+        Ok(Self { context, slow, fast, benches, terms: Vec::new(), change, calibrated })
     }
 
     /// The regression on the rows of a window.
@@ -102,6 +105,7 @@ impl<'a> ExtendedModel<'a> {
             benches: self.benches.clone(),
             terms: self.terms.clone(),
             change: self.change,
+            calibrated: self.calibrated,
         };
         copy.terms.remove(term);
         copy.refit()?;
@@ -118,7 +122,8 @@ impl<'a> ExtendedModel<'a> {
         for (column, &x) in design.columns.iter().zip(chi.iter()) {
             subtract(column, x);
         }
-        for (k, column) in always_there(&self.context, design, self.change).iter().enumerate() {
+        let always = always_there(&self.context, design, self.change, self.calibrated);
+        for (k, column) in always.iter().enumerate() {
             subtract(column, chi[design.parameters + k]);
         }
         for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {

@@ -247,6 +247,9 @@ impl Search<'_> {
 
     /// Laws that are certainly there beside the model as it is, and too small to be named.
     pub(in crate::diagnosis) fn small(&self, settings: &Settings) -> Vec<SmallLaw> {
+        if !self.model.calibrated {
+            return Vec::new();
+        }
         let mut ranked = self.ranked(None);
         ranked.retain(|r| r.verdict.total() > 0.0 && r.verdict.fitted_fraction > 0.0);
         ranked.truncate(MOST_COMPARED);

@@ -34,6 +34,16 @@ pub(in crate::diagnosis) struct Tie {
     pub places: [Place; 2],
 }
 
+/// How a candidate comes out of the calibration.
+enum Weight {
+    /// It may be named: its confidence, significance and the factor on its standard deviations where it was calibrated.
+    Named(Option<[f64; 3]>),
+    /// It cannot be told from a law on another joint.
+    Tied(Tie),
+    /// It is no more than the variation that is there anyway, or a rival explains more.
+    Fails,
+}
+
 /// What a round of judging came to.
 pub(in crate::diagnosis) struct Round {
     pub winner: Option<Winner>,
@@ -65,7 +75,7 @@ impl Search<'_> {
         let ranked = self.ranked(joint);
         let holding = self.holding(&ranked, settings);
         let tries = rounds * self.tries();
-        for (h, (k, _)) in holding.iter().enumerate() {
+        for (h, (k, evidence)) in holding.iter().enumerate() {
             let (regression, candidate) = self.of(&ranked[*k]);
             let verdict = &ranked[*k].verdict;
             // Whatever explains more of a joint than something that is no accident is no accident either.
@@ -87,32 +97,57 @@ impl Search<'_> {
             if joint.is_some() && self.is_tied(candidate) {
                 continue;
             }
-            let gate = self.judged_by_gate(&against, &ranked[*k], tries, settings.least_confidence);
-            let Outcome::Passes { confidence: calibrated, significance, inflation } = gate else { continue };
-            match self.standing(&against, &ranked, *k) {
-                Standing::Ahead => {}
-                Standing::Tied(rival) => {
-                    let rival = self.of(&ranked[rival]).1;
-                    ties.push(Tie {
-                        effects: [candidate.effect, rival.effect],
-                        places: [candidate.place, rival.place],
-                    });
+            let weight = match self.calibrated(&against, &ranked, *k, tries, settings) {
+                Weight::Named(weight) => weight,
+                Weight::Tied(tie) => {
+                    ties.push(tie);
                     continue;
                 }
-                Standing::Beaten => continue,
-            }
+                Weight::Fails => continue,
+            };
+            let [confidence, significance, inflation] = match weight {
+                Some(weight) => [confidence.min(weight[0]), weight[1], weight[2]],
+                None => [confidence, evidence.significance, 1.0],
+            };
             let winner = Some(Winner {
                 window: ranked[*k].window,
                 index: ranked[*k].index,
                 verdict: verdict.clone(),
                 significance,
-                confidence: confidence.min(calibrated),
+                confidence,
                 inflation,
                 rivals: self.rivals(&ranked, *k, settings),
             });
             return Ok(Round { winner, ties });
         }
         Ok(Round { winner: None, ties })
+    }
+
+    /// What the variation that is there anyway says of a candidate of a round, and its rivals on other joints.
+    fn calibrated(
+        &self,
+        against: &Backgrounds,
+        ranked: &[Ranked],
+        k: usize,
+        tries: usize,
+        settings: &Settings,
+    ) -> Weight {
+        if !self.model.calibrated {
+            return Weight::Named(None);
+        }
+        let gate = self.judged_by_gate(against, &ranked[k], tries, settings.least_confidence);
+        let Outcome::Passes { confidence, significance, inflation } = gate else { return Weight::Fails };
+        match self.standing(against, ranked, k) {
+            Standing::Ahead => Weight::Named(Some([confidence, significance, inflation])),
+            Standing::Tied(rival) => {
+                let (candidate, rival) = (self.of(&ranked[k]).1, self.of(&ranked[rival]).1);
+                Weight::Tied(Tie {
+                    effects: [candidate.effect, rival.effect],
+                    places: [candidate.place, rival.place],
+                })
+            }
+            Standing::Beaten => Weight::Fails,
+        }
     }
 
     /// Candidates, on `joint` where one is given, that are not excluded: those that gain most on held-out motion first.
