@@ -23,7 +23,7 @@ impl<'a> StateSlices<'a> {
         Self { signals: [q, dq, ddq].map(|signal| signal.iter().map(Vec::as_slice).collect()) }
     }
 
-    /// What the functions of a [`Model`] take.
+    /// What the functions of a [`Model`](super::Model) take.
     pub fn states(&self) -> States<'_> {
         let [q, dq, ddq] = &self.signals;
         States { q, dq, ddq }
