@@ -13,7 +13,7 @@ use crate::diagnosis::outcome::{
 use crate::diagnosis::rules::{SHIFTED, TOLD_APART};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
-use crate::diagnosis::search::select::Tie;
+use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
 use crate::effects::Abscissa;

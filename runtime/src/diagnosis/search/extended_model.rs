@@ -8,7 +8,7 @@ use crate::diagnosis::judging::regression::{Regression, TermColumns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
-use crate::diagnosis::search::gate::Bench;
+use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
 

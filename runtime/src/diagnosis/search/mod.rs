@@ -1,5 +1,6 @@
 //! Search: which candidates become part of the model, one after the other.
 
+pub(in crate::diagnosis) mod bench;
 pub(in crate::diagnosis) mod extended_model;
 pub(in crate::diagnosis) mod friction_change;
 pub(in crate::diagnosis) mod gate;
@@ -7,6 +8,7 @@ pub(in crate::diagnosis) mod line;
 pub(in crate::diagnosis) mod pair;
 pub(in crate::diagnosis) mod refine;
 pub(in crate::diagnosis) mod report;
+pub(in crate::diagnosis) mod round;
 pub(in crate::diagnosis) mod run;
 pub(in crate::diagnosis) mod select;
 pub(in crate::diagnosis) mod state;

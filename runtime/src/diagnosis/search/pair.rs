@@ -5,7 +5,7 @@
 
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rules::FIRST_OF_PAIR;
-use crate::diagnosis::search::select::Winner;
+use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;

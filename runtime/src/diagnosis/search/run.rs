@@ -8,7 +8,7 @@ use crate::diagnosis::outcome::StopReason;
 use crate::diagnosis::rules::KEPT_FRACTION;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
-use crate::diagnosis::search::select::Winner;
+use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};

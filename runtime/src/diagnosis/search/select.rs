@@ -9,30 +9,12 @@ use crate::diagnosis::rules::{
     FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, NESTED_CASE_SUFFICES, RIVALS, STRETCHES_PER_LOSS,
 };
 use crate::diagnosis::search::gate::{Backgrounds, Outcome, Standing};
+use crate::diagnosis::search::round::{Ranked, Round, Tie, Winner};
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::effects::SmoothingWindow;
 use crate::parallel;
-
-/// What passed a round: the window of its rows, the candidate's index there, and its verdict.
-pub(in crate::diagnosis) struct Winner {
-    pub window: SmoothingWindow,
-    pub index: usize,
-    pub verdict: Verdict,
-    pub significance: f64,
-    pub confidence: f64,
-    /// Factor on the standard deviations of its numbers.
-    pub inflation: f64,
-    pub rivals: Vec<Rival>,
-}
-
-/// Two laws on different joints that the recording cannot tell apart.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::diagnosis) struct Tie {
-    pub effects: [EffectKind; 2],
-    pub places: [Place; 2],
-}
 
 /// How a candidate comes out of the calibration.
 enum Weight {
@@ -42,20 +24,6 @@ enum Weight {
     Tied(Tie),
     /// It is no more than the variation that is there anyway, or a rival explains more.
     Fails,
-}
-
-/// What a round of judging came to.
-pub(in crate::diagnosis) struct Round {
-    pub winner: Option<Winner>,
-    /// Laws that would have won, were they not tied with another.
-    pub ties: Vec<Tie>,
-}
-
-/// A candidate of a round: the window of its rows, its index there, and its verdict.
-pub(in crate::diagnosis) struct Ranked {
-    pub window: SmoothingWindow,
-    pub index: usize,
-    pub verdict: Verdict,
 }
 
 impl Search<'_> {

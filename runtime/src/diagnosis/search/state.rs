@@ -8,7 +8,7 @@ use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::line::{JointLines, all_lines};
-use crate::diagnosis::search::select::Tie;
+use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::SmoothingWindow;
