@@ -197,21 +197,9 @@ fn shift_test(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
+    use crate::diagnosis::judging::testing::correlated;
+    use rand::SeedableRng;
     use rand_pcg::Pcg64;
-
-    /// AR(1) noise.
-    fn correlated(rng: &mut Pcg64, rows: usize, rho: f64) -> Vec<f64> {
-        let mut x = 0.0;
-        (0..rows + 50)
-            .map(|_| {
-                let new: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
-                x = rho * x + new;
-                x
-            })
-            .skip(50)
-            .collect()
-    }
 
     #[test]
     fn a_waveform_that_is_not_there_passes_the_shift_test_as_often_as_its_p_value_says() {

@@ -94,7 +94,8 @@ pub(in crate::diagnosis) fn mean_root(gains: &[f64]) -> Evidence {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
+    use crate::diagnosis::judging::testing::correlated;
+    use rand::SeedableRng;
     use rand_pcg::Pcg64;
 
     #[test]
@@ -109,19 +110,6 @@ mod tests {
         assert!((Evidence::fisher(9.0, 1, 20.0).p_value - 2.0 * at(3.0, 20.0).p_value).abs() < 1e-12);
         assert_eq!(at(0.0, 100.0).confidence(100), 0.0);
         assert_eq!(Evidence::NONE.confidence(1), 0.5);
-    }
-
-    /// AR(1) noise.
-    fn correlated(rng: &mut Pcg64, rows: usize, rho: f64) -> Vec<f64> {
-        let mut x = 0.0;
-        (0..rows + 50)
-            .map(|_| {
-                let new: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
-                x = rho * x + new;
-                x
-            })
-            .skip(50)
-            .collect()
     }
 
     fn blocks_of(change: &[f64], residual: &[f64], rows: usize) -> Vec<Block> {
