@@ -1,0 +1,136 @@
+//! What was found, and what was not chosen, cannot be told or was too small.
+
+use super::drawn::Curve;
+use crate::effects::{ContactForce, EffectTerm, Parameter};
+use serde::{Deserialize, Serialize};
+
+/// An effect that was found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Finding {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of the joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// One minus the probability that held-out motion improves so much by chance, all tries counted.
+    pub confidence: f64,
+    /// Mean held-out gain of a block of motion in standard errors; 0 where it was not measured by blocks.
+    #[serde(default)]
+    pub significance: f64,
+    /// Its quantities by name.
+    pub parameters: std::collections::BTreeMap<String, ParameterValue>,
+    /// Held-out relative error of its joints without it (everything else in the model).
+    pub held_out_before: f64,
+    /// With it.
+    pub held_out_after: f64,
+    /// Share of the held-out squares of its joints that it explains.
+    pub share: f64,
+    /// Other explanations.
+    pub alternatives: Vec<Alternative>,
+    /// For a person.
+    pub sentence: String,
+    /// What the report draws.
+    pub curve: Option<Curve>,
+    /// Its term in the model.
+    pub term: EffectTerm,
+    /// Where it is a contact.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<ContactForce>,
+}
+
+impl Finding {
+    /// A term of a model, with everything else still unknown: no confidence, no errors, no words.
+    pub fn of(term: EffectTerm) -> Self {
+        Self {
+            effect: term.effect.id().into(),
+            joints: term.joints.clone(),
+            confidence: 0.0,
+            significance: 0.0,
+            parameters: std::collections::BTreeMap::new(),
+            held_out_before: 0.0,
+            held_out_after: 0.0,
+            share: 0.0,
+            alternatives: Vec::new(),
+            sentence: String::new(),
+            curve: None,
+            term,
+            contacts: Vec::new(),
+        }
+    }
+}
+
+/// A value in the JSON.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParameterValue {
+    /// Value, SI.
+    pub value: f64,
+    /// Standard deviation; 0 where not known.
+    pub sigma: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+impl From<&Parameter> for ParameterValue {
+    fn from(p: &Parameter) -> Self {
+        Self { value: p.value, sigma: p.sigma, unit: p.unit.clone() }
+    }
+}
+
+/// A rejected explanation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Alternative {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of its joints.
+    pub joints: Vec<usize>,
+    /// Why it was not chosen.
+    pub why_not: String,
+    /// Share of the held-out squares that it would have explained.
+    pub share: f64,
+}
+
+/// Effects that this motion cannot tell apart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CannotTell {
+    /// Effects.
+    pub between: Vec<String>,
+    /// Numbers j of the joints.
+    pub joints: Vec<usize>,
+    /// The motion that would tell.
+    pub experiment: String,
+}
+
+/// A law that is there, and no larger than what the robot's torques repeat to: no finding.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Small {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of the joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// Root mean square of its torque that nothing else explains, on the joint where it stands out most.
+    pub torque: f64,
+    /// How large it had to be to be named.
+    pub least: f64,
+    /// Unit of both.
+    pub unit: String,
+}
+
+/// An effect that was accepted first and did not hold beside the others.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Removed {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of its joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+}
+
+/// A joint on which nothing could be looked for.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NotJudged {
+    /// Number j of the joint.
+    pub joint: usize,
+    /// Rows in which it moves.
+    pub rows: usize,
+    /// What would be needed, in words.
+    pub why: String,
+}
