@@ -1,7 +1,8 @@
 //! Accepted effects as part of a model: their torques on any motion.
 
 use super::error::DiagnosisError;
-use super::rows::context::{Context, scales};
+use super::rows::context::Context;
+use super::rows::scales::scales;
 use super::rows::signals::Signals;
 use crate::effects::{EffectTerm, Place};
 use crate::model::Model;

@@ -4,10 +4,11 @@
 use super::error::DiagnosisError;
 use super::explanation::delay::skew_of;
 use super::outcome::Sampling;
-use super::rows::context::{Context, scales, top_speeds};
+use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rows::motion::{Moving, left_over};
+use super::rows::scales::{scales, top_speeds};
 use super::rows::selection::RowSelection;
 use super::rows::signals::{Signals, directions};
 use super::rules;

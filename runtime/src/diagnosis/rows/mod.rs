@@ -5,5 +5,6 @@ pub(in crate::diagnosis) mod design;
 pub(in crate::diagnosis) mod fit;
 pub(in crate::diagnosis) mod gram;
 pub(in crate::diagnosis) mod motion;
+pub(in crate::diagnosis) mod scales;
 pub(in crate::diagnosis) mod selection;
 pub(in crate::diagnosis) mod signals;

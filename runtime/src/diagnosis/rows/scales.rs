@@ -1,0 +1,52 @@
+//! How fast, how far and how hard each joint moves: what the shapes of laws are multiples of.
+
+use crate::diagnosis::rows::signals::{ModelTorques, Signals};
+use crate::diagnosis::rules::TOP_SPEED_PERCENT;
+use crate::effects::Scale;
+use crate::model::{JointKind, Model};
+
+/// Scales of every joint over motions, for given standard parameters.
+pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec<Scale> {
+    let robot = model.robot();
+    let n = robot.joints();
+    let kinds = robot.joint_kinds();
+    let speeds = top_speeds(signals, n);
+    let duration = signals.iter().map(|s| s.time(s.len().max(1) - 1)).fold(0.0, f64::max);
+    let mut torque = vec![0.0_f64; n];
+    for s in signals {
+        for (j, series) in ModelTorques::new(model, chi, s).total.iter().enumerate() {
+            torque[j] = series.iter().fold(torque[j], |a, b| a.max(b.abs()));
+        }
+    }
+    (0..n)
+        .map(|j| {
+            let positions = signals.iter().flat_map(|s| s.q[j].iter());
+            let (low, high) =
+                positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
+            Scale {
+                speed: speeds[j].max(1e-9),
+                range: (high - low).max(1e-9),
+                torque: torque[j].max(1e-9),
+                duration,
+                gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),
+                prismatic: kinds[j] == JointKind::Prismatic,
+            }
+        })
+        .collect()
+}
+
+/// Speed that 98 % of the samples of a joint do not pass, in the fastest motion.
+pub(in crate::diagnosis) fn top_speeds(signals: &[Signals], joints: usize) -> Vec<f64> {
+    (0..joints)
+        .map(|j| {
+            signals
+                .iter()
+                .map(|s| {
+                    let mut v: Vec<f64> = s.dq[j].iter().map(|x| x.abs()).collect();
+                    v.sort_by(f64::total_cmp);
+                    v.get(v.len() * TOP_SPEED_PERCENT / 100).copied().unwrap_or(0.0)
+                })
+                .fold(0.0, f64::max)
+        })
+        .collect()
+}
