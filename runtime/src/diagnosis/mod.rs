@@ -93,6 +93,7 @@ mod rules;
 pub mod scoring;
 mod search;
 mod settings;
+mod stages;
 
 pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
@@ -106,15 +107,7 @@ pub use settings::{Progress, Settings, Silent};
 use crate::effects::EffectKind;
 use crate::model::Model;
 use crate::recording::Trajectory;
-use contact::search::{self as contact_search, Contacts};
-use contact::{moving, standing};
-use explanation::explain::{Ended, explain};
-use explanation::standard_model::StandardModelFit;
-use explanation::standstill;
-use preparation::{Prepared, nothing_moves};
-use rows::fit::Fit;
-use search::extended_model::ExtendedModel;
-use search::state::Search;
+use stages::Recordings;
 
 /// Diagnoses a recording; `baseline` are motions of the same robot before it changed, empty where there are none.
 ///
@@ -130,7 +123,7 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = Recordings { trajectories, baseline };
-    run(model, recordings, None, settings, progress)
+    stages::run(model, recordings, None, settings, progress)
 }
 
 /// Fits known effects, on a joint (0-based) where one is given, instead of looking for any: their shapes and
@@ -146,165 +139,5 @@ pub fn fit_known(
     settings: &Settings,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = Recordings { trajectories, baseline };
-    run(model, recordings, Some(known), settings, &Silent)
-}
-
-/// What is diagnosed, and the same robot before it changed.
-struct Recordings<'a> {
-    trajectories: &'a [Trajectory],
-    baseline: &'a [Trajectory],
-}
-
-fn run(
-    model: &dyn Model,
-    recordings: Recordings<'_>,
-    known: Option<&[(EffectKind, Option<usize>)]>,
-    settings: &Settings,
-    progress: &dyn Progress,
-) -> Result<Diagnosis, DiagnosisError> {
-    // 1. Band, motions, checks, skew.
-    progress.at(0.0, "signals");
-    let prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
-    let change = !recordings.baseline.is_empty();
-
-    if !prepared.moving.judged.contains(&true) {
-        return at_rest(model, &prepared);
-    }
-
-    // 2. Windows in which something outside pushed the robot.
-    progress.at(0.05, "contacts");
-    let signals = &prepared.motions.signals;
-    let mut contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
-
-    // Pushes that single joints see, looked for in what is left when the search is done.
-    let mut pushed: Option<Contacts> = None;
-    let mut scanned = false;
-    // A body that is carried all the time pushes like a hand: against a baseline, laws are tried first on all of the
-    // motion, and only what still stands out then is set aside.
-    let mut set_aside = !change;
-
-    loop {
-        // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
-        progress.at(0.1, "candidates");
-        let known_contacts = Contacts::joined(contacts.clone().filter(|_| set_aside), pushed.clone());
-        let Begun { mut search, standard, sampling } =
-            begin(model, &prepared, known_contacts.as_ref(), change, progress)?;
-        let settings = prepared.motions.settings();
-        let report = match known {
-            Some(known) => search.force(known)?,
-            None => search.run(settings, progress)?,
-        };
-
-        // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
-        if let Some(found) = &contacts {
-            let remain = remain(found, &prepared, &search);
-            if !remain {
-                contacts = None;
-            }
-            if remain != set_aside {
-                set_aside = true;
-                continue;
-            }
-        }
-        if settings.single_joint_contacts && (!scanned || pushed.is_some()) {
-            let found = pushed_in_motion(model, &prepared, contacts.as_ref(), &search);
-            if scanned {
-                pushed = pushed.and_then(|p| moving::still_there(p, found.as_ref()));
-            } else if found.is_some() {
-                // What was found with the pushes among the rows is looked for again without them.
-                (pushed, scanned) = (found, true);
-                continue;
-            }
-        }
-        let rest =
-            standing::at_rest(&search.model.context, &prepared.moving.fitted, &prepared.motions.slowest);
-        let contacts = Contacts::joined(
-            Contacts::joined(contacts, pushed),
-            rest.contacts(prepared.motions.signals.len()),
-        );
-
-        // 5. Numbers, errors, curves, sentences.
-        progress.at(0.92, "explanations");
-        let ended = Ended {
-            standard: &standard,
-            contacts: contacts.as_ref(),
-            report,
-            delay: prepared.delay,
-            sampling,
-        };
-        let mut diagnosis = explain(&search, ended, settings)?;
-        standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
-        progress.at(1.0, "done");
-        return Ok(diagnosis);
-    }
-}
-
-/// What can be said of a robot that holds still, beside a baseline in which it moves.
-fn at_rest(model: &dyn Model, prepared: &Prepared) -> Result<Diagnosis, DiagnosisError> {
-    let motions = &prepared.motions;
-    let context = prepared.context(model)?;
-    let rest = standing::at_rest(&context, &prepared.moving.fitted, &motions.slowest);
-    let sampling = motions.sampling(&motions.rows(model, None));
-    let mut diagnosis = standstill::explain(&context, &rest, &prepared.chi_sigma, sampling)
-        .ok_or_else(|| nothing_moves(model, &prepared.moving))?;
-    standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
-    Ok(diagnosis)
-}
-
-/// Pushes on single joints in what the model with its effects leaves, outside of the contacts that are known.
-fn pushed_in_motion(
-    model: &dyn Model,
-    prepared: &Prepared,
-    contacts: Option<&Contacts>,
-    search: &Search<'_>,
-) -> Option<Contacts> {
-    let rows = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
-    let residual = search.model.residual_on(&rows);
-    moving::in_motion(&search.model.context, &rows, &residual, &search.model.fast.sigma)
-}
-
-/// What a search begins with.
-struct Begun<'a> {
-    /// All candidates, none of them in the model yet.
-    search: Search<'a>,
-    /// The standard model fitted alone.
-    standard: StandardModelFit,
-    /// How the rows were sampled.
-    sampling: Sampling,
-}
-
-/// The standard model on the rows outside of contacts, and all candidates.
-fn begin<'a>(
-    model: &'a dyn Model,
-    prepared: &'a Prepared,
-    contacts: Option<&Contacts>,
-    change: bool,
-    progress: &dyn Progress,
-) -> Result<Begun<'a>, DiagnosisError> {
-    let motions = &prepared.motions;
-    let rows = motions.rows(model, contacts.map(|c| c.windows.as_slice()));
-    let sampling = motions.sampling(&rows);
-    let mut context = prepared.context(model)?;
-    if contacts.is_some() {
-        let fit = Fit::weighted(&rows.slow, &prepared.sigma)?;
-        context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
-    }
-    let calibrated = change || motions.settings().cautious;
-    let extended = ExtendedModel::new(context, rows.slow, rows.fast, change, calibrated)?;
-    let mut search = Search::new(extended, &motions.slowest, motions.settings(), progress);
-    // No law is tried where only joints that hardly move would show it.
-    let judged = &prepared.moving.judged;
-    for candidates in [&mut search.slow, &mut search.fast] {
-        candidates.retain(|c| c.own.iter().any(|&j| judged[j]));
-    }
-    let standard = StandardModelFit::new(&search.model, &prepared.aligned)?;
-    Ok(Begun { search, standard, sampling })
-}
-
-/// Whether contacts still stand out of what the model with its effects leaves.
-fn remain(contacts: &Contacts, prepared: &Prepared, search: &Search<'_>) -> bool {
-    let aligned = &prepared.aligned;
-    let residual = search.model.residual_on(aligned);
-    let sigma = &search.model.slow.sigma;
-    contact_search::remain(contacts, aligned, &residual, sigma, &prepared.motions.signals)
+    stages::run(model, recordings, Some(known), settings, &Silent)
 }
