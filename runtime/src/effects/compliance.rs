@@ -98,6 +98,8 @@ pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, ou
         let m_free = 1.0 / m;
         let stiff = h * h * t.stiffness;
         let m_held = 1.0 / (m + h * t.damping + if stiff > 0.3 * m { stiff } else { 0.0 });
+        let (kept, driven) = (m * m_held, h * m_held);
+        let pulled = driven * t.stiffness;
         let slope = (now - before) / steps;
         for step in 1..=steps as usize {
             let force = before + slope * step as f64;
@@ -109,7 +111,7 @@ pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, ou
                 0.0
             };
             let new = if stretch != 0.0 || half == 0.0 {
-                (m * v + h * (force - t.stiffness * stretch)) * m_held
+                kept * v + driven * force - pulled * stretch
             } else {
                 v + h * force * m_free
             };

@@ -54,10 +54,10 @@ pub(in crate::diagnosis) fn lines(
     let picked = picked.iter().map(|&o| (o, LINE_PICKED_ABOVE));
     let mut found: Vec<Line> = Vec::new();
     for (order, above) in known.chain(picked) {
-        let seen: Vec<Line> = strokes.iter().filter_map(|s| line(s, order, slowest)).collect();
-        let shown: Vec<&Line> =
-            seen.iter().filter(|l| l.above >= above && l.share >= LINE_LEAST_FRACTION).collect();
-        if shown.is_empty() || 2 * shown.len() <= seen.len() {
+        let looked: Vec<Look> = strokes.iter().map(|s| look(s, order, slowest)).collect();
+        let able = looked.iter().filter(|l| !matches!(l, Look::Blind)).count();
+        let shown: Vec<&Line> = looked.iter().filter_map(|l| l.line(above)).collect();
+        if shown.is_empty() || 2 * shown.len() <= able {
             continue;
         }
         let median = |value: fn(&Line) -> f64| {
@@ -106,34 +106,43 @@ struct Sample {
     r: f64,
 }
 
-/// One order in one motion; `None` where the motion cannot show it.
-fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
+/// What one motion says of an order.
+enum Look {
+    /// It cannot show a line.
+    Blind,
+    /// One half of it does not predict the other.
+    Nothing,
+    /// It predicts enough of it: a line, if it stands out far enough.
+    Wave(Line),
+}
+
+impl Look {
+    /// The line, where it stands out this far.
+    fn line(&self, above: f64) -> Option<&Line> {
+        match self {
+            Look::Wave(line) if line.above >= above => Some(line),
+            _ => None,
+        }
+    }
+}
+
+/// Looks for one order in one motion.
+fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
     let samples = samples(stroke, order, slowest);
     let half = samples.len() / 2;
     let (first, second) = samples.split_at(half);
-    let waves = |part: &[Sample]| {
+    let turns = |part: &[Sample]| {
         part.windows(2).map(|w| (w[1].q - w[0].q).abs()).filter(|d| d * order < 3.0).sum::<f64>() * order
             / TAU
     };
-    if half < LINE_LEAST_SAMPLES || waves(first) < LINE_LEAST_WAVES || waves(second) < LINE_LEAST_WAVES {
-        return None;
+    if half < LINE_LEAST_SAMPLES || turns(first) < LINE_LEAST_WAVES || turns(second) < LINE_LEAST_WAVES {
+        return Look::Blind;
     }
     let step = TAU / travel(stroke.q).max(1e-9);
     // Where exactly the line is, as far as the travel tells.
-    let order = (-4..=4)
-        .map(|k| order + 0.125 * step * f64::from(k))
-        .max_by(|a, b| wave(&samples, *a).norm().total_cmp(&wave(&samples, *b).norm()))?;
-    let fitted = wave(&samples, order);
-    let mut around: Vec<f64> = (LINE_COVERED..LINE_COVERED + LINE_AROUND)
-        .flat_map(|k| [order - k as f64 * step, order + k as f64 * step])
-        .filter(|o| *o > step)
-        .map(|o| wave(&samples, o).norm())
-        .collect();
-    if around.len() < LINE_AROUND {
-        return None;
-    }
-    around.sort_by(f64::total_cmp);
-    let median = around[around.len() / 2].max(1e-300);
+    let near = Orders { first: order - 0.5 * step, step: 0.125 * step, count: 9 };
+    let highest = near.all().zip(near.waves(&samples)).max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
+    let Some((order, fitted)) = highest else { return Look::Blind };
     let predicted = |fit: &[Sample], test: &[Sample]| {
         let w = wave(fit, order);
         let (mut left, mut whole) = (0.0, 0.0);
@@ -144,7 +153,12 @@ fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
         (left, whole)
     };
     let (a, b) = (predicted(first, second), predicted(second, first));
-    Some(Line {
+    let share = 1.0 - (a.0 + b.0) / (a.1 + b.1).max(1e-300);
+    if share < LINE_LEAST_FRACTION {
+        return Look::Nothing;
+    }
+    let median = median_around(&samples, order, step);
+    Look::Wave(Line {
         order,
         cosine: fitted.c,
         sine: fitted.s,
@@ -152,8 +166,20 @@ fn line(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Option<Line> {
         // The median of amplitudes of noise is sqrt(2 ln 2) of the deviation of their parts.
         sigma: median / (2.0 * std::f64::consts::LN_2).sqrt(),
         above: fitted.norm() / median,
-        share: 1.0 - (a.0 + b.0) / (a.1 + b.1).max(1e-300),
+        share,
     })
+}
+
+/// Median of the amplitudes at orders beside one, as many steps away as its own foot does not reach.
+fn median_around(samples: &[Sample], order: f64, step: f64) -> f64 {
+    let far = LINE_COVERED as f64 * step;
+    let above = Orders { first: order + far, step, count: LINE_AROUND };
+    let below = Orders { first: order - far, step: -step, count: LINE_AROUND };
+    let sides = [above, below].map(|side| side.all().zip(side.waves(samples)).collect::<Vec<_>>());
+    let mut around: Vec<f64> =
+        sides.iter().flatten().filter(|(o, _)| *o > step).map(|(_, w)| w.norm()).collect();
+    around.sort_by(f64::total_cmp);
+    around[around.len() / 2].max(1e-300)
 }
 
 /// Samples at which the joint moves slowly enough for the band to hold the wave.
@@ -222,22 +248,73 @@ impl Wave {
     }
 }
 
-/// The wave of an order by least squares.
+/// Inner products of cosine, sine and residual.
+#[derive(Clone, Copy, Default)]
+struct Products {
+    cc: f64,
+    cs: f64,
+    ss: f64,
+    rc: f64,
+    rs: f64,
+}
+
+impl Products {
+    fn add(&mut self, r: f64, (sine, cosine): (f64, f64)) {
+        self.cc += cosine * cosine;
+        self.cs += cosine * sine;
+        self.ss += sine * sine;
+        self.rc += r * cosine;
+        self.rs += r * sine;
+    }
+
+    /// The wave by least squares.
+    fn wave(&self) -> Wave {
+        let Products { cc, cs, ss, rc, rs } = *self;
+        let determinant = cc * ss - cs * cs;
+        if determinant <= 1e-9 * cc * ss {
+            return Wave { c: 0.0, s: 0.0 };
+        }
+        Wave { c: (rc * ss - rs * cs) / determinant, s: (rs * cc - rc * cs) / determinant }
+    }
+}
+
+/// The wave of one order.
 fn wave(samples: &[Sample], order: f64) -> Wave {
-    let (mut cc, mut cs, mut ss, mut rc, mut rs) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let mut products = Products::default();
     for x in samples {
-        let (sine, cosine) = (order * x.q).sin_cos();
-        cc += cosine * cosine;
-        cs += cosine * sine;
-        ss += sine * sine;
-        rc += x.r * cosine;
-        rs += x.r * sine;
+        products.add(x.r, (order * x.q).sin_cos());
     }
-    let determinant = cc * ss - cs * cs;
-    if determinant <= 1e-9 * cc * ss {
-        return Wave { c: 0.0, s: 0.0 };
+    products.wave()
+}
+
+/// Orders at equal steps.
+struct Orders {
+    first: f64,
+    step: f64,
+    count: usize,
+}
+
+impl Orders {
+    fn all(&self) -> impl Iterator<Item = f64> + use<> {
+        let (first, step) = (self.first, self.step);
+        (0..self.count).map(move |k| first + step * k as f64)
     }
-    Wave { c: (rc * ss - rs * cs) / determinant, s: (rs * cc - rc * cs) / determinant }
+
+    /// The wave of each order. The angle of a sample grows by the same from order to order, so that it is turned on
+    /// instead of being evaluated again.
+    fn waves(&self, samples: &[Sample]) -> impl Iterator<Item = Wave> + use<> {
+        let mut products = vec![Products::default(); self.count];
+        for x in samples {
+            let (mut sine, mut cosine) = (self.first * x.q).sin_cos();
+            let (turn_sine, turn_cosine) = (self.step * x.q).sin_cos();
+            for at in &mut products {
+                at.add(x.r, (sine, cosine));
+                (sine, cosine) =
+                    (sine * turn_cosine + cosine * turn_sine, cosine * turn_cosine - sine * turn_sine);
+            }
+        }
+        products.into_iter().map(|p| p.wave())
+    }
 }
 
 #[cfg(test)]

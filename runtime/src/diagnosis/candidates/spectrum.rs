@@ -18,37 +18,57 @@ pub(in crate::diagnosis) fn order_spectrum(
     scale: &Scale,
     slowest: f64,
 ) -> OrderSpectrum {
-    let mut spectrum = OrderSpectrum { gear: scale.gear, ..OrderSpectrum::default() };
-    for order in orders(scale) {
-        let (mut c, mut s, mut n) = (0.0, 0.0, 0.0);
-        for (signal, r) in signals.iter().zip(residual) {
-            let highest = signal.rate * PI * PART_OF_NYQUIST;
-            let stride = (signal.rate / SPECTRUM_RATE).max(1.0) as usize;
-            let end = signal.len().saturating_sub(signal.edge_samples);
-            for t in (signal.edge_samples..end).step_by(stride) {
-                let v = signal.dq[joint][t].abs();
-                if v > slowest && v * order < highest {
-                    let (sine, cosine) = (order * signal.q[joint][t]).sin_cos();
-                    c += r[t] * cosine;
-                    s += r[t] * sine;
-                    n += 1.0;
+    let Orders { least, step, count } = orders(scale);
+    // Sums over the samples of each order: with the cosine, with the sine, how many.
+    let mut sums = vec![(0.0, 0.0, 0.0_f64); count];
+    for (signal, r) in signals.iter().zip(residual) {
+        let highest = signal.rate * PI * PART_OF_NYQUIST;
+        let stride = (signal.rate / SPECTRUM_RATE).max(1.0) as usize;
+        let end = signal.len().saturating_sub(signal.edge_samples);
+        for t in (signal.edge_samples..end).step_by(stride) {
+            let v = signal.dq[joint][t].abs();
+            if v <= slowest {
+                continue;
+            }
+            // The angle grows by the same from order to order, so that it is turned on instead of evaluated again.
+            let (mut sine, mut cosine) = (least * signal.q[joint][t]).sin_cos();
+            let (turn_sine, turn_cosine) = (step * signal.q[joint][t]).sin_cos();
+            for (k, (c, s, n)) in sums.iter_mut().enumerate() {
+                if v * (least + step * k as f64) >= highest {
+                    break;
                 }
+                *c += r[t] * cosine;
+                *s += r[t] * sine;
+                *n += 1.0;
+                (sine, cosine) =
+                    (sine * turn_cosine + cosine * turn_sine, cosine * turn_cosine - sine * turn_sine);
             }
         }
-        spectrum.order.push(order);
-        spectrum.amplitude.push(if n > LEAST_SAMPLES { 2.0 * c.hypot(s) / n } else { 0.0 });
     }
-    spectrum
+    OrderSpectrum {
+        gear: scale.gear,
+        order: (0..count).map(|k| least + step * k as f64).collect(),
+        amplitude: sums
+            .iter()
+            .map(|&(c, s, n)| if n > LEAST_SAMPLES { 2.0 * f64::hypot(c, s) / n } else { 0.0 })
+            .collect(),
+        ..OrderSpectrum::default()
+    }
 }
 
 /// The orders of a spectrum.
-fn orders(scale: &Scale) -> impl Iterator<Item = f64> {
+struct Orders {
+    least: f64,
+    step: f64,
+    count: usize,
+}
+
+fn orders(scale: &Scale) -> Orders {
     let least = LEAST_PERIODS * 2.0 * PI / scale.range;
     let top = (HIGHEST_ORDER * scale.gear.max(ASSUMED_GEAR)).max(2.0 * least);
     // Finer than a part of one wave over the travel there is nothing to resolve.
     let step = (ORDER_STEP * 2.0 * PI / scale.range).max((top - least) / MOST_ORDERS as f64);
-    let count = (((top - least) / step) as usize).max(1);
-    (0..count).map(move |k| least + step * k as f64)
+    Orders { least, step, count: (((top - least) / step) as usize).max(1) }
 }
 
 /// The orders that stand out: local maxima above some times the median amplitude, highest first, at most `most`.

@@ -1,6 +1,6 @@
 //! A shape of an effect at a place as columns on the rows, and their inner products with the design.
 
-use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::context::{Context, Series};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::dot;
 use crate::effects::{EffectKind, Place};
@@ -38,21 +38,25 @@ pub(in crate::diagnosis) fn columns(
     shape: &[f64],
     change: bool,
 ) -> Vec<Sparse> {
-    let mut out: Vec<Sparse> = Vec::new();
-    for k in 0..context.signals.len() {
-        let silent = change && !context.signals[k].is_target;
-        // A silent motion still needs to know which joints the columns act on.
-        let mut series = context.series(k, effect, place, shape);
-        if silent {
-            for (_, values) in series.iter_mut().flatten() {
-                values.fill(0.0);
+    let silent = |k: usize| change && !context.signals[k].is_target;
+    let of_motion = |k: usize| context.series(k, effect, place, shape);
+    let signals = 0..context.signals.len();
+    let Some(loud) = signals.clone().find(|&k| !silent(k)) else { return Vec::new() };
+    // The columns of an effect act on the same joints in every motion.
+    let first: Vec<Series> = of_motion(loud);
+    let mut out: Vec<Sparse> =
+        first.iter().map(|column| column.iter().map(|(j, _)| (*j, Vec::new())).collect()).collect();
+    let mut first = Some(first);
+    for k in signals {
+        if silent(k) {
+            for (j, rows) in out.iter_mut().flatten() {
+                rows.resize(rows.len() + design.rows_in(*j, k), 0.0);
             }
+            continue;
         }
-        for (a, column) in series.iter().enumerate() {
-            if out.len() <= a {
-                out.push(column.iter().map(|(j, _)| (*j, Vec::new())).collect());
-            }
-            for ((j, rows), (_, values)) in out[a].iter_mut().zip(column) {
+        let series = first.take_if(|_| k == loud).unwrap_or_else(|| of_motion(k));
+        for (column, series) in out.iter_mut().zip(&series) {
+            for ((j, rows), (_, values)) in column.iter_mut().zip(series) {
                 design.sample(*j, k, values, rows);
             }
         }

@@ -204,6 +204,11 @@ impl Design {
         }
     }
 
+    /// How many rows of a joint are in one motion.
+    pub fn rows_in(&self, joint: usize, signal: usize) -> usize {
+        self.of_signal(joint, signal).iter().map(|(range, _)| range.len()).sum()
+    }
+
     /// Leaves out columns that nothing determines.
     pub fn leave_out(&mut self, columns: &[usize]) {
         for &k in columns {
