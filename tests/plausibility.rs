@@ -109,10 +109,11 @@ fn a_wrong_sign_order_or_unit_is_named() {
     ] {
         assert!(original.contains(from));
         std::fs::write(&path, original.replace(from, to)).unwrap();
-        let (status, words) = identify(&path, &[]);
+        // Every explanation is an identification of its own: four seconds of the recording say as much as all of it.
+        let (status, words) = identify(&path, &["--to", "4"]);
         println!("{words}");
         assert!(status == 1 && words.contains(expected), "{to}: {status} {words}");
-        let (status, words) = identify(&path, &["--implausible"]);
+        let (status, words) = identify(&path, &["--to", "4", "--implausible"]);
         assert_eq!(status, 0, "{words}");
     }
     std::fs::remove_dir_all(&own).unwrap();

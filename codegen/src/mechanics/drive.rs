@@ -1,4 +1,5 @@
 //! Rotor inertia, friction and offsets, with motors that several joints turn: (9), (25), (26).
+//! Equation numbers are those of Gautier and Briot.
 
 use super::error::ModelError;
 use crate::robot::RobotTable;

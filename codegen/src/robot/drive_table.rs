@@ -1,4 +1,5 @@
 //! Motors and transmission as the YAML says, and what rotor inertias act on.
+//! Equation numbers are those of Gautier and Briot.
 
 use crate::exact::{decimal, inverse};
 use num_rational::BigRational;

@@ -1,4 +1,5 @@
 //! The estimators: IDIM and PIM, ordinary and weighted least squares.
+//! Equation numbers are those of Gautier and Briot.
 
 use super::Factor;
 use super::blocks::block_sigmas;

@@ -1,4 +1,4 @@
-//! What an estimation says.
+//! What an estimation says. Equation numbers are those of Gautier and Briot.
 
 use crate::model::JointNumber;
 use serde::{Deserialize, Serialize};
@@ -122,8 +122,8 @@ pub struct EquationError {
     pub equation: usize,
     /// N.m, N or W; `None` where every row is zero, so that there is no error to speak of.
     pub sigma: Option<f64>,
-    /// ||Y - W chi|| / ||Y|| over the rows that were used.
-    pub relative_error: f64,
+    /// ||Y - W chi|| / ||Y|| over the rows that were used; `None` where all torques Y are zero.
+    pub relative_error: Option<f64>,
     /// Rows that were used.
     pub rows: usize,
 }

@@ -24,7 +24,7 @@ pub(super) fn errors_of(
                 trajectory: g.trajectory,
                 equation: g.equation,
                 sigma: (residual > 0.0 || norm_y > 0.0).then_some(sigma),
-                relative_error: ratio(residual, norm_y),
+                relative_error: (norm_y > 0.0).then(|| residual / norm_y),
                 rows,
             }
         })

@@ -1,4 +1,5 @@
 //! Least squares from a factor: rank, condition, solution, covariance.
+//! Equation numbers are those of Gautier and Briot.
 
 use super::Factor;
 use nalgebra::{DMatrix, DVector};

@@ -1,4 +1,5 @@
 //! Weights per equation and trajectory: (20), (21), and their iteration to a fixed point.
+//! Equation numbers are those of Gautier and Briot.
 
 use super::observe::{EquationFactor, Observation};
 use super::solve::back_substitute;

@@ -1,4 +1,4 @@
-//! What a model of a robot computes.
+//! What a model of a robot computes. Equation numbers are those of Gautier and Briot.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,5 @@
 //! Inverse dynamics with known parameters: tau = IDM(q, dq, ddq) chi.
+//! Equation numbers are those of Gautier and Briot.
 
 use super::dynamics::Model;
 use super::states::States;

@@ -1,4 +1,4 @@
-//! An identified model as it is saved and handed to other programs.
+//! An identified model as it is saved and handed to other programs. Equation numbers are those of Gautier and Briot.
 
 use serde::{Deserialize, Serialize};
 
@@ -120,7 +120,7 @@ pub struct EquationRows {
     pub edges: usize,
     /// Standard deviation of the errors, N.m, N or W: its inverse was the weight.
     pub sigma: Option<f64>,
-    /// Relative error of this equation in this trajectory.
+    /// Relative error of this equation in this trajectory; `None` where no row was used or all torques are zero.
     pub relative_error: Option<f64>,
 }
 
@@ -283,6 +283,6 @@ fn equation_rows(rows: &LeftOut, trajectories: &[String], errors: &[EquationErro
         windows: rows.windows,
         edges: rows.edges,
         sigma: error.and_then(|e| e.sigma),
-        relative_error: error.map(|e| e.relative_error),
+        relative_error: error.and_then(|e| e.relative_error),
     }
 }

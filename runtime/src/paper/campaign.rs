@@ -233,6 +233,8 @@ impl Campaign {
         seed: u64,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<SeedResult, CampaignError> {
+        // A robot that cannot exist is said before motions are searched for it.
+        check_standard(model.robot(), standard)?;
         let chi = model.robot().base_from_standard(standard);
         let campaign = Campaign { seed: self.seed.wrapping_add(100 * seed), ..self.clone() };
         let motions = campaign.plan(model, &chi, &|share| progress(0.5 * share))?;

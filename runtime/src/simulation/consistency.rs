@@ -1,4 +1,5 @@
 //! Physical consistency of standard parameters: what a real body can have.
+//! Equation numbers are those of Gautier and Briot.
 
 use nalgebra::{Matrix4, SymmetricEigen};
 

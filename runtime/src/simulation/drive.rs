@@ -113,8 +113,8 @@ fn motor_row(robot: &Robot, m: usize) -> Vec<f64> {
     (0..n).map(|s| robot.drive.gear[m * n + s] / robot.drive.gear[m * n + m]).collect()
 }
 
-/// Inertia Ja of each rotor at the motor, from `inertia[j]` = Ia_j: equation (26) solved, Ja = ((N∘N)ᵀ)⁻¹·Ia.
-/// Where N∘N has no inverse (a differential) Ia_m stands for N_mm²·Ja_m.
+/// Inertia Ja of each rotor at the motor, from `inertia[j]` = Ia_j: equation (26) of Gautier and Briot solved,
+/// Ja = ((N∘N)ᵀ)⁻¹·Ia. Where N∘N has no inverse (a differential) Ia_m stands for N_mm²·Ja_m.
 pub(crate) fn rotor_inertias(robot: &Robot, inertia: &[f64]) -> Vec<f64> {
     let n = inertia.len();
     let gear = DMatrix::from_row_slice(n, n, &robot.drive.gear);

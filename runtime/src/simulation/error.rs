@@ -1,4 +1,4 @@
-//! Misuse of the simulation, and plants that cannot exist.
+//! Misuse of the simulation, and plants that cannot exist. Equation numbers are those of Gautier and Briot.
 
 use crate::model::JointNumber;
 use thiserror::Error;

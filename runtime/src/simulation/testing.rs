@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used)]
-//! Small robots for the tests of this module.
+//! Small robots for the tests of this module. Equation numbers are those of Gautier and Briot.
 
 use crate::model::{Drive, Frame, JointKind, Limits, ParameterKind, RecursiveModel, Robot};
 use rand::{RngExt, SeedableRng};

@@ -1,4 +1,4 @@
-//! What is observed and how its rows are sampled.
+//! What is observed and how its rows are sampled. Equation numbers are those of Gautier and Briot.
 
 use std::ops::Range;
 

@@ -1,4 +1,5 @@
 //! What is decimated: every column of W and Y at the full rate, a block of samples at a time.
+//! Equation numbers are those of Gautier and Briot.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What is fitted, and what must hold of it.
+//! What is fitted, and what must hold of it. Equation numbers are those of Gautier and Briot.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,5 @@
 //! Columns of rotor inertias, friction and offsets, with any transmission matrix: (3), (9), (25) and (26).
+//! Equation numbers are those of Gautier and Briot.
 
 use super::error::RecursiveModelError;
 use crate::model::{Number, ParameterKind, Robot};

@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
 //! The recursive model against an independent engine, and against itself where physics says so.
+//! Equation numbers are those of Gautier and Briot.
 
 use super::*;
 use crate::model::{
