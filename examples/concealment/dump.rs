@@ -7,9 +7,10 @@ use std::path::Path;
 use dynid_runtime::model::Robot;
 use dynid_runtime::recording::{self, Trajectory};
 
+use crate::case::Case;
+use crate::failure::Failure;
 use crate::hide::Recordings;
 use crate::secret::is_change;
-use crate::{Case, Failure};
 
 /// Writes a case to `folder/name`: `recording.yaml`, `test.yaml`, `baseline.yaml` where there is one, `truth.yaml`.
 pub fn write(folder: &Path, robot: &Robot, case: &Case, recordings: &Recordings) -> Result<(), Failure> {

@@ -6,6 +6,8 @@ use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
 use serde::{Deserialize, Serialize};
 
+use crate::case::Case;
+use crate::failure::Failure;
 use crate::hiding::{hide, of, plain};
 use crate::motions::{planned, recorded};
 use crate::put::Number;
@@ -13,7 +15,6 @@ use crate::random::Random;
 use crate::secret::{Secret, is_change};
 use crate::size::VISIBLE;
 use crate::visible::visible;
-use crate::{Case, Failure};
 
 /// An effect as it was hidden.
 #[derive(Debug, Clone, Serialize, Deserialize)]

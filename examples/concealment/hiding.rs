@@ -9,7 +9,7 @@ use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::World;
 
-use crate::Failure;
+use crate::failure::Failure;
 use crate::motions::{RATE, RECORD_EVERY};
 use crate::places::{self, Places};
 use crate::put::{Joint, Number, body, coupled, length, push, spring, tilt};

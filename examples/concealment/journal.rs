@@ -8,7 +8,9 @@ use std::sync::{Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Case, Failure, Score};
+use crate::case::Case;
+use crate::failure::Failure;
+use crate::score::Score;
 
 /// The file, and what it held when it was opened.
 pub struct Journal {
@@ -52,8 +54,8 @@ impl Journal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Outcome;
     use crate::hide::Hidden;
+    use crate::score::Outcome;
     use dynid_runtime::effects::EffectKind;
 
     #[test]

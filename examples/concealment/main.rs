@@ -6,15 +6,19 @@
 //! a random joint. The diagnosis gets the recorded motions alone. Runs without any effect give the rate of false
 //! alarms. With `--dump` the recordings are written as folders of a challenge, and nothing is diagnosed.
 
+mod case;
 mod dump;
+mod failure;
 mod hide;
 mod hiding;
 mod journal;
 mod motions;
+mod options;
 mod page;
 mod places;
 mod put;
 mod random;
+mod score;
 mod secret;
 mod seen;
 mod size;
@@ -22,134 +26,22 @@ mod visible;
 mod words;
 
 use std::io::Write;
-use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use clap::Parser;
 use dynid::models;
-use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
 use dynid_runtime::effects::EffectKind;
-use serde::{Deserialize, Serialize};
 
-use hide::{Hidden, draw, recordings};
+use case::Case;
+use failure::Failure;
+use hide::{draw, recordings};
 use journal::Journal;
+use options::Options;
 use random::Random;
+use score::{Score, score};
 use size::SIZES;
-
-/// Anything that ends a run.
-pub type Failure = Box<dyn std::error::Error + Send + Sync>;
-
-/// What to hide, and where the table goes.
-#[derive(Debug, Parser)]
-pub struct Options {
-    /// Robots
-    #[arg(long, value_delimiter = ',', default_value = "tx40,cobot6,scara4")]
-    robots: Vec<String>,
-    /// Effects; `none` is a run without any [default: all of the catalogue, and none]
-    #[arg(long, value_delimiter = ',')]
-    effects: Vec<String>,
-    /// Sizes
-    #[arg(long, value_delimiter = ',', default_value = "small,medium,large")]
-    sizes: Vec<String>,
-    /// How many seeds; each has its own motions, joint, shape and noise
-    #[arg(long, default_value_t = 5)]
-    seeds: u64,
-    /// The first seed
-    #[arg(long, default_value_t = 1)]
-    first_seed: u64,
-    /// Hide two effects at once: each effect with another one of the list
-    #[arg(long)]
-    pairs: bool,
-    /// One motion of this duration, s, instead of one to three of 16 to 24 s together
-    #[arg(long)]
-    seconds: Option<f64>,
-    /// Threads; the result does not depend on them
-    #[arg(long, default_value_t = 2)]
-    threads: usize,
-    /// Markdown file for the tables [default: standard output]
-    #[arg(long)]
-    out: Option<PathBuf>,
-    /// Write down every finished run here, and take those that are there as done: a stopped test goes on
-    #[arg(long, conflicts_with_all = ["visible", "dump"])]
-    journal: Option<PathBuf>,
-    /// Simulate only, and write what can be seen of every effect
-    #[arg(long, conflicts_with = "dump")]
-    visible: bool,
-    /// Write the cases to this folder as a challenge, instead of diagnosing them
-    #[arg(long, conflicts_with = "out")]
-    dump: Option<PathBuf>,
-}
-
-/// One simulation and one diagnosis.
-#[derive(Debug, Clone)]
-pub struct Case {
-    /// Name of the robot.
-    pub robot: String,
-    /// What is hidden; empty for nothing.
-    pub effects: Vec<EffectKind>,
-    /// Index in [`SIZES`].
-    pub size: usize,
-    /// Seed.
-    pub seed: u64,
-    /// Duration of its one motion, s; `None` for one to three of the usual length.
-    pub seconds: Option<f64>,
-}
-
-impl Case {
-    /// What its folder is called.
-    pub fn name(&self) -> String {
-        let hidden: Vec<&str> = self.effects.iter().map(|e| e.id()).collect();
-        let hidden = if hidden.is_empty() { "none".to_owned() } else { hidden.join("+") };
-        let length = self.seconds.map_or_else(String::new, |s| format!("_{s}s"));
-        format!("{}_{hidden}_{}_{}{length}", self.robot, self.size_name(), self.seed)
-    }
-
-    fn size_name(&self) -> &'static str {
-        SIZES[self.size]
-    }
-}
-
-/// How a case ended.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Score {
-    /// What was hidden, and whether it was found: something on its joint, itself on its joint, or among what cannot
-    /// be told apart there.
-    pub hidden: Vec<(Hidden, Outcome)>,
-    /// Findings that are none of the hidden effects on its joint.
-    pub others: Vec<(String, Vec<usize>)>,
-    /// Effects found anywhere, each once.
-    pub found: Vec<String>,
-    /// Why there is no diagnosis.
-    pub refused: Option<String>,
-    /// Time of the diagnosis, s.
-    pub seconds: f64,
-    /// Time of simulation and diagnosis, s.
-    pub whole: f64,
-}
-
-impl Score {
-    fn not_simulated() -> Self {
-        Self { refused: Some("it could not be simulated".to_owned()), ..Self::default() }
-    }
-
-    /// Whether everything hidden was named, and nothing else.
-    pub fn solved(&self) -> bool {
-        self.refused.is_none() && self.others.is_empty() && self.hidden.iter().all(|(_, o)| o.named)
-    }
-}
-
-/// What became of a hidden effect.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Outcome {
-    /// Something was found on the joint.
-    pub detected: bool,
-    /// The effect itself was found on its joint.
-    pub named: bool,
-    /// The effect is among those that the diagnosis says it cannot tell apart there.
-    pub cannot_tell: bool,
-}
 
 fn main() -> Result<(), Failure> {
     let options = Options::parse();
@@ -293,54 +185,4 @@ fn in_parallel<T: Send>(
         }
     });
     results.into_inner().unwrap_or_default()
-}
-
-/// Simulates, diagnoses, and only then compares.
-fn score(case: &Case) -> Result<Score, Failure> {
-    let model = models::find(&case.robot).ok_or("no such robot")?;
-    let whole = Instant::now();
-    let recordings = recordings(model, case, false)?;
-    let mut settings = Settings::default();
-    settings.threads = 1;
-    let start = Instant::now();
-    let found = diagnose(model, &recordings.motions, &recordings.baseline, &settings, &Silent);
-    let mut score = Score { seconds: start.elapsed().as_secs_f64(), ..Score::default() };
-    match found {
-        Ok(found) => compare(&found, recordings.hidden, &mut score),
-        Err(refusal) => {
-            score.hidden = recordings.hidden.into_iter().map(|h| (h, Outcome::default())).collect();
-            score.refused = Some(refusal.to_string());
-        }
-    }
-    score.whole = whole.elapsed().as_secs_f64();
-    Ok(score)
-}
-
-fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
-    let here = |hidden: &Hidden, joints: &[usize]| {
-        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&(joint + 1)))
-    };
-    for finding in &found.findings {
-        if !score.found.contains(&finding.effect) {
-            score.found.push(finding.effect.clone());
-        }
-        if !hidden.iter().any(|h| finding.effect == h.effect.id() && here(h, &finding.joints)) {
-            score.others.push((finding.effect.clone(), finding.joints.clone()));
-        }
-    }
-    score.hidden = hidden
-        .into_iter()
-        .map(|h| {
-            let id = h.effect.id();
-            let outcome = Outcome {
-                detected: found.findings.iter().any(|f| here(&h, &f.joints)),
-                named: found.findings.iter().any(|f| f.effect == id && here(&h, &f.joints)),
-                cannot_tell: found
-                    .cannot_tell
-                    .iter()
-                    .any(|c| here(&h, &c.joints) && c.between.iter().any(|effect| effect == id)),
-            };
-            (h, outcome)
-        })
-        .collect();
 }

@@ -7,7 +7,7 @@ use dynid_runtime::simulation::excitation::{
 };
 use dynid_runtime::simulation::{LoopSettings, World, simulate};
 
-use crate::Failure;
+use crate::failure::Failure;
 use crate::hiding::of;
 use crate::random::Random;
 use crate::secret::Secret;

@@ -4,11 +4,13 @@ use std::fmt::Write;
 
 use dynid_runtime::effects::EffectKind;
 
+use crate::case::Case;
 use crate::hide::Hidden;
 use crate::hiding;
+use crate::options::Options;
+use crate::score::{Outcome, Score};
 use crate::size::SIZES;
 use crate::words::{about_sizes, command, hidden_in_words, line, median, others};
-use crate::{Case, Options, Outcome, Score};
 
 /// One row of input to the tables.
 type Pair<'a> = (&'a Case, &'a Score);

@@ -6,7 +6,7 @@ use dynid_runtime::effects::{ContactForce, EffectKind, EffectTerm, Place, TermSc
 use dynid_runtime::model::{Model, ParameterKind, Robot};
 use dynid_runtime::simulation::{ElasticJoint, World};
 
-use crate::Failure;
+use crate::failure::Failure;
 use crate::motions::SHARE;
 use crate::places::{inertias, lengths, of_joint};
 use crate::secret::Secret;

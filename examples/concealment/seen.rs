@@ -5,11 +5,12 @@ use std::fmt::Write;
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::report::significant;
 
+use crate::case::Case;
 use crate::hide::Hidden;
 use crate::hiding;
+use crate::options::Options;
 use crate::size::SIZES;
 use crate::words::{about_sizes, command, line, median};
-use crate::{Case, Options};
 
 /// What of every effect can be seen, robot by robot, and how much of it that takes.
 pub fn what_can_be_seen(

@@ -6,7 +6,7 @@ use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::signal::{Preparation, prepare_all};
 
-use crate::Failure;
+use crate::failure::Failure;
 
 /// Bands in which is looked, Hz: friction, loads and bodies; ripple and compliance.
 const BANDS: [f64; 2] = [25.0, 100.0];

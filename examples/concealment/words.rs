@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use crate::hide::Hidden;
+use crate::options::Options;
+use crate::score::{Outcome, Score};
 use crate::size::VISIBLE;
-use crate::{Options, Outcome, Score};
 
 /// What was hidden, with its magnitude and how much of it can be seen.
 pub fn hidden_in_words(hidden: &[Hidden]) -> String {

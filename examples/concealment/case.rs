@@ -1,0 +1,34 @@
+//! What is simulated and diagnosed.
+
+use dynid_runtime::effects::EffectKind;
+
+use crate::size::SIZES;
+
+/// One simulation and one diagnosis.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Name of the robot.
+    pub robot: String,
+    /// What is hidden; empty for nothing.
+    pub effects: Vec<EffectKind>,
+    /// Index in [`SIZES`].
+    pub size: usize,
+    /// Seed.
+    pub seed: u64,
+    /// Duration of its one motion, s; `None` for one to three of the usual length.
+    pub seconds: Option<f64>,
+}
+
+impl Case {
+    /// What its folder is called.
+    pub fn name(&self) -> String {
+        let hidden: Vec<&str> = self.effects.iter().map(|e| e.id()).collect();
+        let hidden = if hidden.is_empty() { "none".to_owned() } else { hidden.join("+") };
+        let length = self.seconds.map_or_else(String::new, |s| format!("_{s}s"));
+        format!("{}_{hidden}_{}_{}{length}", self.robot, self.size_name(), self.seed)
+    }
+
+    pub fn size_name(&self) -> &'static str {
+        SIZES[self.size]
+    }
+}

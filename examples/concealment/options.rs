@@ -1,0 +1,46 @@
+//! What a run is asked for.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+
+/// What to hide, and where the table goes.
+#[derive(Debug, Parser)]
+pub struct Options {
+    /// Robots
+    #[arg(long, value_delimiter = ',', default_value = "tx40,cobot6,scara4")]
+    pub robots: Vec<String>,
+    /// Effects; `none` is a run without any [default: all of the catalogue, and none]
+    #[arg(long, value_delimiter = ',')]
+    pub effects: Vec<String>,
+    /// Sizes
+    #[arg(long, value_delimiter = ',', default_value = "small,medium,large")]
+    pub sizes: Vec<String>,
+    /// How many seeds; each has its own motions, joint, shape and noise
+    #[arg(long, default_value_t = 5)]
+    pub seeds: u64,
+    /// The first seed
+    #[arg(long, default_value_t = 1)]
+    pub first_seed: u64,
+    /// Hide two effects at once: each effect with another one of the list
+    #[arg(long)]
+    pub pairs: bool,
+    /// One motion of this duration, s, instead of one to three of 16 to 24 s together
+    #[arg(long)]
+    pub seconds: Option<f64>,
+    /// Threads; the result does not depend on them
+    #[arg(long, default_value_t = 2)]
+    pub threads: usize,
+    /// Markdown file for the tables [default: standard output]
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Write down every finished run here, and take those that are there as done: a stopped test goes on
+    #[arg(long, conflicts_with_all = ["visible", "dump"])]
+    pub journal: Option<PathBuf>,
+    /// Simulate only, and write what can be seen of every effect
+    #[arg(long, conflicts_with = "dump")]
+    pub visible: bool,
+    /// Write the cases to this folder as a challenge, instead of diagnosing them
+    #[arg(long, conflicts_with = "out")]
+    pub dump: Option<PathBuf>,
+}

@@ -1,0 +1,101 @@
+//! A case is simulated and diagnosed, and what was found is compared with what was hidden.
+
+use std::time::Instant;
+
+use dynid::models;
+use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
+use serde::{Deserialize, Serialize};
+
+use crate::case::Case;
+use crate::failure::Failure;
+use crate::hide::{Hidden, recordings};
+
+/// How a case ended.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Score {
+    /// What was hidden, and whether it was found: something on its joint, itself on its joint, or among what cannot
+    /// be told apart there.
+    pub hidden: Vec<(Hidden, Outcome)>,
+    /// Findings that are none of the hidden effects on its joint.
+    pub others: Vec<(String, Vec<usize>)>,
+    /// Effects found anywhere, each once.
+    pub found: Vec<String>,
+    /// Why there is no diagnosis.
+    pub refused: Option<String>,
+    /// Time of the diagnosis, s.
+    pub seconds: f64,
+    /// Time of simulation and diagnosis, s.
+    pub whole: f64,
+}
+
+impl Score {
+    pub fn not_simulated() -> Self {
+        Self { refused: Some("it could not be simulated".to_owned()), ..Self::default() }
+    }
+
+    /// Whether everything hidden was named, and nothing else.
+    pub fn solved(&self) -> bool {
+        self.refused.is_none() && self.others.is_empty() && self.hidden.iter().all(|(_, o)| o.named)
+    }
+}
+
+/// What became of a hidden effect.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// Something was found on the joint.
+    pub detected: bool,
+    /// The effect itself was found on its joint.
+    pub named: bool,
+    /// The effect is among those that the diagnosis says it cannot tell apart there.
+    pub cannot_tell: bool,
+}
+
+/// Simulates, diagnoses, and only then compares.
+pub fn score(case: &Case) -> Result<Score, Failure> {
+    let model = models::find(&case.robot).ok_or("no such robot")?;
+    let whole = Instant::now();
+    let recordings = recordings(model, case, false)?;
+    let mut settings = Settings::default();
+    settings.threads = 1;
+    let start = Instant::now();
+    let found = diagnose(model, &recordings.motions, &recordings.baseline, &settings, &Silent);
+    let mut score = Score { seconds: start.elapsed().as_secs_f64(), ..Score::default() };
+    match found {
+        Ok(found) => compare(&found, recordings.hidden, &mut score),
+        Err(refusal) => {
+            score.hidden = recordings.hidden.into_iter().map(|h| (h, Outcome::default())).collect();
+            score.refused = Some(refusal.to_string());
+        }
+    }
+    score.whole = whole.elapsed().as_secs_f64();
+    Ok(score)
+}
+
+fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
+    let here = |hidden: &Hidden, joints: &[usize]| {
+        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&(joint + 1)))
+    };
+    for finding in &found.findings {
+        if !score.found.contains(&finding.effect) {
+            score.found.push(finding.effect.clone());
+        }
+        if !hidden.iter().any(|h| finding.effect == h.effect.id() && here(h, &finding.joints)) {
+            score.others.push((finding.effect.clone(), finding.joints.clone()));
+        }
+    }
+    score.hidden = hidden
+        .into_iter()
+        .map(|h| {
+            let id = h.effect.id();
+            let outcome = Outcome {
+                detected: found.findings.iter().any(|f| here(&h, &f.joints)),
+                named: found.findings.iter().any(|f| f.effect == id && here(&h, &f.joints)),
+                cannot_tell: found
+                    .cannot_tell
+                    .iter()
+                    .any(|c| here(&h, &c.joints) && c.between.iter().any(|effect| effect == id)),
+            };
+            (h, outcome)
+        })
+        .collect();
+}
