@@ -7,6 +7,7 @@
 //! others, the Panda on the first 60 % of its motion and tested on the rest.
 
 mod figures;
+mod stories;
 mod story;
 mod tested;
 
@@ -21,7 +22,8 @@ use dynid_runtime::model::Model;
 use dynid_runtime::recording::{Manifest, Trajectory, load};
 use dynid_runtime::signal::{Preparation, prepare_all};
 
-use story::{Part, STORIES, Story, Told};
+use stories::{STORIES, Story};
+use story::{Part, Told};
 
 /// Anything that ends a run.
 pub type Failure = Box<dyn std::error::Error>;
