@@ -75,3 +75,88 @@ pub(super) fn corrected(
     let chi = chi.iter().zip(&missing).map(|(x, d)| x + d).collect();
     Ok(Some(Attenuation { of_information, chi, missing }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimation::observe::{Equations, ObserveSettings, Standstill, observe};
+    use crate::estimation::weights::equal;
+    use crate::estimation::weights::stack;
+    use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
+    use crate::signal::Motion;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// One vertical axis with an inertia of 2 and viscous friction 0.7, whose acceleration is measured with noise of
+    /// standard deviation `noise` in its rows.
+    fn observed(noise: f64, known: f64) -> Observation {
+        let frame = Frame {
+            parent: None,
+            kind: JointKind::Revolute,
+            gamma: 0.0,
+            b: 0.0,
+            alpha: 0.0,
+            d: 0.0,
+            theta: 0.0,
+            r: 0.0,
+        };
+        let drive = Drive { gear: vec![1.0].into(), coupled_friction: vec![].into() };
+        let mut robot =
+            Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![frame], drive, Limits::default());
+        robot.base = robot.base.iter().filter(|p| ["ZZ1", "Fv1"].contains(&&*p.name)).cloned().collect();
+        let model = RecursiveModel::new(robot).expect("a valid table");
+        let rate = 100.0;
+        let mut random = rand_pcg::Pcg64::seed_from_u64(9);
+        let time: Vec<f64> = (0..20_000).map(|k| f64::from(k) / rate).collect();
+        let speed: Vec<f64> = time.iter().map(|t| (2.0 * t).cos() + 1.5 * (5.1 * t).cos()).collect();
+        let true_acceleration: Vec<f64> =
+            time.iter().map(|t| -2.0 * (2.0 * t).sin() - 7.65 * (5.1 * t).sin()).collect();
+        let torque = true_acceleration.iter().zip(&speed).map(|(a, v)| 2.0 * a + 0.7 * v).collect();
+        let measured = true_acceleration
+            .iter()
+            .map(|a| {
+                let draw: f64 = StandardNormal.sample(&mut random);
+                a + noise * draw
+            })
+            .collect();
+        let motion = Motion {
+            name: "axis".into(),
+            rate,
+            start: 0.0,
+            q: vec![vec![0.0; time.len()]],
+            dq: vec![speed],
+            ddq: vec![measured],
+            torque: vec![torque],
+            fixed: vec![],
+            edge_samples: 0,
+        };
+        let settings = ObserveSettings {
+            band: 50.0,
+            standstill: Standstill::Keep,
+            acceleration_noise: vec![known * known],
+            ..ObserveSettings::default()
+        };
+        observe(&model, &[motion], Equations::Torque, None, &settings, None).expect("rows")
+    }
+
+    #[test]
+    fn an_inertia_that_noise_has_made_smaller_is_given_back() {
+        let observation = observed(3.0, 3.0);
+        let sigma = equal(&observation).sigma;
+        let stacked = stack(&observation, &sigma);
+        let biased = stacked.solve().chi;
+        assert!(biased[0] < 1.6, "{biased:?}");
+        let found = corrected(&observation, &[0, 1], &sigma, &stacked, &biased).expect("little noise");
+        let found = found.expect("known noise").chi;
+        assert!((found[0] - 2.0).abs() < 0.05 && (found[1] - 0.7).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn noise_that_drowns_the_motion_is_no_correction() {
+        let observation = observed(3.0, 9.0);
+        let sigma = equal(&observation).sigma;
+        let stacked = stack(&observation, &sigma);
+        let chi = stacked.solve().chi;
+        assert_eq!(corrected(&observation, &[0, 1], &sigma, &stacked, &chi).err(), Some(Drowned));
+    }
+}

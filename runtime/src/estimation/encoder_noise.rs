@@ -141,3 +141,63 @@ fn add_octaves(octaves: &mut Vec<[f64; 2]>, position: &[f64], rate: f64) -> Resu
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::Motion;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    const RATE: f64 = 1000.0;
+
+    /// A joint that swings by `swing` at 1 Hz, with white position noise of standard deviation `noise`.
+    fn joint(swing: f64, noise: f64) -> Trajectory {
+        let mut random = rand_pcg::Pcg64::seed_from_u64(2);
+        let n = 30_000;
+        let time: Vec<f64> = (0..n).map(|k| k as f64 / RATE).collect();
+        let position = time
+            .iter()
+            .map(|t| {
+                let draw: f64 = StandardNormal.sample(&mut random);
+                swing * (std::f64::consts::TAU * t).sin() + noise * draw
+            })
+            .collect();
+        Trajectory {
+            name: "swing".into(),
+            time,
+            position: vec![position],
+            velocity: None,
+            torque: vec![vec![0.0; n]],
+            fixed: vec![],
+        }
+    }
+
+    #[test]
+    fn white_noise_is_found_under_a_motion() {
+        let found = EncoderNoise::of(&[joint(1.0, 1e-4)]).expect("uniform time").density[0];
+        let expected = 2.0 * 1e-8 / RATE;
+        assert!((found / expected - 1.0).abs() < 0.1, "{found} {expected}");
+    }
+
+    #[test]
+    fn its_part_of_the_accelerations_is_what_the_filters_leave() {
+        let noise = EncoderNoise { density: vec![2.0 * 1e-8 / RATE] };
+        let settings = ObserveSettings { band: 25.0, ..ObserveSettings::default() };
+        let preparation = Preparation { cutoff: Some(50.0), ..Preparation::default() };
+        let expected = noise.in_accelerations(RATE, &preparation, &settings).expect("filters")[0];
+        let Motion { ddq, edge_samples, .. } = prepare(&joint(0.0, 1e-4), &preparation).expect("long enough");
+        let decimator = Decimator::with_band(20, 1.0).expect("valid");
+        let mut rows = vec![0.0; 2000];
+        let count = decimator.decimate_run(&ddq[0][edge_samples..30_000 - edge_samples], &mut rows);
+        let variance = rows[..count].iter().map(|x| x * x).sum::<f64>() / count as f64;
+        assert!((variance / expected - 1.0).abs() < 0.15, "{variance} {expected}");
+    }
+
+    #[test]
+    fn recorded_velocities_say_nothing_of_the_noise_of_accelerations() {
+        let mut trajectory = joint(1.0, 1e-4);
+        trajectory.velocity = Some(trajectory.position.clone());
+        assert!(EncoderNoise::of(&[trajectory]).expect("uniform time").density.is_empty());
+    }
+}

@@ -212,3 +212,68 @@ fn innovations_in_common(all: &[Series], noise: &[Autoregression], fit: &Fit) ->
         }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_pcg::Pcg64;
+
+    const ROWS: usize = 400;
+    const RHO: f64 = 0.8;
+
+    /// One equation with slow columns, as those of a robot that moves slowly, and AR(1) noise of variance 1.
+    fn series(seed: u64) -> Series {
+        let mut random = Pcg64::seed_from_u64(seed);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut error = draw();
+        let y = (0..ROWS)
+            .map(|_| {
+                let now = error;
+                error = RHO * error + (1.0 - RHO * RHO).sqrt() * draw();
+                now
+            })
+            .collect();
+        let w = DMatrix::from_fn(ROWS, 12, |t, c| {
+            let phase = std::f64::consts::PI * (t as f64 + 0.5) / ROWS as f64;
+            (c as f64 * phase).cos()
+        });
+        Series {
+            group: 0,
+            equation: 0,
+            trajectory: 0,
+            places: (0..12).collect(),
+            w,
+            y,
+            used: vec![true; ROWS],
+            segments: vec![0..ROWS],
+        }
+    }
+
+    #[test]
+    fn noise_at_the_frequencies_of_the_columns_is_not_lost_with_them() {
+        let first = series(0);
+        let column: Vec<f64> = first.w.column(3).iter().copied().collect();
+        let mut expected = 0.0;
+        for s in 0..ROWS {
+            for t in 0..ROWS {
+                expected += column[s] * column[t] * RHO.powi(s.abs_diff(t) as i32);
+            }
+        }
+        let seeds = 40;
+        let (mut found, mut plain) = (0.0, 0.0);
+        for seed in 0..seeds {
+            let all = [series(seed)];
+            let noise = Noise::of(&all, 12).expect("independent columns");
+            let weights = noise.equations[0].weights_of_innovations(&column, 200);
+            found += weights.iter().map(|z| z * z).sum::<f64>().ln() / seeds as f64;
+            // What the residuals show without what the fit took.
+            let fit = Fit::of(&all, &[Autoregression::white(1.0)], 12).expect("independent columns");
+            let left: f64 = all[0].residual(&fit.chi).iter().zip(&column).map(|(e, w)| e * w).sum();
+            plain += left * left / seeds as f64;
+        }
+        assert!((found.exp() / expected).ln().abs() < 0.25, "{} {expected}", found.exp());
+        assert!(plain < 1e-6 * expected);
+    }
+}
