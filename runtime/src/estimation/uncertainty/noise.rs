@@ -247,7 +247,7 @@ mod tests {
             w,
             y,
             used: vec![true; ROWS],
-            segments: vec![0..ROWS],
+            segments: std::iter::once(0..ROWS).collect(),
         }
     }
 
