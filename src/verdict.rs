@@ -5,9 +5,11 @@ use std::path::Path;
 use dynid_runtime::estimation::Estimate;
 use dynid_runtime::estimation::observe::Observation;
 use dynid_runtime::model::{JointIndex, Robot};
-use dynid_runtime::plausibility::{AngleUnit, Instead, Judged, Signal, Verdict, judge};
+use dynid_runtime::plausibility::{
+    AngleUnit, ChannelFault, Instead, Judged, Signal, Verdict, faulty_channel, judge,
+};
 use dynid_runtime::recording::Side;
-use dynid_runtime::report::percent;
+use dynid_runtime::report::{percent, significant};
 
 use crate::failure::Failure;
 use crate::models;
@@ -32,6 +34,13 @@ pub fn check(
         motor_side: recorded.side == Side::Motor,
     };
     let robot = model.robot();
+    if let Some(fault) = faulty_channel(robot, &recorded.motions) {
+        return Err(Failure::Data(format!(
+            "{}: {}. (--implausible identifies all the same)",
+            path.display(),
+            fault_words(&fault, robot)
+        )));
+    }
     let refused = |words: String| {
         Err(Failure::Data(format!("{}: {words}. (--implausible identifies all the same)", path.display())))
     };
@@ -67,6 +76,46 @@ pub fn check(
             percent(free)
         ))),
         _ => Ok(None),
+    }
+}
+
+/// What is wrong with a channel, and what to look at.
+fn fault_words(fault: &ChannelFault, robot: &Robot) -> String {
+    let number = |joint: JointIndex| robot.joint_number(joint);
+    let same = |what: &str, [a, b]: [JointIndex; 2]| {
+        let (a, b) = (number(a), number(b));
+        format!(
+            "joints {a} and {b} have the same {what} in every row: one column is given twice. Look at `columns`"
+        )
+    };
+    match fault {
+        ChannelFault::ConstantTorque { joint, value } => format!(
+            "the torque of joint {} is {} in every row while the joint moves: the channel is not connected, or `columns` \
+             names another one",
+            number(*joint),
+            significant(*value, 4)
+        ),
+        ChannelFault::SameTorque { joints } => same("torque", *joints),
+        ChannelFault::SamePosition { joints } => same("position", *joints),
+        ChannelFault::Slow { step } => format!(
+            "its rows are {} s apart, which no motion of a robot is seen at. Are the times in ms? Look at `time: unit`",
+            significant(*step, 3)
+        ),
+        ChannelFault::TooFast { joint, speed, limit } => format!(
+            "joint {} is faster than {} for half of the time, and its limit is {} (rad/s or m/s): the unit of the angles or \
+             of the times is another one",
+            number(*joint),
+            significant(*speed, 3),
+            significant(*limit, 3)
+        ),
+        ChannelFault::TooStrong { joint, torque, limit } => format!(
+            "the torque of joint {} is above {} for half of the time, and its limit is {} (N.m or N): its unit, its gain or \
+             the side of the gear is another one",
+            number(*joint),
+            significant(*torque, 3),
+            significant(*limit, 3)
+        ),
+        _ => "a channel cannot be right".to_owned(),
     }
 }
 

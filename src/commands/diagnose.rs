@@ -148,6 +148,9 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
             value,
             sigma: Some(sigma).filter(|s| s.is_finite() && *s > 0.0),
             relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
+            sigma_white: None,
+            correction: None,
+            doubt: None,
             sigma_blocks: None,
             unit: base.unit.to_string(),
         })

@@ -99,8 +99,7 @@ fn identify(
             ..EstimateSettings::for_method(arguments.method)
         },
     );
-    let determined = estimate.parameters.iter().filter(|p| p.sigma.is_some()).count();
-    if estimate.rows <= determined {
+    if estimate.degrees_of_freedom == 0 {
         return Err(Failure::Data(format!(
             "{}: {} equations cannot determine {} parameters: record longer, or raise --band",
             arguments.recording.recording.display(),
@@ -173,6 +172,11 @@ fn summary(
     for (joint, error) in identified.per_joint.iter().enumerate() {
         text.push_str(&format!(" {}: {}", joint_number(robot, joint), percent(*error)));
     }
+    for p in &identified.base_parameters {
+        if let Some(doubt) = &p.doubt {
+            text.push_str(&format!("\n! {} is {doubt}", p.name));
+        }
+    }
     for warning in &identified.warnings {
         text.push_str(&format!("\nwarning: {warning}"));
     }
@@ -195,23 +199,23 @@ fn parameters(robot: &dynid_runtime::model::Robot, identified: &Identified, rela
             row
         })
         .collect();
-    let mut header = vec!["<parameter", "value", "sigma", "sigma %", "sigma by blocks", "<unit", "essential"];
+    let mut header = vec!["<parameter", "value", "sigma", "sigma %", "sigma, white", "<unit", "essential"];
     if relations {
         header.push("<");
     }
     table(&header, rows)
 }
 
-/// Name, value, sigma, relative sigma, sigma by blocks and unit as text.
+/// Name, value, sigma, relative sigma, sigma for white noise and unit as text.
 pub(crate) fn cells(p: &NamedParameter) -> Vec<String> {
     let optional =
         |value: Option<f64>, digits| value.map_or_else(|| "-".to_owned(), |v| significant(v, digits));
     vec![
         p.name.clone(),
-        significant(p.value, 4),
+        format!("{}{}", significant(p.value, 4), if p.doubt.is_some() { " !" } else { "" }),
         optional(p.sigma, 2),
         optional(p.relative_sigma_percent, 2),
-        optional(p.sigma_blocks, 2),
+        optional(p.sigma_white, 2),
         p.unit.clone(),
     ]
 }

@@ -39,11 +39,12 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
         significant(identified.band, 3)
     ));
     page.heading("Base parameters");
-    page.table(
-        &["parameter", "value", "sigma", "sigma %", "sigma by blocks", "<unit"],
-        &parameters(identified),
+    page.table(&["parameter", "value", "sigma", "sigma %", "sigma, white", "<unit"], &parameters(identified));
+    page.note(
+        "sigma is for errors that last, as the residuals show it, and holds what noise of the encoders may have taken away: \
+         value ± 1.96 sigma contains the truth in 95 of 100 recordings. The white one is for errors that are independent from \
+         row to row.",
     );
-    page.note("sigma assumes errors that are independent from row to row; sigma by blocks does not.");
     if let Some(essential) = &identified.essential_parameters {
         page.subheading("Essential parameters");
         page.paragraph(&format!(

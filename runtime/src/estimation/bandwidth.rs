@@ -33,14 +33,23 @@ impl Bandwidth {
         (2.0 * band).min(Preparation::default_cutoff(rate))
     }
 
+    /// The widest of the bands that are chosen from up to a frequency, Hz; the narrowest where none is.
+    pub(crate) fn up_to(frequency: f64) -> f64 {
+        BANDS.into_iter().find(|&band| band <= frequency).unwrap_or(BANDS[BANDS.len() - 1])
+    }
+
     /// The position filter for a given band at the rate of the slowest trajectory; `None` where no rate is known.
     pub fn cutoff_of(band: f64, trajectories: &[Trajectory]) -> Option<f64> {
+        Self::rate_of(trajectories).map(|rate| Self::cutoff_for(band, rate))
+    }
+
+    /// The rate of the slowest trajectory, Hz; `None` where no rate is known.
+    pub(crate) fn rate_of(trajectories: &[Trajectory]) -> Option<f64> {
         let rate = |t: &Trajectory| match (t.time.first(), t.time.last()) {
             (Some(first), Some(last)) if last > first => Some((t.time.len() - 1) as f64 / (last - first)),
             _ => None,
         };
-        let slowest = trajectories.iter().filter_map(rate).min_by(f64::total_cmp);
-        slowest.map(|rate| Self::cutoff_for(band, rate))
+        trajectories.iter().filter_map(rate).min_by(f64::total_cmp)
     }
 }
 

@@ -13,10 +13,12 @@ pub(super) struct Elimination {
 /// Cancels the parameter with the largest relative standard deviation and solves again, until the largest is less
 /// than `r_sigma` times the smallest (the paper's V.B, after Gautier 1991 and Pham and Gautier 1991).
 ///
-/// `factor` has the unknowns `active`, whose columns are independent.
-pub(super) fn eliminate(factor: &Factor, active: &[usize], r_sigma: f64) -> Elimination {
+/// `factor` has the unknowns `active`, whose columns are independent; `inflation` is by how much the standard deviation of
+/// each is larger than (18) has it.
+pub(super) fn eliminate(factor: &Factor, active: &[usize], r_sigma: f64, inflation: &[f64]) -> Elimination {
     let mut kept = active.to_vec();
     let mut cancelled = Vec::new();
+    let mut inflation = inflation.to_vec();
     let mut reduced = factor.clone();
     while kept.len() > 1 {
         let (chi, variance) = back_substitute(&reduced);
@@ -24,7 +26,8 @@ pub(super) fn eliminate(factor: &Factor, active: &[usize], r_sigma: f64) -> Elim
         let relative: Vec<f64> = chi
             .iter()
             .zip(&variance)
-            .map(|(x, v)| if *x == 0.0 { f64::INFINITY } else { v.sqrt() / x.abs() })
+            .zip(&inflation)
+            .map(|((x, v), i)| if *x == 0.0 { f64::INFINITY } else { i * v.sqrt() / x.abs() })
             .collect();
         let smallest = relative.iter().copied().fold(f64::INFINITY, f64::min);
         let Some((worst, largest)) = relative.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
@@ -35,6 +38,7 @@ pub(super) fn eliminate(factor: &Factor, active: &[usize], r_sigma: f64) -> Elim
             break;
         }
         cancelled.push(kept.remove(worst));
+        inflation.remove(worst);
         let columns: Vec<usize> = (0..relative.len()).filter(|&l| l != worst).collect();
         reduced = reduced.select(&columns);
     }

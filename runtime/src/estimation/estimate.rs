@@ -2,6 +2,7 @@
 //! Equation numbers are those of Gautier and Briot.
 
 use super::Factor;
+use super::attenuation::{Attenuation, Drowned, UNCERTAINTY, corrected};
 use super::blocks::block_sigmas;
 use super::essential::eliminate;
 use super::observe::{Equations, Observation};
@@ -10,7 +11,8 @@ use super::residuals::{errors_of, per_equation, relative_error};
 use super::robust::reweight;
 use super::solve::{Solution, back_substitute};
 use super::total::{NoGenericSolution, total_least_squares};
-use super::weights::{Weights, equal, from_own_fits, iterate, solve_active, stack};
+use super::uncertainty::{Solved, variances};
+use super::weights::{Weights, by_equation, equal, from_own_fits, iterate, solve_active, stack};
 use crate::model::JointNumber;
 
 /// How parameters are estimated from an observation.
@@ -26,6 +28,8 @@ pub struct EstimateSettings {
     pub worst_condition: f64,
     /// Whether standard deviations by blocks of time are worked out.
     pub block_sigmas: bool,
+    /// Whether standard deviations for noise that lasts are worked out, where the observation has kept its rows.
+    pub lasting_noise: bool,
 }
 
 impl Default for EstimateSettings {
@@ -36,6 +40,7 @@ impl Default for EstimateSettings {
             r_sigma: Some(20.0),
             worst_condition: 1000.0,
             block_sigmas: true,
+            lasting_noise: true,
         }
     }
 }
@@ -53,8 +58,9 @@ impl EstimateSettings {
 
 /// Estimates the parameters of an observation (15), weighted or not, with standard deviations (16) to (19).
 ///
-/// What the data do not determine is named in the warnings and set to zero, never inverted. The standard deviations
-/// of a total least-squares estimate are those of least squares with its residual, to first order.
+/// What the data do not determine is named in the warnings and set to zero, never inverted. Total least squares has no
+/// standard deviations: those that it could state rest on errors of the columns that are independent and of one size,
+/// which those of one filtered position signal are not.
 pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estimate {
     let mut warnings = Vec::new();
     // Which columns are independent does not depend on the weights.
@@ -78,12 +84,38 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
         warnings.push(Warning::NoTotalSolution);
     }
 
+    let mut attenuation = None;
+    if settings.solver != Solver::Total {
+        match corrected(counted, &active, &weights.sigma, &stacked, &solution.chi) {
+            Ok(found) => attenuation = found,
+            Err(Drowned) => warnings.push(Warning::NoisyColumns),
+        }
+    }
+    if settings.solver == Solver::Total {
+        warnings.push(Warning::NoDeviations);
+    }
+    if let Some(attenuation) = &attenuation {
+        solution.chi.clone_from(&attenuation.chi);
+        solution.residual_norm = stacked.residual_norm(&attenuation.chi);
+    }
     let chi = spread(&solution.chi, &active, observation.unknowns.len());
     let noise = solution.residual_norm.powi(2) / (solution.degrees_of_freedom.max(1)) as f64;
     let by_blocks =
         if settings.block_sigmas { block_sigmas(counted, &active, &weights.sigma, &chi) } else { None };
-    let parameters =
-        described(observation, &active, &solution.chi, &solution.variance, noise, by_blocks.as_deref());
+    let known = settings.solver != Solver::Total;
+    let lasting = if known && settings.lasting_noise {
+        lasting_deviations(counted, &active, &weights, settings.weighted, attenuation.as_ref())
+    } else {
+        None
+    };
+    let deviations = Deviations {
+        known,
+        white: solution.variance.iter().map(|v| (noise * v).sqrt()).collect(),
+        blocks: by_blocks,
+        lasting,
+        corrections: attenuation.map(|a| a.missing),
+    };
+    let parameters = described(observation, &active, &solution.chi, &deviations);
     describe_dependence(observation, &everything, &mut warnings);
     if solution.condition > settings.worst_condition {
         warnings.push(Warning::BadlyConditioned {
@@ -91,11 +123,16 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
             parameters: strongest(observation, &solution.weakest, &active),
         });
     }
+    if settings.weighted {
+        warnings.extend(few_rows(observation));
+    }
     let errors = errors_of(observation, &chi, &weights.sigma, settings.weighted);
     let per_equation = per_equation(observation, &chi);
     warnings.extend(not_explained(observation, &per_equation));
-    let essential =
-        settings.r_sigma.map(|r_sigma| simplified(counted, &active, &weights, r_sigma, settings.weighted));
+    let essential = settings.r_sigma.map(|r_sigma| {
+        let inflation: Vec<f64> = (0..active.len()).map(|p| deviations.inflation(p)).collect();
+        simplified(counted, &active, &weights, r_sigma, settings.weighted, &inflation)
+    });
     Estimate {
         method: method_of(observation, settings),
         parameters,
@@ -112,6 +149,28 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
     }
 }
 
+/// Standard deviations for noise that lasts as the residuals show it; `None` where the rows were not kept.
+fn lasting_deviations(
+    counted: &Observation,
+    active: &[usize],
+    weights: &Weights,
+    weighted: bool,
+    attenuation: Option<&Attenuation>,
+) -> Option<Vec<f64>> {
+    counted.rows.as_ref()?;
+    // Equal weights are not those of the noise.
+    let own = (!weighted).then(|| iterate(counted, active, &from_own_fits(counted)));
+    let solved = Solved {
+        observation: counted,
+        unknowns: active,
+        instruments: active,
+        noise_of_columns: attenuation.map(|a| &a.of_information),
+        weights: &weights.sigma,
+        errors: own.as_ref().map_or(&weights.sigma, |own| &own.sigma),
+    };
+    variances(&solved).map(|all| all.iter().map(|v| v.sqrt()).collect())
+}
+
 /// Replaces the values of a least-squares solution by those of total least squares.
 fn solve_total(
     observation: &Observation,
@@ -124,6 +183,21 @@ fn solve_total(
     solution.residual_norm = stacked.residual_norm(&chi);
     solution.chi = chi;
     Ok(())
+}
+
+/// The equations with motions that have fewer rows than parameters.
+fn few_rows(observation: &Observation) -> Vec<Warning> {
+    let of_equation = |own: Vec<usize>| {
+        let short = |g: &&usize| {
+            let group = &observation.groups[**g];
+            group.factor.rows() <= group.columns.len()
+        };
+        let motions = own.iter().filter(short).count();
+        let equation = own.first().map_or(0, |&g| observation.groups[g].equation);
+        let joint = joint_of(observation, equation);
+        (motions > 0).then_some(Warning::FewRows { joint, motions, of: own.len() })
+    };
+    by_equation(observation).into_iter().filter_map(of_equation).collect()
 }
 
 /// The equations of which the model explains less than no model at all.
@@ -191,13 +265,41 @@ fn spread(values: &[f64], active: &[usize], unknowns: usize) -> Vec<f64> {
     chi
 }
 
+/// Standard deviations of the parameters that were solved for.
+struct Deviations {
+    /// Whether they mean anything.
+    known: bool,
+    /// For noise that is independent from row to row.
+    white: Vec<f64>,
+    /// By leaving out blocks of time.
+    blocks: Option<Vec<f64>>,
+    /// For noise that lasts as the residuals show it.
+    lasting: Option<Vec<f64>>,
+    /// What was added for noise in the columns.
+    corrections: Option<Vec<f64>>,
+}
+
+impl Deviations {
+    /// The one that claims least about the noise: that of noise that lasts, by blocks where the rows were not kept; with
+    /// that of the correction.
+    fn headline(&self, place: usize) -> f64 {
+        let of = |all: &Option<Vec<f64>>| all.as_ref().map(|all| all[place]);
+        let noise = of(&self.lasting).or(of(&self.blocks)).unwrap_or(self.white[place]);
+        noise.hypot(UNCERTAINTY * of(&self.corrections).unwrap_or(0.0))
+    }
+
+    /// By how much that is more than for noise that is independent from row to row.
+    fn inflation(&self, place: usize) -> f64 {
+        let ratio = self.headline(place) / self.white[place];
+        if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 }
+    }
+}
+
 fn described(
     observation: &Observation,
     active: &[usize],
     chi: &[f64],
-    variance: &[f64],
-    noise: f64,
-    by_blocks: Option<&[f64]>,
+    deviations: &Deviations,
 ) -> Vec<ParameterEstimate> {
     let mut parameters: Vec<ParameterEstimate> = observation
         .unknowns
@@ -206,16 +308,23 @@ fn described(
             name: name.clone(),
             value: 0.0,
             sigma: None,
+            sigma_white: None,
             sigma_blocks: None,
+            correction: None,
             relative_sigma_percent: None,
         })
         .collect();
     for (place, &l) in active.iter().enumerate() {
-        let sigma = (noise * variance[place]).sqrt();
         let parameter = &mut parameters[l];
         parameter.value = chi[place];
+        parameter.correction = deviations.corrections.as_ref().map(|c| c[place]);
+        if !deviations.known {
+            continue;
+        }
+        let sigma = deviations.headline(place);
         parameter.sigma = Some(sigma);
-        parameter.sigma_blocks = by_blocks.map(|s| s[place]);
+        parameter.sigma_white = Some(deviations.white[place]);
+        parameter.sigma_blocks = deviations.blocks.as_ref().map(|s| s[place]);
         parameter.relative_sigma_percent = Some(100.0 * sigma / chi[place].abs()).filter(|r| r.is_finite());
     }
     parameters
@@ -240,24 +349,41 @@ fn strongest(observation: &Observation, direction: &[f64], active: &[usize]) -> 
     shares.into_iter().map(|(_, l)| observation.unknowns[l].clone()).collect()
 }
 
+/// The simplified model; `inflation` is by how much the standard deviation of each active parameter is larger than (18)
+/// has it.
 fn simplified(
     observation: &Observation,
     active: &[usize],
     weights: &Weights,
     r_sigma: f64,
     weighted: bool,
+    inflation: &[f64],
 ) -> Essential {
     let stacked = stack(observation, &weights.sigma).select(active);
-    let elimination = eliminate(&stacked, active, r_sigma);
-    let weights = if weighted { iterate(observation, &elimination.kept, weights) } else { weights.clone() };
-    let reduced = stack(observation, &weights.sigma).select(&elimination.kept);
-    let (values, variance) = back_substitute(&reduced);
+    let elimination = eliminate(&stacked, active, r_sigma, inflation);
+    let kept = &elimination.kept;
+    let weights = if weighted { iterate(observation, kept, weights) } else { weights.clone() };
+    let reduced = stack(observation, &weights.sigma).select(kept);
+    let (mut values, variance) = back_substitute(&reduced);
     let freedom = reduced.rows().saturating_sub(values.len()).max(1) as f64;
     let noise = reduced.residual_norm(&values).powi(2) / freedom;
-    let chi = spread(&values, &elimination.kept, observation.unknowns.len());
-    let all = described(observation, &elimination.kept, &values, &variance, noise, None);
+    let attenuation = corrected(observation, kept, &weights.sigma, &reduced, &values).ok().flatten();
+    if let Some(attenuation) = &attenuation {
+        values.clone_from(&attenuation.chi);
+    }
+    let chi = spread(&values, kept, observation.unknowns.len());
+    let white: Vec<f64> = variance.iter().map(|v| (noise * v).sqrt()).collect();
+    let inflation_of = |l: &usize| active.binary_search(l).map_or(1.0, |p| inflation[p]);
+    let deviations = Deviations {
+        known: inflation.iter().all(|i| i.is_finite()),
+        lasting: Some(kept.iter().zip(&white).map(|(l, s)| s * inflation_of(l)).collect()),
+        white,
+        blocks: None,
+        corrections: attenuation.map(|a| a.missing),
+    };
+    let all = described(observation, kept, &values, &deviations);
     Essential {
-        parameters: elimination.kept.iter().map(|&l| all[l].clone()).collect(),
+        parameters: kept.iter().map(|&l| all[l].clone()).collect(),
         cancelled: elimination.cancelled.iter().map(|&l| observation.unknowns[l].clone()).collect(),
         relative_error: relative_error(observation, &chi),
     }

@@ -66,6 +66,7 @@ fn observation(unknowns: &[&str], dense: &[Dense], blocks: usize) -> Observation
         left_out: vec![LeftOut::default(); dense.len()],
         samples: 0,
         rows: None,
+        noise_of_columns: None,
     }
 }
 
@@ -136,10 +137,24 @@ fn weighted_least_squares_is_that_of_the_textbook() {
     let mut chi = DVector::zeros(5);
     for _ in 0..60 {
         let (w, y) = stacked(&dense, &sigma);
-        chi = (w.transpose() * &w).try_inverse().unwrap() * w.transpose() * &y;
-        for (s, d) in sigma.iter_mut().zip(&dense) {
-            let own = DVector::from_iterator(d.columns.len(), d.columns.iter().map(|&c| chi[c]));
-            *s = (&d.y - &d.w * own).norm() / (150.0 * (1.0 - 5.0 / 600.0_f64)).sqrt();
+        let inverse = (w.transpose() * &w).try_inverse().unwrap();
+        chi = &inverse * w.transpose() * &y;
+        // Squares and degrees of freedom of each group: rows less the trace of its part of the hat matrix.
+        let left: Vec<(f64, f64)> = sigma
+            .iter()
+            .zip(&dense)
+            .map(|(s, d)| {
+                let own = DVector::from_iterator(d.columns.len(), d.columns.iter().map(|&c| chi[c]));
+                let part = inverse.select_rows(&d.columns).select_columns(&d.columns);
+                let hat = &d.w * part * d.w.transpose() / (s * s);
+                ((&d.y - &d.w * own).norm_squared(), 150.0 - hat.trace())
+            })
+            .collect();
+        for (g, s) in sigma.iter_mut().enumerate() {
+            // The two motions of a joint lend each other one degree of freedom.
+            let joint = left.iter().zip(&dense).filter(|(_, d)| d.equation == dense[g].equation);
+            let (squares, freedom) = joint.fold((0.0, 0.0), |(a, b), (l, _)| (a + l.0, b + l.1));
+            *s = ((squares / freedom + left[g].0) / (1.0 + left[g].1)).sqrt();
         }
     }
     let (w, y) = stacked(&dense, &sigma);
@@ -148,7 +163,7 @@ fn weighted_least_squares_is_that_of_the_textbook() {
     for l in 0..5 {
         assert!((estimate.parameters[l].value - chi[l]).abs() < 1e-6 * chi[l].abs());
         let expected = (noise * gram[(l, l)]).sqrt();
-        assert!((estimate.parameters[l].sigma.unwrap() / expected - 1.0).abs() < 1e-4);
+        assert!((estimate.parameters[l].sigma_white.unwrap() / expected - 1.0).abs() < 1e-4);
     }
     assert_eq!(estimate.method, Method::IdimWls);
     assert_eq!((estimate.rows, estimate.degrees_of_freedom), (600, 595));
@@ -181,7 +196,7 @@ fn monte_carlo(memory: f64) -> Vec<[f64; 3]> {
         let estimate = estimate(&observation(&NAMES, &dense, 12), &plain());
         for (l, p) in estimate.parameters.iter().enumerate() {
             values[l].push(p.value);
-            sigmas[l][0] += p.sigma.unwrap() / runs as f64;
+            sigmas[l][0] += p.sigma_white.unwrap() / runs as f64;
             sigmas[l][1] += p.sigma_blocks.unwrap() / runs as f64;
         }
     }

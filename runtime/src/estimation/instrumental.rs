@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::observe::{Equations, ExtraColumns, Observation};
 use super::solve::RANK_TOLERANCE;
+use super::uncertainty::{Solved, variances};
 use super::weights::stack;
 use crate::model::{Model, States};
 use crate::signal::Motion;
@@ -62,7 +63,8 @@ impl ExtraColumns for Instruments<'_> {
 pub struct InstrumentalEstimate {
     /// The base parameters.
     pub chi: Vec<f64>,
-    /// Their standard deviations, for errors that are independent from row to row.
+    /// Their standard deviations: for errors that last where the observation has kept its rows, else for errors that are
+    /// independent from row to row.
     pub sigma: Vec<f64>,
 }
 
@@ -103,8 +105,8 @@ pub enum InstrumentalError {
     Singular,
 }
 
-/// Solves ZT W chi = ZT Y for an observation whose extra columns are [`Instruments`], with one sigma per group of the
-/// observation (as of a weighted estimate's errors; all ones for no weights).
+/// Solves ZT W chi = ZT Y for an observation whose extra columns are [`Instruments`], with the error of each group of the
+/// observation (as of a weighted estimate; all ones for no weights).
 ///
 /// No product of matrices is made: with the triangle of [Z W Y], ZT W = RzzT Rzw and ZT Y = RzzT rzy, so that
 /// Rzw chi = rzy.
@@ -113,7 +115,7 @@ pub enum InstrumentalError {
 /// An observation of the power model or without instruments; instruments that do not determine the parameters.
 pub fn instrumental_variables(
     observation: &Observation,
-    sigma: &[f64],
+    errors: &[f64],
 ) -> Result<InstrumentalEstimate, InstrumentalError> {
     let k = observation.base;
     if observation.equations != Equations::Torque {
@@ -124,7 +126,7 @@ pub fn instrumental_variables(
         return Err(InstrumentalError::Instruments { found, needed: k });
     }
     let order: Vec<usize> = (k..2 * k).chain(0..k).collect();
-    let factor = stack(observation, sigma).select(&order);
+    let factor = stack(observation, errors).select(&order);
     let norms = factor.column_norms();
     // Where an instrument adds nothing to those before it, its row of R says nothing about the instruments.
     if let Some(l) = (0..k).find(|&l| factor.r(l, l).abs() <= RANK_TOLERANCE * norms[l]) {
@@ -145,7 +147,19 @@ pub fn instrumental_variables(
     let all: Vec<f64> = std::iter::repeat_n(0.0, k).chain(chi.iter().copied()).collect();
     let freedom = factor.rows().saturating_sub(k).max(1) as f64;
     let noise = factor.residual_norm(&all) / freedom.sqrt();
-    let sigma = (0..k).map(|l| noise * inverse.row(l).norm() / scale[l]).collect();
+    let (parameters, instruments): (Vec<usize>, Vec<usize>) = ((0..k).collect(), (k..2 * k).collect());
+    let solved = Solved {
+        observation,
+        unknowns: &parameters,
+        instruments: &instruments,
+        noise_of_columns: None,
+        weights: errors,
+        errors,
+    };
+    let sigma = match variances(&solved) {
+        Some(variances) => variances.into_iter().map(f64::sqrt).collect(),
+        None => (0..k).map(|l| noise * inverse.row(l).norm() / scale[l]).collect(),
+    };
     Ok(InstrumentalEstimate { chi, sigma })
 }
 

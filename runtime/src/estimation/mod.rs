@@ -40,8 +40,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod attenuation;
 mod bandwidth;
 mod blocks;
+mod encoder_noise;
 mod essential;
 mod estimate;
 mod factor;
@@ -56,9 +58,11 @@ mod residuals;
 mod robust;
 mod solve;
 mod total;
+mod uncertainty;
 mod weights;
 
 pub use bandwidth::{Bandwidth, choose_bandwidth};
+pub use encoder_noise::EncoderNoise;
 pub use estimate::{EstimateSettings, estimate};
 pub use factor::{BLOCK_ROWS, Factor};
 pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
@@ -67,6 +71,9 @@ pub use outcome::{
 };
 pub use physical::{PhysicalFit, physical_fit};
 pub use piecewise::Piecewise;
-pub use recorded::{ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording};
+pub use recorded::{
+    ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording,
+    observe_trajectories,
+};
 pub use residuals::{errors_against, per_equation, relative_error};
 pub use solve::{RANK_TOLERANCE, Solution};

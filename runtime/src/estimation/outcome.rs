@@ -103,12 +103,19 @@ pub struct ParameterEstimate {
     pub name: String,
     /// SI; zero where the data do not determine it.
     pub value: f64,
-    /// Standard deviation (18), for errors that are independent from row to row, as the paper assumes. `None`
-    /// where the parameter is not determined.
+    /// Standard deviation, for errors that last as the residuals show it where the rows were kept, else by blocks of
+    /// time, and where there are too few of them `sigma_white`. `None` where the parameter is not determined.
     pub sigma: Option<f64>,
+    /// Standard deviation (18), for errors that are independent from row to row, as the paper assumes.
+    #[serde(default)]
+    pub sigma_white: Option<f64>,
     /// Standard deviation by leaving out one block of time after the other: right for errors that last up to half a
     /// second, as those of robots do. `None` where not determined or with fewer than five blocks.
     pub sigma_blocks: Option<f64>,
+    /// What was added to the value of least squares for the noise of the encoders in its columns; its uncertainty is part
+    /// of `sigma`. `None` where that noise is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correction: Option<f64>,
     /// 100 sigma / |value| (19).
     pub relative_sigma_percent: Option<f64>,
 }
@@ -174,8 +181,22 @@ pub enum Warning {
         /// Its relative error.
         relative_error: f64,
     },
+    /// Motions with fewer rows of an equation than it has parameters: their error is taken from the others.
+    FewRows {
+        /// Their joint; `None` for the power model.
+        joint: Option<JointNumber>,
+        /// How many motions.
+        motions: usize,
+        /// Of how many that have rows.
+        of: usize,
+    },
+    /// Total least squares: there are no standard deviations.
+    NoDeviations,
     /// Total least squares has no solution here; that of least squares is given.
     NoTotalSolution,
+    /// More than half of what tells some parameters apart is noise of the encoders: the parameters are not corrected
+    /// for it.
+    NoisyColumns,
     /// The iteration of the weights had not converged.
     NotConverged {
         /// Iterations made.
@@ -221,9 +242,31 @@ impl std::fmt::Display for Warning {
                 "the model does not explain the power of the joints (error {:.0} %)",
                 100.0 * relative_error
             ),
+            Warning::FewRows { joint, of: 1, .. } => write!(
+                f,
+                "{}: fewer equations than parameters, so that its own error says little (a longer motion or a wider \
+                 --band gives more)",
+                named(*joint)
+            ),
+            Warning::FewRows { joint, motions, of } => write!(
+                f,
+                "{}: {motions} of {of} motions have fewer equations than parameters, so that their own error says little; \
+                 their weights rest on all motions together (longer motions or a wider --band give more)",
+                named(*joint)
+            ),
+            Warning::NoDeviations => write!(
+                f,
+                "total least squares gives no standard deviations: its assumption, errors of the columns that are \
+                 independent and of one relative size, does not hold for columns that come from one position signal"
+            ),
             Warning::NoTotalSolution => {
                 write!(f, "total least squares has no solution here: the values are those of least squares")
             }
+            Warning::NoisyColumns => write!(
+                f,
+                "more than half of what tells some parameters apart is noise of the positions: inertias come out too small; \
+                 lower --band, or move faster"
+            ),
             Warning::NotConverged { iterations } => {
                 write!(f, "the weights had not converged after {iterations} iterations")
             }

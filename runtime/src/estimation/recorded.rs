@@ -1,7 +1,8 @@
 //! A recording from its files to observations: whole where it fits into memory, else piece by piece.
 
+use super::attenuation::UNCERTAINTY;
 use super::observe::{Equations, Observation, ObserveError, ObserveSettings, Progress, observe};
-use super::{Bandwidth, Piecewise, choose_bandwidth};
+use super::{Bandwidth, EncoderNoise, EstimateSettings, Piecewise, choose_bandwidth, estimate};
 use crate::model::Model;
 use crate::recording::{Loader, Manifest, RecordingError, RowReport, Trajectory};
 use crate::signal::{Motion, Preparation, SignalError, prepare_all};
@@ -34,7 +35,12 @@ impl RecordedSettings {
             }
         };
         let preparation = Preparation { cutoff: self.cutoff.or(cutoff), ..Preparation::default() };
-        Ok((preparation, ObserveSettings { band, ..self.rows.clone() }))
+        let mut rows = ObserveSettings { band, ..self.rows.clone() };
+        if let Some(rate) = Bandwidth::rate_of(trajectories) {
+            rows.acceleration_noise =
+                EncoderNoise::of(trajectories)?.in_accelerations(rate, &preparation, &rows)?;
+        }
+        Ok((preparation, rows))
     }
 }
 
@@ -113,15 +119,8 @@ pub fn observe_recording(
     }
     if !long {
         let trajectories: Vec<Trajectory> = first.into_iter().map(|(_, piece)| piece).collect();
-        let (preparation, settings) = settings.chosen(&trajectories)?;
-        let (motions, too_short) = prepare_all(&trajectories, &preparation)?;
-        let observations = equations
-            .iter()
-            .map(|&equations| observe(model, &motions, equations, None, &settings, progress))
-            .collect::<Result<_, _>>()?;
-        let left_out = too_short.iter().map(SignalError::to_string).collect();
-        let rows = pieces.loader.into_report();
-        return Ok(ObservedRecording { observations, motions, whole: true, settings, rows, left_out });
+        let observed = observe_trajectories(&trajectories, model, equations, settings, progress)?;
+        return Ok(ObservedRecording { rows: pieces.loader.into_report(), ..observed });
     }
     let first: Vec<Trajectory> =
         first.into_iter().map(|(window, piece)| pieces.named(window, piece)).collect();
@@ -133,6 +132,81 @@ pub fn observe_recording(
     let (observations, left_out) = all.finish()?;
     let rows = pieces.loader.into_report();
     Ok(ObservedRecording { observations, motions, whole: false, settings, rows, left_out })
+}
+
+/// A correction for the noise of the encoders may be this share of the standard deviation beside it: what is not known
+/// of it then makes that deviation larger by less than a twentieth.
+const CORRECTION: f64 = 0.5;
+
+/// Observes trajectories that fit into memory, and keeps the rows.
+///
+/// Where no band is asked for it is the one of [`choose_bandwidth`], or a narrower one: accelerations are noisy by the
+/// fourth power of the frequency, and what that noise takes away from the inertias is given back, but not for certain.
+/// The band is narrowed until the correction is at most half a standard deviation of each parameter of the first
+/// equations.
+///
+/// # Errors
+/// Trajectories that cannot be filtered or observed.
+pub fn observe_trajectories(
+    trajectories: &[Trajectory],
+    model: &dyn Model,
+    equations: &[Equations],
+    settings: &RecordedSettings,
+    progress: Option<Progress<'_>>,
+) -> Result<ObservedRecording, ObserveError> {
+    let observed = |settings: &RecordedSettings| {
+        let (preparation, rows) = settings.chosen(trajectories)?;
+        let rows = ObserveSettings { keep_rows: true, ..rows };
+        let (motions, too_short) = prepare_all(trajectories, &preparation)?;
+        let observations = equations
+            .iter()
+            .map(|&equations| observe(model, &motions, equations, None, &rows, progress))
+            .collect::<Result<_, ObserveError>>()?;
+        let left_out = too_short.iter().map(SignalError::to_string).collect();
+        let settings = ObserveSettings { keep_rows: settings.rows.keep_rows, ..rows };
+        let rows = RowReport::default();
+        Ok::<_, ObserveError>(ObservedRecording {
+            observations,
+            motions,
+            whole: true,
+            settings,
+            rows,
+            left_out,
+        })
+    };
+    let mut widest = observed(settings)?;
+    if settings.band.is_some() {
+        return Ok(widest);
+    }
+    // Noise in WT W grows with the fifth power of the band, so that once is enough but for rounding.
+    for _ in 0..2 {
+        let ratio = widest.observations.first().map_or(0.0, largest_correction);
+        let band = widest.settings.band;
+        let narrower = Bandwidth::up_to(band * (CORRECTION / ratio).powf(0.2));
+        if ratio <= CORRECTION || narrower >= band {
+            break;
+        }
+        // Short motions may have no rows in a narrow band.
+        let Ok(next) = observed(&RecordedSettings { band: Some(narrower), ..settings.clone() }) else {
+            break;
+        };
+        widest = next;
+    }
+    Ok(widest)
+}
+
+/// The largest correction for the noise of the encoders, in units of the standard deviation beside it.
+fn largest_correction(observation: &Observation) -> f64 {
+    if observation.noise_of_columns.is_none() {
+        return 0.0;
+    }
+    let settings = EstimateSettings { r_sigma: None, block_sigmas: false, ..EstimateSettings::default() };
+    let ratios = estimate(observation, &settings).parameters.into_iter().filter_map(|p| {
+        let correction = p.correction?.abs();
+        let beside = p.sigma?.powi(2) - (UNCERTAINTY * correction).powi(2);
+        (beside > 0.0).then(|| correction / beside.sqrt())
+    });
+    ratios.fold(0.0, f64::max)
 }
 
 /// The pieces of a recording that have rows within a window of time.

@@ -53,6 +53,7 @@ pub(super) fn reweight(observation: &Observation, active: &[usize]) -> Reweighte
             })
         })
         .collect();
+    scale_rows(&mut scaled, &weights);
     Reweighted { observation: scaled, low, iterations, converged }
 }
 
@@ -108,4 +109,20 @@ fn scale(observation: &Observation, weights: &[Vec<f64>]) -> Observation {
         }
     }
     scaled
+}
+
+/// The rows, where they were kept, multiplied by the root of the weight of their block.
+fn scale_rows(observation: &mut Observation, weights: &[Vec<f64>]) {
+    let Observation { rows: Some(rows), blocks, .. } = observation else { return };
+    for (block, weights) in blocks.iter().zip(weights) {
+        for rows in rows.iter_mut().filter(|r| r.trajectory == block.trajectory) {
+            let Some(weight) = weights.get(rows.equation).filter(|w| **w < 1.0) else { continue };
+            let count = rows.y.len();
+            let inside = |t: f64| t >= block.time[0] && t <= block.time[1];
+            for t in (0..count).filter(|&t| inside(rows.time[t])) {
+                rows.y[t] *= weight.sqrt();
+                rows.w.iter_mut().skip(t).step_by(count).for_each(|w| *w *= weight.sqrt());
+            }
+        }
+    }
 }

@@ -111,6 +111,14 @@ pub(super) fn back_substitute(factor: &Factor) -> (Vec<f64>, Vec<f64>) {
     (chi, variance)
 }
 
+/// (WT W)^-1 of a factor whose columns are known to be independent.
+pub(super) fn inverse_gram(factor: &Factor) -> DMatrix<f64> {
+    let k = factor.unknowns();
+    let r = DMatrix::from_fn(k, k, |i, l| factor.r(i, l));
+    let inverse = r.solve_upper_triangular(&DMatrix::identity(k, k)).unwrap_or_else(|| DMatrix::zeros(k, k));
+    &inverse * inverse.transpose()
+}
+
 /// Column order of the pivoted QR and the number of columns that are independent.
 fn independent(scaled: &DMatrix<f64>) -> (Vec<usize>, usize) {
     let k = scaled.ncols();

@@ -2,8 +2,10 @@
 //! Equation numbers are those of Gautier and Briot.
 
 use super::observe::{EquationFactor, Observation};
-use super::solve::back_substitute;
+use super::solve::{back_substitute, inverse_gram};
+use super::uncertainty::{Prior, Squares};
 use super::{Factor, RANK_TOLERANCE};
+use nalgebra::DMatrix;
 
 /// Largest relative change of a sigma at which the weights have converged.
 const CONVERGED: f64 = 1e-4;
@@ -16,6 +18,8 @@ const FLOOR: f64 = 1e-10;
 #[derive(Debug, Clone)]
 pub(super) struct Weights {
     pub sigma: Vec<f64>,
+    /// For each group the degrees of freedom that the fit leaves in it.
+    pub freedom: Vec<f64>,
     pub iterations: usize,
     pub converged: bool,
 }
@@ -33,58 +37,86 @@ pub(super) fn stack(observation: &Observation, sigma: &[f64]) -> Factor {
 
 /// Equal weights: ordinary least squares.
 pub(super) fn equal(observation: &Observation) -> Weights {
-    Weights { sigma: vec![1.0; observation.groups.len()], iterations: 0, converged: true }
+    let count = observation.groups.len();
+    Weights { sigma: vec![1.0; count], freedom: rows_of(observation), iterations: 0, converged: true }
 }
 
 /// The weights of (20): every equation is fitted alone, over all trajectories, and the error of each trajectory in
 /// that fit is its sigma.
 pub(super) fn from_own_fits(observation: &Observation) -> Weights {
-    let equations = observation.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
-    let mut sigma = vec![1.0; observation.groups.len()];
-    for equation in 0..equations {
-        let own: Vec<usize> =
-            (0..sigma.len()).filter(|&g| observation.groups[g].equation == equation).collect();
+    let mut weights = equal(observation);
+    for own in by_equation(observation) {
         let Some((&first, others)) = own.split_first() else { continue };
         let mut all = observation.groups[first].factor.clone();
         for &g in others {
             all.merge(&observation.groups[g].factor);
         }
         let independent = independent_columns(&all);
-        let (solved, _) = back_substitute(&all.select(&independent));
+        let reduced = all.select(&independent);
+        let (solved, _) = back_substitute(&reduced);
+        let inverse = inverse_gram(&reduced);
         let mut chi = vec![0.0; all.unknowns()];
         for (&l, x) in independent.iter().zip(solved) {
             chi[l] = x;
         }
-        let freedom = 1.0 - independent.len() as f64 / all.rows().max(1) as f64;
-        for &g in &own {
-            let factor = &observation.groups[g].factor;
-            sigma[g] = sigma_of(factor, factor.residual_norm(&chi), freedom, all.norm_y(), all.rows());
-        }
+        let squares: Vec<Squares> = own
+            .iter()
+            .map(|&g| {
+                let factor = &observation.groups[g].factor;
+                let places: Vec<(usize, usize)> =
+                    independent.iter().enumerate().map(|(place, &l)| (l, place)).collect();
+                squares(factor, factor.residual_norm(&chi), leverage(&gram(factor), &places, &inverse))
+            })
+            .collect();
+        settle(observation, &own, &squares, &mut weights);
     }
-    Weights { sigma, iterations: 0, converged: true }
+    weights
 }
 
 /// Iterates: weights give parameters, whose errors give weights, until both agree. `active` are the unknowns that
 /// are solved for; their columns are independent.
+///
+/// The errors of a group are counted against the degrees of freedom that the weighted fit leaves in it, which is its
+/// share of restricted maximum likelihood (Patterson and Thompson 1971), and its variance is moderated by those of the
+/// other trajectories of its joint: a trajectory with fewer rows than parameters would else be interpolated, and the
+/// smaller its error the larger its weight.
 pub(super) fn iterate(observation: &Observation, active: &[usize], start: &Weights) -> Weights {
-    let mut weights = Weights { sigma: start.sigma.clone(), iterations: 0, converged: false };
-    let rows: usize = observation.groups.iter().map(|g| g.factor.rows()).sum();
-    let freedom = 1.0 - active.len() as f64 / rows.max(1) as f64;
+    let mut weights = Weights { iterations: 0, converged: false, ..start.clone() };
+    let mut place = vec![None; observation.unknowns.len()];
+    for (p, &l) in active.iter().enumerate() {
+        place[l] = Some(p);
+    }
+    let grams: Vec<DMatrix<f64>> = observation.groups.iter().map(|g| gram(&g.factor)).collect();
+    let places: Vec<Vec<(usize, usize)>> = observation
+        .groups
+        .iter()
+        .map(|g| g.columns.iter().enumerate().filter_map(|(c, &u)| place[u].map(|p| (c, p))).collect())
+        .collect();
+    let equations = by_equation(observation);
     while weights.iterations < ITERATIONS && !weights.converged {
-        let chi = solve_active(observation, active, &weights.sigma);
-        let mut change = 0.0_f64;
-        for (group, sigma) in observation.groups.iter().zip(&mut weights.sigma) {
-            let factor = &group.factor;
-            if factor.rows() == 0 {
-                continue;
-            }
-            let residual = residual_norm(group, &chi);
-            let new = sigma_of(factor, residual, freedom, factor.norm_y(), factor.rows());
-            change = change.max((new / *sigma - 1.0).abs());
-            *sigma = new;
+        let stacked = stack(observation, &weights.sigma).select(active);
+        let (solved, _) = back_substitute(&stacked);
+        let inverse = inverse_gram(&stacked);
+        let mut chi = vec![0.0; observation.unknowns.len()];
+        for (&l, x) in active.iter().zip(solved) {
+            chi[l] = x;
         }
+        let before = weights.sigma.clone();
+        for own in &equations {
+            let squares: Vec<Squares> = own
+                .iter()
+                .map(|&g| {
+                    let group = &observation.groups[g];
+                    let leverage = leverage(&grams[g], &places[g], &inverse) / before[g].powi(2);
+                    squares(&group.factor, residual_norm(group, &chi), leverage)
+                })
+                .collect();
+            settle(observation, own, &squares, &mut weights);
+        }
+        let rows = |g: usize| observation.groups[g].factor.rows();
+        let change = (0..before.len()).filter(|&g| rows(g) > 0).map(|g| weights.sigma[g] / before[g] - 1.0);
+        weights.converged = change.fold(0.0, |m: f64, c| m.max(c.abs())) < CONVERGED;
         weights.iterations += 1;
-        weights.converged = change < CONVERGED;
     }
     weights
 }
@@ -105,15 +137,56 @@ pub(super) fn residual_norm(group: &EquationFactor, chi: &[f64]) -> f64 {
     group.factor.residual_norm(&own)
 }
 
-/// Root mean square of a residual, corrected for the share of freedom that the fit has left, and never so small
-/// that its inverse means nothing.
-fn sigma_of(factor: &Factor, residual: f64, freedom: f64, norm_y: f64, rows: usize) -> f64 {
-    let floor = FLOOR * norm_y / (rows.max(1) as f64).sqrt();
-    let own = residual / (factor.rows().max(1) as f64 * freedom.max(1e-3)).sqrt();
-    let sigma = own.max(floor);
-    if sigma > 0.0 { sigma } else { 1.0 }
+/// The groups of each equation.
+pub(super) fn by_equation(observation: &Observation) -> Vec<Vec<usize>> {
+    let equations = observation.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
+    let of = |equation| {
+        let groups = observation.groups.iter().enumerate();
+        groups.filter(|(_, g)| g.equation == equation && g.factor.rows() > 0).map(|(k, _)| k).collect()
+    };
+    (0..equations).map(of).collect()
 }
 
+fn rows_of(observation: &Observation) -> Vec<f64> {
+    observation.groups.iter().map(|g| g.factor.rows() as f64).collect()
+}
+
+/// WT W of a group.
+fn gram(factor: &Factor) -> DMatrix<f64> {
+    let k = factor.unknowns();
+    let r = DMatrix::from_fn(k + 1, k, |i, l| factor.r(i, l));
+    r.tr_mul(&r)
+}
+
+/// Trace of a group's part of the hat matrix, W A^-1 WT, for rows of weight one; `places` are (column of the group,
+/// place in A).
+fn leverage(gram: &DMatrix<f64>, places: &[(usize, usize)], inverse: &DMatrix<f64>) -> f64 {
+    let mut trace = 0.0;
+    for &(a, pa) in places {
+        for &(b, pb) in places {
+            trace += gram[(a, b)] * inverse[(pa, pb)];
+        }
+    }
+    trace
+}
+
+fn squares(factor: &Factor, residual: f64, leverage: f64) -> Squares {
+    let rows = factor.rows() as f64;
+    Squares { sum: residual * residual, freedom: (rows - leverage).clamp(0.0, rows) }
+}
+
+/// The standard deviations of the groups of one equation from their squares, never so small that their inverse means
+/// nothing.
+fn settle(observation: &Observation, own: &[usize], squares: &[Squares], weights: &mut Weights) {
+    let prior = Prior::of(squares);
+    for (&g, &squares) in own.iter().zip(squares) {
+        let factor = &observation.groups[g].factor;
+        let floor = FLOOR * factor.norm_y() / (factor.rows().max(1) as f64).sqrt();
+        let sigma = prior.map_or(0.0, |prior| prior.moderate(squares).sqrt()).max(floor);
+        weights.sigma[g] = if sigma > 0.0 { sigma } else { 1.0 };
+        weights.freedom[g] = squares.freedom;
+    }
+}
 /// Columns that do not depend on those before them, ascending.
 fn independent_columns(factor: &Factor) -> Vec<usize> {
     let norms = factor.column_norms();

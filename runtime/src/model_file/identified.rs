@@ -6,7 +6,7 @@ use super::fingerprint::fingerprint;
 use crate::effects::EffectTerm;
 use crate::estimation::observe::{LeftOut, Observation};
 use crate::estimation::{EquationError, Estimate, ParameterEstimate, Warning};
-use crate::model::Robot;
+use crate::model::{ParameterKind, Robot};
 use crate::prediction::{Errors, Evaluation};
 
 /// Version of the fields of [`Identified`]: raised when a reader of the version before would misread a file.
@@ -79,10 +79,20 @@ pub struct NamedParameter {
     pub name: String,
     /// SI.
     pub value: f64,
-    /// Standard deviation (18); `None` where the data do not determine the parameter.
+    /// Standard deviation, for errors that last and with what noise of the encoders may have taken away; `None` where the
+    /// data do not determine the parameter.
     pub sigma: Option<f64>,
     /// 100 sigma / |value| (19).
     pub relative_sigma_percent: Option<f64>,
+    /// What is wrong with the value where no robot can have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
+    /// Standard deviation (18) of the paper, for errors that are independent from row to row.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_white: Option<f64>,
+    /// What was added to the value for the noise of the encoders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correction: Option<f64>,
     /// Standard deviation from blocks of time, for errors that last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma_blocks: Option<f64>,
@@ -133,6 +143,9 @@ impl Identified {
             value: p.value,
             sigma: p.sigma,
             relative_sigma_percent: p.relative_sigma_percent,
+            sigma_white: p.sigma_white,
+            correction: p.correction,
+            doubt: doubt(robot, p),
             sigma_blocks: p.sigma_blocks,
             unit: robot
                 .base
@@ -225,6 +238,22 @@ impl Identified {
             })
             .collect()
     }
+}
+
+/// Why a value is none that a robot can have: a mass, a moment of inertia or a friction below zero, where nothing else is
+/// regrouped into it.
+fn doubt(robot: &Robot, p: &ParameterEstimate) -> Option<String> {
+    use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M, XX, YY, ZZ};
+    let base = robot.base.iter().find(|b| b.name == p.name)?;
+    let standard = robot.standard.get(base.standard)?;
+    let positive = matches!(standard.kind, M | XX | YY | ZZ | Ia | Fv | Fc | Fvm | Fcm);
+    if !positive || base.name != standard.name || p.value >= 0.0 {
+        return None;
+    }
+    Some(match p.sigma {
+        Some(sigma) if p.value > -2.0 * sigma => "below zero, but not more than its uncertainty".to_owned(),
+        _ => "below zero: no robot can have it".to_owned(),
+    })
 }
 
 /// What the rows of a recording say about a model.

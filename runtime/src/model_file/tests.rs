@@ -38,6 +38,9 @@ fn model() -> Identified {
         value: 1.5,
         sigma: Some(0.1),
         relative_sigma_percent: None,
+        sigma_white: None,
+        correction: None,
+        doubt: None,
         sigma_blocks: None,
         unit: String::new(),
     };

@@ -119,7 +119,12 @@ impl Instead {
         };
         let motions = judged.motions.iter().map(changed).collect::<Option<Vec<Motion>>>()?;
         let observation = observe(model, &motions, Equations::Torque, None, judged.settings, None).ok()?;
-        let settings = EstimateSettings { r_sigma: None, block_sigmas: false, ..EstimateSettings::default() };
+        let settings = EstimateSettings {
+            r_sigma: None,
+            block_sigmas: false,
+            lasting_noise: false,
+            ..EstimateSettings::default()
+        };
         physical_fit(model.robot(), &observation, &estimate(&observation, &settings))
     }
 

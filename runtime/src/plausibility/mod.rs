@@ -1,8 +1,10 @@
 //! Whether a recording can be one of the robot that it names: what physics says, and what would explain it better.
 
+mod channels;
 mod instead;
 mod judged;
 
+pub use channels::{ChannelFault, faulty_channel};
 pub use instead::{AngleUnit, Instead, Signal};
 pub use judged::Judged;
 

@@ -56,8 +56,8 @@ impl StandstillSpeeds {
     }
 
     /// For each joint, whether it moves at each kept row: faster than its threshold at the row, and without a
-    /// change of direction within `reach` samples to each side, where the decimator's weights lie (half its factor is
-    /// half of the main lobe). A joint declared fixed does not move.
+    /// change of direction within `reach` samples to each side, where the decimator's weights lie (its factor is half of
+    /// the main lobe: beyond it lie side lobes with a tenth of the weight). A joint declared fixed does not move.
     pub fn moving(&self, motion: &Motion, kept: &KeptRows, reach: usize) -> Vec<Vec<bool>> {
         let of_joint = |(j, dq): (usize, &Vec<f64>)| {
             let threshold = self.thresholds.get(j).copied().unwrap_or(0.0);

@@ -121,6 +121,9 @@ pub fn didim(
     let mut chi = start.to_vec();
     let mut changes: Vec<f64> = Vec::new();
     let mut last: Option<Estimate> = None;
+    // Simulated states have no noise to correct for; the noise of the torques shows in the rows.
+    let rows =
+        ObserveSettings { keep_rows: true, acceleration_noise: Vec::new(), ..settings.observe.clone() };
     for _ in 0..settings.iterations.max(1) {
         let motions = match simulated_motions(model, experiments, &chi) {
             Ok(motions) => motions,
@@ -130,7 +133,7 @@ pub fn didim(
                 return Ok(DidimEstimate { estimate, changes, converged: false, stopped });
             }
         };
-        let observation = observe(model, &motions, settings.equations, None, &settings.observe, None)?;
+        let observation = observe(model, &motions, settings.equations, None, &rows, None)?;
         let found = estimate(&observation, &settings.estimate);
         let next = found.chi();
         let change = relative_change(&found, &chi, &next);

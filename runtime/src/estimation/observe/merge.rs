@@ -3,6 +3,7 @@
 use super::error::ObserveError;
 use super::observation::{EquationFactor, Observation, TimeBlock};
 use super::select::LeftOut;
+use nalgebra::DMatrix;
 
 /// Most blocks of time of one trajectory: their factors are kept in memory.
 const MOST_BLOCKS: usize = 128;
@@ -39,10 +40,19 @@ impl Observation {
         self.bands = first.iter().map(|&k| self.bands[k]).collect();
         self.trajectories = names;
         let mut groups: Vec<EquationFactor> = Vec::with_capacity(self.groups.len());
-        for mut group in self.groups.drain(..) {
+        let mut noise: Vec<DMatrix<f64>> = Vec::new();
+        let added = self.noise_of_columns.take();
+        for (k, mut group) in self.groups.drain(..).enumerate() {
             group.trajectory = place[group.trajectory];
-            join(&mut groups, group);
+            let at = join(&mut groups, group);
+            if let Some(added) = added.as_ref().and_then(|all| all.get(k)) {
+                match noise.get_mut(at) {
+                    Some(own) => *own += added,
+                    None => noise.push(added.clone()),
+                }
+            }
         }
+        self.noise_of_columns = added.is_some().then_some(noise);
         self.groups = groups;
         let mut counts: Vec<LeftOut> = Vec::with_capacity(self.left_out.len());
         for mut piece in self.left_out.drain(..) {
@@ -100,12 +110,19 @@ impl Observation {
     }
 }
 
-/// Merges a factor into that of the same trajectory and equation, or adds it.
-fn join(groups: &mut Vec<EquationFactor>, group: EquationFactor) {
-    let same = |g: &&mut EquationFactor| (g.trajectory, g.equation) == (group.trajectory, group.equation);
-    match groups.iter_mut().find(same) {
-        Some(own) if group.factor.rows() > 0 => own.factor.merge(&group.factor),
-        Some(_) => {}
-        None => groups.push(group),
+/// Merges a factor into that of the same trajectory and equation, or adds it; its place.
+fn join(groups: &mut Vec<EquationFactor>, group: EquationFactor) -> usize {
+    let same = |g: &EquationFactor| (g.trajectory, g.equation) == (group.trajectory, group.equation);
+    match groups.iter().position(same) {
+        Some(place) => {
+            if group.factor.rows() > 0 {
+                groups[place].factor.merge(&group.factor);
+            }
+            place
+        }
+        None => {
+            groups.push(group);
+            groups.len() - 1
+        }
     }
 }

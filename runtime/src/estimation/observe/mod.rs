@@ -3,6 +3,7 @@
 mod block;
 mod error;
 mod merge;
+mod noise_of_columns;
 mod observation;
 mod prepared;
 // Its plans of rows are for the evaluator, which needs the feature.
@@ -62,6 +63,7 @@ pub fn observe(
         let grid = decimator.kept_rows(valid);
         let candidates = select::Candidates {
             trajectory,
+            drive: &model.robot().drive,
             motion,
             decimator: &decimator,
             grid,
@@ -105,6 +107,12 @@ pub fn observe(
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),
         rates: prepared.iter().map(|p| p.motion.rate / p.decimator.factor() as f64).collect(),
         bands: prepared.iter().map(|p| row_plan::band_of(&p.decimator, p.motion.rate)).collect(),
+        noise_of_columns: noise_of_columns::noise_of_columns(
+            model,
+            &prepared,
+            equations,
+            &settings.acceleration_noise,
+        ),
         groups,
         blocks,
         left_out: prepared.iter().flat_map(|p| p.selection.iter().map(numbered)).collect(),

@@ -5,6 +5,7 @@ use super::rows::Rows;
 use super::select::LeftOut;
 use super::settings::Equations;
 use crate::estimation::Factor;
+use nalgebra::DMatrix;
 
 /// The rows of one equation in one trajectory, or in one block of its time.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +56,9 @@ pub struct Observation {
     pub left_out: Vec<LeftOut>,
     /// Samples of the motions that were read, all joints counted once.
     pub samples: usize,
+    /// For each group, in the order of `groups`, what the noise of the accelerations is expected to have added to WT W of
+    /// its rows; where that noise is known.
+    pub noise_of_columns: Option<Vec<DMatrix<f64>>>,
     /// The decimated rows, in the order of `groups`, where they were asked for.
     pub rows: Option<Vec<Rows>>,
 }
@@ -85,6 +89,13 @@ impl Observation {
         self.groups.extend(other.groups);
         self.blocks.extend(other.blocks);
         self.left_out.extend(other.left_out);
+        self.noise_of_columns = match (self.noise_of_columns.take(), other.noise_of_columns) {
+            (Some(mut own), Some(theirs)) => {
+                own.extend(theirs);
+                Some(own)
+            }
+            _ => None,
+        };
         self.samples += other.samples;
         self.rows = match (self.rows.take(), other.rows) {
             (Some(mut own), Some(theirs)) => {

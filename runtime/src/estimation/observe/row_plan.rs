@@ -39,8 +39,15 @@ pub(crate) fn row_plans(
             check_shape(robot, motion)?;
             let decimator = decimator(motion.rate, settings)?;
             let grid = decimator.kept_rows(valid_samples(motion));
-            let candidates =
-                Candidates { trajectory, motion, decimator: &decimator, grid, detected: &detected, settings };
+            let candidates = Candidates {
+                trajectory,
+                drive: &robot.drive,
+                motion,
+                decimator: &decimator,
+                grid,
+                detected: &detected,
+                settings,
+            };
             let selection = select(&candidates, Equations::Torque)?;
             let (used, left_out) = selection
                 .into_iter()

@@ -3,7 +3,7 @@
 use super::error::ObserveError;
 use super::settings::{Equations, ObserveSettings};
 use super::standstill::Standstill;
-use crate::model::JointNumber;
+use crate::model::{Drive, JointNumber};
 use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// How many rows of one equation of one motion were used.
@@ -37,6 +37,8 @@ pub(super) struct Selection {
 pub(super) struct Candidates<'a> {
     /// Index of the motion.
     pub trajectory: usize,
+    /// The motors, of which some have friction of their own.
+    pub drive: &'a Drive,
     pub motion: &'a Motion,
     /// What brings a signal at the full rate to the rows.
     pub decimator: &'a Decimator,
@@ -49,7 +51,7 @@ pub(super) struct Candidates<'a> {
 
 /// Which rows of each equation are used.
 pub(super) fn select(rows: &Candidates<'_>, equations: Equations) -> Result<Vec<Selection>, ObserveError> {
-    let &Candidates { trajectory, motion, decimator, grid, detected, settings } = rows;
+    let &Candidates { trajectory, drive, motion, decimator, grid, detected, settings } = rows;
     let n = motion.dq.len();
     let samples = motion.q.first().map_or(0, Vec::len);
     let possible = samples.div_ceil(grid.step);
@@ -63,7 +65,10 @@ pub(super) fn select(rows: &Candidates<'_>, equations: Equations) -> Result<Vec<
                 || settings.windows.iter().any(|w| t - support >= w[0] - 1e-9 && t + support <= w[1] + 1e-9)
         })
         .collect();
-    let moving = moving(motion, grid, decimator, detected, &settings.standstill)?;
+    let mut moving = moving(motion, grid, decimator, detected, &settings.standstill)?;
+    if matches!(settings.standstill, Standstill::Automatic | Standstill::Detected(_)) {
+        leave_out_turning_motors(drive, motion, grid, decimator.factor(), &mut moving);
+    }
     let count = if equations == Equations::Torque { n } else { 1 };
     Ok((0..count)
         .map(|equation| {
@@ -105,9 +110,9 @@ fn moving(
 ) -> Result<Vec<Vec<bool>>, ObserveError> {
     let n = motion.dq.len();
     let speeds: Vec<f64> = match policy {
-        Standstill::Automatic => return Ok(detected.moving(motion, &grid, decimator.factor() / 2)),
+        Standstill::Automatic => return Ok(detected.moving(motion, &grid, decimator.factor())),
         Standstill::Detected(before) if before.thresholds.len() == n => {
-            return Ok(before.moving(motion, &grid, decimator.factor() / 2));
+            return Ok(before.moving(motion, &grid, decimator.factor()));
         }
         Standstill::Detected(before) => {
             return Err(ObserveError::StandstillSpeeds { found: before.thresholds.len(), expected: n });
@@ -124,6 +129,30 @@ fn moving(
     };
     let faster = |(dq, speed): (&Vec<f64>, f64)| grid.centres().map(|c| dq[c].abs() >= speed).collect();
     Ok(motion.dq.iter().zip(speeds).map(faster).collect())
+}
+
+/// Leaves out the rows of the joints that a motor with friction of its own drives, where that motor turns round within
+/// the main lobe of the row: its Coulomb friction is as sharp there as a joint's.
+fn leave_out_turning_motors(
+    drive: &Drive,
+    motion: &Motion,
+    grid: KeptRows,
+    reach: usize,
+    moving: &mut [Vec<bool>],
+) {
+    let n = motion.dq.len();
+    for &motor in drive.coupled_friction.iter() {
+        let Some(gear) = drive.gear.get(motor * n..(motor + 1) * n) else { continue };
+        let driven: Vec<usize> = (0..n).filter(|&j| gear[j] != 0.0).collect();
+        let speed = |t: usize| driven.iter().map(|&j| gear[j] * motion.dq[j][t]).sum::<f64>();
+        for (row, at) in grid.centres().enumerate() {
+            let around = at.saturating_sub(reach)..(at + reach + 1).min(motion.dq[0].len());
+            let now = speed(at);
+            if around.into_iter().any(|t| speed(t) * now < 0.0) {
+                driven.iter().for_each(|&j| moving[j][row] = false);
+            }
+        }
+    }
 }
 
 /// What is to blame when no row is left of motions of which the longest lasts `longest` seconds.

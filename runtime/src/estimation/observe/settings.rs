@@ -37,6 +37,12 @@ pub struct ObserveSettings {
     /// Time windows, s, in the recording's time; a row is used if its whole filter support lies in one of them.
     /// Empty: everything.
     pub windows: Vec<[f64; 2]>,
+    /// Variance of the noise in each joint's accelerations within the rows, (rad/s²)² or (m/s²)²
+    /// ([`crate::estimation::EncoderNoise`]): what it adds to WT W is worked out for [`Observation::noise_of_columns`].
+    /// Empty: none.
+    ///
+    /// [`Observation::noise_of_columns`]: super::Observation::noise_of_columns
+    pub acceleration_noise: Vec<f64>,
     /// Whether the decimated rows themselves are returned.
     pub keep_rows: bool,
     /// Threads; 0: as many as the machine has. The result is the same, to the last digit, for every number.
@@ -50,6 +56,7 @@ impl Default for ObserveSettings {
             rate: None,
             standstill: Standstill::default(),
             windows: Vec::new(),
+            acceleration_noise: Vec::new(),
             keep_rows: false,
             threads: 0,
         }

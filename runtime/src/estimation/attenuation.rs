@@ -1,0 +1,162 @@
+//! What noise in the columns takes away from the parameters, given back.
+
+use super::Factor;
+use super::observe::Observation;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Noise in the columns that weighted least squares is corrected for.
+#[derive(Debug, Clone)]
+pub(super) struct Attenuation {
+    /// Part of the weighted WT W that is noise.
+    pub of_information: DMatrix<f64>,
+    /// The corrected parameters.
+    pub chi: Vec<f64>,
+    /// What that added to each.
+    pub missing: Vec<f64>,
+}
+
+/// Standard deviation of a correction, as a share of it.
+///
+/// What the encoders add to a motion also goes through the controller: the measured position has its noise times the
+/// sensitivity S of the position loop, the true one follows with S - 1, and the correction would have to be weighted with
+/// the real part of S. A recording does not tell S. It is 1 above the loop's bandwidth, falls to 0 below, and is kept
+/// below 2 by the modulus margin that loops are designed for (6 dB): anything between 0 and 2 is as likely, which has
+/// the mean 1 and this standard deviation.
+pub(super) const UNCERTAINTY: f64 = 0.577_350_269_189_625_8;
+
+/// More than half of what tells some parameters apart is noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Drowned;
+
+/// The parameters of least squares corrected for noise of known size in the columns (Fuller 1987, Measurement Error
+/// Models, section 2.2): WT W is expected to be that of the true columns plus that of the noise, N, which pulls
+/// parameters towards zero, so that (WT W - N) chi = WT Y.
+///
+/// `stacked` has the unknowns `active`, whose weighted least-squares solution is `chi`; `sigma` are the errors of the
+/// groups. `None` where no noise is known.
+///
+/// # Errors
+/// [`Drowned`]: WT W - 2 N is not positive definite.
+pub(super) fn corrected(
+    observation: &Observation,
+    active: &[usize],
+    sigma: &[f64],
+    stacked: &Factor,
+    chi: &[f64],
+) -> Result<Option<Attenuation>, Drowned> {
+    let Some(noise) = &observation.noise_of_columns else { return Ok(None) };
+    let k = active.len();
+    let mut place = vec![None; observation.unknowns.len()];
+    for (p, &l) in active.iter().enumerate() {
+        place[l] = Some(p);
+    }
+    let mut of_information = DMatrix::<f64>::zeros(k, k);
+    for ((group, noise), sigma) in observation.groups.iter().zip(noise).zip(sigma) {
+        let own: Vec<(usize, usize)> =
+            group.columns.iter().enumerate().filter_map(|(c, &u)| place[u].map(|p| (c, p))).collect();
+        for &(a, pa) in &own {
+            for &(b, pb) in &own {
+                of_information[(pa, pb)] += noise[(a, b)] / (sigma * sigma);
+            }
+        }
+    }
+    let r = DMatrix::from_fn(k, k, |i, l| stacked.r(i, l));
+    let information = r.tr_mul(&r);
+    // Unit columns: the condition is that of the scaled W, squared.
+    let scale = information.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
+    let scaled = |matrix: DMatrix<f64>| DMatrix::from_fn(k, k, |i, l| scale[i] * matrix[(i, l)] * scale[l]);
+    if Cholesky::new(scaled(&information - 2.0 * &of_information)).is_none() {
+        return Err(Drowned);
+    }
+    let pull = (&of_information * DVector::from_column_slice(chi)).component_mul(&scale);
+    let Some(left) = Cholesky::new(scaled(&information - &of_information)) else { return Err(Drowned) };
+    let missing = left.solve(&pull).component_mul(&scale);
+    let missing = missing.as_slice().to_vec();
+    let chi = chi.iter().zip(&missing).map(|(x, d)| x + d).collect();
+    Ok(Some(Attenuation { of_information, chi, missing }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimation::observe::{Equations, ObserveSettings, Standstill, observe};
+    use crate::estimation::weights::equal;
+    use crate::estimation::weights::stack;
+    use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
+    use crate::signal::Motion;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// One vertical axis with an inertia of 2 and viscous friction 0.7, whose acceleration is measured with noise of
+    /// standard deviation `noise` in its rows.
+    fn observed(noise: f64, known: f64) -> Observation {
+        let frame = Frame {
+            parent: None,
+            kind: JointKind::Revolute,
+            gamma: 0.0,
+            b: 0.0,
+            alpha: 0.0,
+            d: 0.0,
+            theta: 0.0,
+            r: 0.0,
+        };
+        let drive = Drive { gear: vec![1.0].into(), coupled_friction: vec![].into() };
+        let mut robot =
+            Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![frame], drive, Limits::default());
+        robot.base = robot.base.iter().filter(|p| ["ZZ1", "Fv1"].contains(&&*p.name)).cloned().collect();
+        let model = RecursiveModel::new(robot).expect("a valid table");
+        let rate = 100.0;
+        let mut random = rand_pcg::Pcg64::seed_from_u64(9);
+        let time: Vec<f64> = (0..20_000).map(|k| f64::from(k) / rate).collect();
+        let speed: Vec<f64> = time.iter().map(|t| (2.0 * t).cos() + 1.5 * (5.1 * t).cos()).collect();
+        let true_acceleration: Vec<f64> =
+            time.iter().map(|t| -2.0 * (2.0 * t).sin() - 7.65 * (5.1 * t).sin()).collect();
+        let torque = true_acceleration.iter().zip(&speed).map(|(a, v)| 2.0 * a + 0.7 * v).collect();
+        let measured = true_acceleration
+            .iter()
+            .map(|a| {
+                let draw: f64 = StandardNormal.sample(&mut random);
+                a + noise * draw
+            })
+            .collect();
+        let motion = Motion {
+            name: "axis".into(),
+            rate,
+            start: 0.0,
+            q: vec![vec![0.0; time.len()]],
+            dq: vec![speed],
+            ddq: vec![measured],
+            torque: vec![torque],
+            fixed: vec![],
+            edge_samples: 0,
+        };
+        let settings = ObserveSettings {
+            band: 50.0,
+            standstill: Standstill::Keep,
+            acceleration_noise: vec![known * known],
+            ..ObserveSettings::default()
+        };
+        observe(&model, &[motion], Equations::Torque, None, &settings, None).expect("rows")
+    }
+
+    #[test]
+    fn an_inertia_that_noise_has_made_smaller_is_given_back() {
+        let observation = observed(3.0, 3.0);
+        let sigma = equal(&observation).sigma;
+        let stacked = stack(&observation, &sigma);
+        let biased = stacked.solve().chi;
+        assert!(biased[0] < 1.6, "{biased:?}");
+        let found = corrected(&observation, &[0, 1], &sigma, &stacked, &biased).expect("little noise");
+        let found = found.expect("known noise").chi;
+        assert!((found[0] - 2.0).abs() < 0.05 && (found[1] - 0.7).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn noise_that_drowns_the_motion_is_no_correction() {
+        let observation = observed(3.0, 9.0);
+        let sigma = equal(&observation).sigma;
+        let stacked = stack(&observation, &sigma);
+        let chi = stacked.solve().chi;
+        assert_eq!(corrected(&observation, &[0, 1], &sigma, &stacked, &chi).err(), Some(Drowned));
+    }
+}

@@ -1,0 +1,153 @@
+//! Noise that depends on its past: an autoregression from autocovariances.
+
+/// An autoregression of unit-free noise with the predictors of all lower orders, which a stretch needs at its beginning.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Autoregression {
+    /// For each order up to the chosen one the weights of the past values, the latest first.
+    predictors: Vec<Vec<f64>>,
+    /// Standard deviation of what each order leaves.
+    deviations: Vec<f64>,
+}
+
+/// A reflection coefficient beyond this is taken for rounding: the noise would not be stationary.
+const STATIONARY: f64 = 0.999;
+
+impl Autoregression {
+    /// Noise without memory.
+    pub fn white(variance: f64) -> Self {
+        Autoregression { predictors: vec![Vec::new()], deviations: vec![variance.sqrt()] }
+    }
+
+    /// By the recursion of Levinson and Durbin from the autocovariances of lags 0, 1, ... of `count` values, with the
+    /// order by Akaike's criterion with the correction for few values (Hurvich and Tsai 1989).
+    pub fn of(autocovariance: &[f64], count: f64) -> Self {
+        let Some((&variance, lags)) = autocovariance.split_first() else { return Self::white(0.0) };
+        let mut all = Self::white(variance);
+        let (mut best, mut least) = (0, f64::INFINITY);
+        let mut left = variance;
+        for order in 0..=lags.len() {
+            if order > 0 {
+                let before = &all.predictors[order - 1];
+                let past: f64 = before.iter().zip((0..order - 1).rev()).map(|(a, l)| a * lags[l]).sum();
+                let reflection = (lags[order - 1] - past) / left;
+                if reflection.is_nan() || reflection.abs() >= STATIONARY {
+                    break;
+                }
+                let mut next: Vec<f64> =
+                    before.iter().zip(before.iter().rev()).map(|(a, b)| a - reflection * b).collect();
+                next.push(reflection);
+                left *= 1.0 - reflection * reflection;
+                all.predictors.push(next);
+                all.deviations.push(left.sqrt());
+            }
+            let spare = count - order as f64 - 2.0;
+            if !(left > 0.0 && spare > 0.0) {
+                break;
+            }
+            let criterion = count * left.ln() + 2.0 * count * (order as f64 + 1.0) / spare;
+            if criterion < least {
+                (best, least) = (order, criterion);
+            }
+        }
+        all.predictors.truncate(best + 1);
+        all.deviations.truncate(best + 1);
+        all
+    }
+
+    /// The order.
+    pub fn order(&self) -> usize {
+        self.predictors.len() - 1
+    }
+
+    /// Standard deviation of the innovations.
+    pub fn deviation(&self) -> f64 {
+        self.deviations[self.order()]
+    }
+
+    /// The value at `t` of a stretch that begins at 0 less what its past predicts, in units of what that leaves.
+    pub fn innovation(&self, values: &[f64], t: usize) -> f64 {
+        let order = t.min(self.order());
+        let past: f64 = self.predictors[order].iter().zip(values[..t].iter().rev()).map(|(a, x)| a * x).sum();
+        (values[t] - past) / self.deviations[order]
+    }
+
+    /// For each innovation the weight that it has in the sum of `weights[t] * noise[t]`: the impulse response run
+    /// backwards in time, with `before` innovations from before the first value, the earliest first.
+    pub fn weights_of_innovations(&self, weights: &[f64], before: usize) -> Vec<f64> {
+        let coefficients = &self.predictors[self.order()];
+        let mut z = vec![0.0; before + weights.len()];
+        for t in (0..z.len()).rev() {
+            let later: f64 = coefficients.iter().zip(z[t + 1..].iter()).map(|(a, x)| a * x).sum();
+            z[t] = later + if t >= before { weights[t - before] } else { 0.0 };
+        }
+        let deviation = self.deviation();
+        z.iter_mut().for_each(|z| *z *= deviation);
+        z
+    }
+
+    /// Values after which an impulse has died out to a millionth of its squares, at most `most`.
+    pub fn memory(&self, most: usize) -> usize {
+        let coefficients = &self.predictors[self.order()];
+        let mut response = vec![1.0_f64];
+        let mut all = 1.0;
+        while !coefficients.is_empty() && response.len() < most {
+            let value: f64 = coefficients.iter().zip(response.iter().rev()).map(|(a, x)| a * x).sum();
+            response.push(value);
+            all += value * value;
+            let recent: f64 = response.iter().rev().take(coefficients.len()).map(|x| x * x).sum();
+            if recent < 1e-6 * all {
+                break;
+            }
+        }
+        response.len() - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Autocovariances of x(t) = 0.6 x(t-1) + 0.2 x(t-2) + e with a variance of e of 2, from the equations of Yule and
+    /// Walker.
+    fn second_order() -> Vec<f64> {
+        let (a, b) = (0.6, 0.2);
+        let first: f64 = a / (1.0 - b);
+        let second = a * first + b;
+        let variance = 2.0 / (1.0 - a * first - b * second);
+        let mut all = vec![variance, first * variance, second * variance];
+        for l in 3..8 {
+            all.push(a * all[l - 1] + b * all[l - 2]);
+        }
+        all
+    }
+
+    #[test]
+    fn an_autoregression_is_found_from_its_autocovariances() {
+        let found = Autoregression::of(&second_order(), 1000.0);
+        assert_eq!(found.order(), 2);
+        assert!((found.predictors[2][0] - 0.6).abs() < 1e-12 && (found.predictors[2][1] - 0.2).abs() < 1e-12);
+        assert!((found.deviation().powi(2) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_weights_of_the_innovations_give_the_variance_of_a_sum() {
+        let covariance = second_order();
+        let found = Autoregression::of(&covariance, 1000.0);
+        let weights = [1.0, -0.5, 2.0, 0.0, 0.7];
+        let mut expected = 0.0;
+        for (s, a) in weights.iter().enumerate() {
+            for (t, b) in weights.iter().enumerate() {
+                expected += a * b * covariance[s.abs_diff(t)];
+            }
+        }
+        let squares: f64 = found.weights_of_innovations(&weights, 400).iter().map(|z| z * z).sum();
+        assert!((squares / expected - 1.0).abs() < 1e-9, "{squares} {expected}");
+    }
+
+    #[test]
+    fn white_noise_has_no_memory() {
+        let found = Autoregression::of(&[4.0, 0.01, -0.02, 0.01], 500.0);
+        assert_eq!((found.order(), found.memory(400)), (0, 0));
+        assert_eq!(found.innovation(&[3.0, 5.0], 1), 2.5);
+    }
+}

@@ -1,0 +1,96 @@
+//! Standard deviations of parameters under noise that lasts.
+
+use super::noise::{Noise, inverse};
+use super::series::Series;
+use crate::estimation::observe::{Equations, Observation};
+use nalgebra::{DMatrix, DVector};
+
+/// Innovations from before a motion that still matter in it, at most.
+const LONGEST_MEMORY: usize = 400;
+
+/// What was solved, and with which errors of the groups.
+pub(in crate::estimation) struct Solved<'a> {
+    /// The rows, kept.
+    pub observation: &'a Observation,
+    /// The unknowns that were solved for.
+    pub unknowns: &'a [usize],
+    /// For each of them the unknown whose column stands in for its own in the equations of the estimate: itself for
+    /// least squares, its instrument for instrumental variables.
+    pub instruments: &'a [usize],
+    /// What noise in the columns added to the weighted WT W, which was taken away.
+    pub noise_of_columns: Option<&'a DMatrix<f64>>,
+    /// Error of each group of the observation, whose inverse was the weight.
+    pub weights: &'a [f64],
+    /// The same as the noise has it: another one where the weights were not those of the noise.
+    pub errors: &'a [f64],
+}
+
+/// Variance of each unknown that was solved for.
+///
+/// The estimate solves ZT V W chi = ZT V Y with weights V, so that its error is (ZT V W)^-1 ZT V e with the covariance
+/// (ZT V W)^-1 ZT V C V Z (WT V Z)^-1, C that of the noise: an autoregression for each equation, with innovations that
+/// are correlated between equations ([`Noise`]). The innovations of a power have each their own variance. ZT V C V Z is never formed from C: each column of Z is turned into what
+/// each innovation weighs in it.
+///
+/// `None` where the rows were not kept, or do not determine the unknowns.
+pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> {
+    let k = solved.unknowns.len();
+    let series = Series::of(solved.observation, solved.unknowns, solved.errors)?;
+    let noise = Noise::of(&series, k)?;
+    let same = solved.unknowns == solved.instruments;
+    let others =
+        if same { None } else { Some(Series::of(solved.observation, solved.instruments, solved.errors)?) };
+    let scores = others.as_ref().unwrap_or(&series);
+    // The noise of a power is that of the torques times the speeds.
+    let own_variances = solved.observation.equations != Equations::Torque;
+    let mut information = DMatrix::<f64>::zeros(k, k);
+    let mut spread = DMatrix::<f64>::zeros(k, k);
+    let trajectories = series.iter().map(|s| s.trajectory + 1).max().unwrap_or(0);
+    for trajectory in 0..trajectories {
+        let mut innovations: Vec<(usize, &[usize], DMatrix<f64>)> = Vec::new();
+        for (w, z) in series.iter().zip(scores).filter(|(s, _)| s.trajectory == trajectory) {
+            let weight = (solved.errors[w.group] / solved.weights[w.group]).powi(2);
+            add(&mut information, &z.places, &w.places, &(weight * z.w.tr_mul(&w.w)));
+            let model = &noise.equations[w.equation];
+            let before = model.memory(LONGEST_MEMORY);
+            let rows = z.w.nrows() + before;
+            let mut own = DMatrix::zeros(rows, z.places.len());
+            for (column, mut out) in z.w.column_iter().zip(own.column_iter_mut()) {
+                let column: Vec<f64> = column.iter().map(|x| weight * x).collect();
+                out.copy_from(&DVector::from_vec(model.weights_of_innovations(&column, before)));
+            }
+            if own_variances {
+                for (t, square) in noise.own_squares(w).into_iter().enumerate() {
+                    own.row_mut(before + t).scale_mut(square.sqrt());
+                }
+            }
+            innovations.push((w.equation, &z.places, own));
+        }
+        for (a, places_a, x) in &innovations {
+            for (b, places_b, y) in &innovations {
+                let correlation = noise.correlation[(*a, *b)];
+                if correlation != 0.0 {
+                    // They end at the same time.
+                    let rows = x.nrows().min(y.nrows());
+                    let (x, y) = (x.rows(x.nrows() - rows, rows), y.rows(y.nrows() - rows, rows));
+                    add(&mut spread, places_a, places_b, &(correlation * x.tr_mul(&y)));
+                }
+            }
+        }
+    }
+    if let Some(noise) = solved.noise_of_columns {
+        information -= noise;
+    }
+    let inverse = if same { inverse(&information)? } else { information.try_inverse()? };
+    let variances: Vec<f64> =
+        (0..k).map(|l| (inverse.row(l) * &spread * inverse.row(l).transpose())[(0, 0)]).collect();
+    variances.iter().all(|v| v.is_finite() && *v >= 0.0).then_some(variances)
+}
+
+fn add(to: &mut DMatrix<f64>, rows: &[usize], columns: &[usize], part: &DMatrix<f64>) {
+    for (a, &i) in rows.iter().enumerate() {
+        for (b, &j) in columns.iter().enumerate() {
+            to[(i, j)] += part[(a, b)];
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! How much an estimate can be believed: variances of groups, noise that lasts, covariances.
+
+mod autoregression;
+mod covariance;
+mod gamma;
+mod moderation;
+mod noise;
+mod series;
+
+pub(super) use covariance::{Solved, variances};
+pub(super) use moderation::{Prior, Squares};
