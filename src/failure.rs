@@ -40,7 +40,8 @@ pub fn file_failure(doing: &str, path: &std::path::Path, error: &std::io::Error)
         IsADirectory => "it is a folder, a file was expected".to_owned(),
         NotADirectory => "a part of the path is a file, not a folder".to_owned(),
         PermissionDenied => "it is not permitted".to_owned(),
-        _ => error.to_string(),
+        // What has its own words needs no kind and no number of the system.
+        _ => error.get_ref().map_or_else(|| error.to_string(), ToString::to_string),
     };
     Failure::Input(format!("{}: cannot {doing}: {why}", path.display()))
 }

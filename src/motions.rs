@@ -4,11 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use dynid_runtime::model::{JointIndex, JointKind, Robot};
+use dynid_runtime::regular_file;
 use dynid_runtime::report::{Panel, Sheet};
 use dynid_runtime::simulation::excitation::{MotionKind, Profile};
 use dynid_runtime::simulation::{Reference, SampledReference, from_csv, sampled};
 
 use crate::failure::{Failure, file_failure};
+use crate::ranges;
+
+/// Longest motion and longest list of motions that are read, bytes.
+const LONGEST: u64 = 1 << 30;
+const LONGEST_PLAN: u64 = 1 << 20;
 
 /// Families of motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -28,22 +34,58 @@ pub struct MotionOptions {
     #[arg(long, value_enum, default_value = "fourier")]
     pub kind: Family,
     /// Length of a Fourier motion, s
-    #[arg(long, default_value_t = 8.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 8.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::period,
+        value_name = ranges::PERIOD,
+    )]
     pub period: f64,
     /// Harmonics of a Fourier motion
-    #[arg(long, default_value_t = 5)]
+    #[arg(
+        long,
+        default_value_t = 5,
+        allow_negative_numbers = true,
+        value_parser = ranges::harmonics,
+        value_name = ranges::HARMONICS,
+    )]
     pub harmonics: usize,
     /// Points of a point-to-point motion
-    #[arg(long, default_value_t = 8)]
+    #[arg(
+        long,
+        default_value_t = 8,
+        allow_negative_numbers = true,
+        value_parser = ranges::points,
+        value_name = ranges::POINTS,
+    )]
     pub points: usize,
     /// Stop at each point, s
-    #[arg(long, default_value_t = 0.1, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 0.1,
+        allow_negative_numbers = true,
+        value_parser = ranges::pause,
+        value_name = ranges::PAUSE,
+    )]
     pub pause: f64,
     /// Share of every limit of the robot that may be used
-    #[arg(long, default_value_t = 0.9, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 0.9,
+        allow_negative_numbers = true,
+        value_parser = ranges::share,
+        value_name = ranges::SHARE,
+    )]
     pub share: f64,
     /// Share of the position range that is used, about its middle
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::share,
+        value_name = ranges::SHARE,
+    )]
     pub reach: f64,
 }
 
@@ -59,17 +101,6 @@ impl MotionOptions {
             Family::Trapezoidal => points(Profile::TrapezoidalAcceleration),
         }
     }
-}
-
-/// Refuses a size that is negative or no number.
-///
-/// # Errors
-/// [`Failure::Input`] naming the option.
-pub fn check_size(option: &str, size: f64) -> Result<(), Failure> {
-    if size >= 0.0 && size.is_finite() {
-        return Ok(());
-    }
-    Err(Failure::Input(format!("{option} {size}: it must be zero or positive")))
 }
 
 /// A motion as a sheet of q, dq and ddq over time.
@@ -102,7 +133,34 @@ pub fn to_svg(motion: &dyn Reference, robot: &Robot, title: &str) -> String {
         .to_svg()
 }
 
-/// The motions that `dynid excite` wrote to a folder (`motion1.csv`, ...), or the one CSV that is named.
+/// What `dynid excite` calls the list of its motions.
+pub const PLAN: &str = "motions.yaml";
+
+/// The files of a planned motion, beside the list.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct PlannedMotion {
+    /// Its rows.
+    pub file: String,
+    /// Its signals over time.
+    pub figure: String,
+}
+
+#[derive(serde::Deserialize)]
+struct Plan {
+    motions: Vec<PlannedMotion>,
+}
+
+/// The list of planned motions of a robot.
+pub fn plan_text(robot: &str, motions: &[PlannedMotion]) -> String {
+    let mut text = format!("robot: {robot}\nmotions:\n");
+    for PlannedMotion { file, figure } in motions {
+        text.push_str(&format!("  - {{file: {file}, figure: {figure}}}\n"));
+    }
+    text
+}
+
+/// The motions of a folder that `dynid excite` wrote, in the order of its `motions.yaml`; of a folder without one those
+/// that are called `motion1.csv`, `motion2.csv`, ...; or the one CSV that is named.
 ///
 /// # Errors
 /// [`Failure::Input`] with file and line.
@@ -110,11 +168,19 @@ pub fn read(path: &Path, joints: usize) -> Result<Vec<SampledReference>, Failure
     if path.is_file() {
         return Ok(vec![read_one(path, joints)?]);
     }
-    let files: Vec<PathBuf> =
-        (1..).map(|k| path.join(format!("motion{k}.csv"))).take_while(|file| file.is_file()).collect();
+    let plan = path.join(PLAN);
+    let files: Vec<PathBuf> = if plan.is_file() {
+        let text = regular_file::read_text(&plan, LONGEST_PLAN)
+            .map_err(|error| file_failure("read the list of motions", &plan, &error))?;
+        let listed: Plan = serde_yaml::from_str(&text)
+            .map_err(|error| Failure::Input(format!("{}: {error}", plan.display())))?;
+        listed.motions.iter().map(|motion| path.join(&motion.file)).collect()
+    } else {
+        (1..).map(|k| path.join(format!("motion{k}.csv"))).take_while(|file| file.is_file()).collect()
+    };
     if files.is_empty() {
         return Err(Failure::Input(format!(
-            "{}: there is no motion1.csv: give a CSV of a motion or a folder written by `dynid excite`",
+            "{}: there is no {PLAN} and no motion1.csv: give a CSV of a motion or a folder written by `dynid excite`",
             path.display()
         )));
     }
@@ -122,7 +188,7 @@ pub fn read(path: &Path, joints: usize) -> Result<Vec<SampledReference>, Failure
 }
 
 fn read_one(path: &Path, joints: usize) -> Result<SampledReference, Failure> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| file_failure("read the motion", path, &error))?;
+    let text = regular_file::read_text(path, LONGEST)
+        .map_err(|error| file_failure("read the motion", path, &error))?;
     from_csv(&text, joints).map_err(|error| Failure::Input(format!("{}:{error}", path.display())))
 }

@@ -12,7 +12,7 @@ use dynid_runtime::signal::{Motion, SignalError, prepare_all};
 
 use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
-use crate::output::Bar;
+use crate::output::{Bar, on_one_line};
 use crate::robots::{Dynamics, found_again, resolve};
 
 /// A recording that was read.
@@ -99,7 +99,8 @@ pub fn measure_as(
         return Err(nothing_in_window(options));
     }
     let rows = LeftOut { rows: recording.rows, too_short: Vec::new() };
-    Ok(Measured { dynamics, title: manifest.title, robot, side: manifest.side, trajectories, rows })
+    let title = on_one_line(&manifest.title);
+    Ok(Measured { dynamics, title, robot, side: manifest.side, trajectories, rows })
 }
 
 /// Prepares the motions of a recording.
@@ -109,7 +110,7 @@ pub fn measure_as(
 pub fn prepared(measured: Measured, options: &Source, sampling: &Sampling) -> Result<Recorded, Failure> {
     let Measured { dynamics, title, robot, side, trajectories, mut rows } = measured;
     let joints = dynamics.model().robot().joints();
-    let failed = |error: SignalError| Failure::Data(in_recording(&options.recording, &error));
+    let failed = |error: SignalError| signal_failure(&options.recording, &error);
     let (preparation, settings) =
         recorded_settings(sampling, joints).chosen(&trajectories).map_err(failed)?;
     let (motions, too_short) = prepare_all(&trajectories, &preparation).map_err(failed)?;
@@ -161,7 +162,7 @@ pub fn read_observed(
     })?;
     let ObservedRecording { observations, motions, whole, settings, rows, left_out } = observed;
     let rows = LeftOut { rows, too_short: left_out };
-    let (title, side) = (manifest.title, manifest.side);
+    let (title, side) = (on_one_line(&manifest.title), manifest.side);
     let recorded = Recorded { dynamics, title, robot, side, motions, rows, settings };
     Ok(Observed { recorded, observations, whole })
 }
@@ -190,10 +191,20 @@ fn recorded_settings(sampling: &Sampling, joints: usize) -> RecordedSettings {
 /// What the observation refuses, as the end of a command.
 pub fn observe_failure(recording: &Path, error: &ObserveError) -> Failure {
     match error {
-        ObserveError::NoRows { .. } | ObserveError::Signal(_) => {
-            Failure::Data(in_recording(recording, error))
-        }
+        ObserveError::NoRows { .. } => Failure::Data(in_recording(recording, error)),
+        ObserveError::Signal(signal) => signal_failure(recording, signal),
         _ => Failure::Input(in_recording(recording, error)),
+    }
+}
+
+/// What the filters refuse, as the end of a command: a frequency that was asked for, or what the motions are like.
+fn signal_failure(recording: &Path, error: &SignalError) -> Failure {
+    let words = in_recording(recording, error);
+    match error {
+        SignalError::Cutoff { .. } | SignalError::Band(_) | SignalError::TooManyTaps(_) => {
+            Failure::Input(words)
+        }
+        _ => Failure::Data(words),
     }
 }
 

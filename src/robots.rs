@@ -6,9 +6,14 @@ use dynid_codegen::base::base_set;
 use dynid_codegen::numeric_robot;
 use dynid_codegen::robot::parse_with_warnings;
 use dynid_runtime::model::{Model, RecursiveModel, Robot};
+use dynid_runtime::regular_file;
 
 use crate::failure::{Failure, file_failure};
 use crate::models;
+use crate::output::warn;
+
+/// Longest robot YAML that is read, bytes.
+const LONGEST: u64 = 1 << 20;
 
 /// A robot's dynamics.
 pub enum Dynamics {
@@ -77,17 +82,25 @@ pub fn found_again(dynamics: &Dynamics, name: &str, beside: Option<&Path>) -> St
     }
 }
 
+/// The bytes of a robot YAML. That they are too many, or no text, is told with the other mistakes.
+///
+/// # Errors
+/// [`Failure::Input`] naming the file.
+pub fn read_yaml(path: &Path) -> Result<Vec<u8>, Failure> {
+    regular_file::read(path, LONGEST).map_err(|error| file_failure("read the robot", path, &error))
+}
+
 /// Reads a robot YAML into the numbers that the runtime works with. What is allowed in it but probably not meant is
 /// told on standard error.
 ///
 /// # Errors
 /// [`Failure::Input`] with every mistake, one a line.
 pub fn read(path: &Path) -> Result<Robot, Failure> {
-    let text = std::fs::read(path).map_err(|error| file_failure("read the robot", path, &error))?;
+    let text = read_yaml(path)?;
     let (table, warnings) = parse_with_warnings(&path.display().to_string(), &text).map_err(|mistakes| {
         Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
     })?;
-    warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    warnings.iter().for_each(|warning| warn(&warning.to_string()));
     Ok(numeric_robot(&table, &base_set(&table)))
 }
 

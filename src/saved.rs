@@ -4,17 +4,22 @@ use std::path::Path;
 
 use dynid_runtime::model::{Model, Robot};
 use dynid_runtime::model_file::{self, Identified, difference, fingerprint};
+use dynid_runtime::regular_file;
 
 use crate::failure::{Failure, file_failure};
 use crate::models;
 use crate::robots::{Dynamics, recursive, resolve};
+
+/// Longest saved model that is read, bytes.
+const LONGEST: u64 = 1 << 26;
 
 /// Reads a saved model, every field of it checked.
 ///
 /// # Errors
 /// [`Failure::Input`] with the file and the place in it: line and column, or the path of the field.
 pub fn read_model(path: &Path) -> Result<Identified, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| file_failure("read the model", path, &error))?;
+    let text = regular_file::read_text(path, LONGEST)
+        .map_err(|error| file_failure("read the model", path, &error))?;
     model_file::read(&text).map_err(|error| Failure::Input(format!("{}:{error}", path.display())))
 }
 

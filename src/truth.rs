@@ -5,6 +5,7 @@ use std::path::Path;
 use dynid_runtime::diagnosis::scoring::Hidden;
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::{JointNumber, Robot};
+use dynid_runtime::regular_file;
 use serde::Deserialize;
 
 use crate::failure::{Failure, file_failure};
@@ -24,12 +25,16 @@ struct TrueEffect {
     joints: Vec<usize>,
 }
 
+/// Longest truth that is read, bytes.
+const LONGEST: u64 = 1 << 20;
+
 /// Reads what was hidden.
 ///
 /// # Errors
 /// [`Failure::Input`] with the file, and the line where there is one.
 pub fn read_truth(path: &Path, robot: &Robot) -> Result<Vec<Hidden>, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| file_failure("read the truth", path, &error))?;
+    let text = regular_file::read_text(path, LONGEST)
+        .map_err(|error| file_failure("read the truth", path, &error))?;
     let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
     let truth: TruthFile = serde_yaml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     truth

@@ -122,12 +122,12 @@ fn a_recording_names_its_joints_by_the_table_too() {
     folder.simulate();
     let path = folder.0.join("out/recording.yaml");
     let manifest = std::fs::read_to_string(&path).unwrap();
-    let with = |fixed: &str| std::fs::write(&path, manifest.replace("traj1.csv}", fixed)).unwrap();
-    with("traj1.csv, fixed: [2]}");
+    let with = |fixed: &str| std::fs::write(&path, manifest.replace(".csv\"}", fixed)).unwrap();
+    with(".csv\", fixed: [2]}");
     let (status, text) = folder.run(&["identify", "out/recording.yaml"]);
     assert_eq!(status, 2);
     assert!(text.contains("names joint 2, which bracket_arm does not have"), "{text}");
-    with("traj1.csv, fixed: [4]}");
+    with(".csv\", fixed: [4]}");
     folder.must(&["identify", "out/recording.yaml", "--json", "found.json"]);
     let found = folder.json("found.json");
     let left_out: Vec<(u64, bool)> = found["equations"]

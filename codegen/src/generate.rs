@@ -78,10 +78,44 @@ pub struct Collection {
     pub warnings: Vec<Diagnostic>,
 }
 
+/// Names beside which a module cannot stand: of crates, of the file that lists the modules, and of primitive types.
+const TAKEN: [&str; 24] = [
+    "alloc",
+    "bool",
+    "char",
+    "core",
+    "dynid_runtime",
+    "f32",
+    "f64",
+    "i8",
+    "i16",
+    "i32",
+    "i64",
+    "i128",
+    "isize",
+    "proc_macro",
+    "registry",
+    "std",
+    "str",
+    "test",
+    "u8",
+    "u16",
+    "u32",
+    "u64",
+    "u128",
+    "usize",
+];
+
+/// Whether a robot's name, a Rust identifier, can be that of its module. Small letters keep it apart from types, and from
+/// another one on a disk that makes no difference.
+fn is_module_name(name: &str) -> bool {
+    !name.bytes().any(|b| b.is_ascii_uppercase()) && !TAKEN.contains(&name)
+}
+
 /// Reads several robot YAMLs, given as path and bytes, that go into one registry.
 ///
 /// # Errors
-/// Every mistake of every file, and every name that is taken already.
+/// Every mistake of every file, every name that is taken already, and every name that no module can have.
 pub fn read_all(files: &[(String, Vec<u8>)]) -> Result<Collection, Vec<Diagnostic>> {
     let mut mistakes = Vec::new();
     let mut collection = Collection { robots: Vec::new(), warnings: Vec::new() };
@@ -93,6 +127,14 @@ pub fn read_all(files: &[(String, Vec<u8>)]) -> Result<Collection, Vec<Diagnosti
                 match collection.robots.iter().position(|known| known.name == robot.name) {
                     Some(first) => {
                         let message = format!("the name {} is already that of {}", robot.name, paths[first]);
+                        mistakes.push(at_name(path, bytes, message));
+                    }
+                    None if !is_module_name(&robot.name) => {
+                        let message = format!(
+                            "the name {} cannot be that of a generated module: expected small letters, digits and _, and no \
+                             name that Rust or the registry uses",
+                            robot.name
+                        );
                         mistakes.push(at_name(path, bytes, message));
                     }
                     None => {

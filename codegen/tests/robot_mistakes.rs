@@ -1,5 +1,6 @@
 //! Every mistake in a robot's YAML is reported at its place, all of them at once.
 
+use dynid_codegen::read_all;
 use dynid_codegen::robot::{RobotTable, parse, parse_with_warnings};
 use dynid_description::JointKind;
 use proptest::prelude::*;
@@ -125,6 +126,86 @@ fn exact_and_general_angles_and_lengths_get_no_warning() {
     ] {
         assert_eq!(warnings(&arm_with_row(row)), Vec::<String>::new(), "{row}");
     }
+}
+
+#[test]
+fn sizes_that_no_robot_has_are_mistakes() {
+    for (row, place, words) in [
+        ("j: 2, sigma: 0, alpha: 0, d: 0.5, theta: q2, r: -1e308", "5:54", ["r is -1e308 m", "10000 m"]),
+        ("j: 2, sigma: 0, alpha: 0, d: 1e200, theta: q2, r: 0", "5:35", ["d is 1e200 m", "10000 m"]),
+        ("j: 2, sigma: 0, alpha: 1e5, d: 0, theta: q2, r: 0", "5:29", ["alpha is 1e5 rad", "10000 rad"]),
+    ] {
+        one_mistake(&arm_with_row(row), place, &words);
+    }
+    for (rest, place, words) in [
+        ("gravity: [0, 0, -1e300]", "5:10", ["gravity is -1e300", "at most 1e4"]),
+        ("drive: {gear: [50, 1e300]}", "5:15", ["a ratio of gear", "at most 1e6"]),
+        ("drive: {gear: [50, 1e-300]}", "5:15", ["a ratio of gear", "at least"]),
+        ("limits: {velocity: 1e-300}", "5:20", ["limit of velocity is 1e-300", "at least"]),
+        ("limits: {velocity: [3, 1e300]}", "5:24", ["limit of velocity is 1e300", "at most 1e9"]),
+        ("limits: {position: [1, [0.5, 0.5000000000001]]}", "5:24", ["width", "at least"]),
+        ("nominal: {parameters: {ZZ1: 1e200}}", "5:29", ["ZZ1 is 1e200", "at most 1e9"]),
+        ("nominal: {noise: {torque: 1e200}}", "5:27", ["1e200", "at most 1e9"]),
+    ] {
+        one_mistake(&arm(rest), place, &words);
+    }
+}
+
+#[test]
+fn sizes_that_are_probably_not_meant_get_a_warning() {
+    for (row, place, words) in [
+        ("j: 2, sigma: 0, alpha: 90, d: 0.5, theta: q2, r: 0", "5:29", "90 rad, more than a turn"),
+        ("j: 2, sigma: 0, alpha: 0, d: 0.5, theta: q2 - 45, r: 0", "5:47", "Write -45*pi/180"),
+        ("j: 2, sigma: 0, alpha: 1e-9, d: 0.5, theta: q2, r: 0", "5:29", "alpha is 1e-9 rad"),
+        ("j: 2, sigma: 0, alpha: 0, d: -1e-300, theta: q2, r: 0", "5:35", "d is -1e-300 m"),
+    ] {
+        let found = warnings(&arm_with_row(row));
+        assert!(found.iter().any(|w| w.starts_with(&format!("{place}: ")) && w.contains(words)), "{found:?}");
+    }
+}
+
+#[test]
+fn a_table_is_no_longer_than_what_computes_with_it_and_the_first_row_too_many_is_pointed_at() {
+    let row = |j: usize| format!("  - {{j: {j}, sigma: 0, alpha: 0, d: 0.1, theta: q{j}, r: 0}}\n");
+    let table = |rows: usize| format!("name: arm\nframes:\n{}", (1..=rows).map(row).collect::<String>());
+    assert_eq!(read(&table(16)).frames.len(), 16);
+    one_mistake(&table(17), "19:5", &["17 rows", "at most 16"]);
+}
+
+#[test]
+fn a_gear_matrix_couples_no_more_joints_than_can_be_computed() {
+    let row = |j: usize| format!("  - {{j: {j}, sigma: 0, alpha: 0, d: 0.1, theta: q{j}, r: 0}}\n");
+    let table = |n: usize, coupled: usize| {
+        let entry = |m: usize, k: usize| {
+            if m == k {
+                "9"
+            } else if m < coupled && k < coupled {
+                "1"
+            } else {
+                "0"
+            }
+        };
+        let line = |m: usize| format!("[{}]", (0..n).map(|k| entry(m, k)).collect::<Vec<_>>().join(", "));
+        let gear = (0..n).map(line).collect::<Vec<_>>().join(", ");
+        format!("name: arm\nframes:\n{}drive: {{gear: [{gear}]}}\n", (1..=n).map(row).collect::<String>())
+    };
+    assert_eq!(read(&table(10, 8)).drive.gear[0][7], 1.0);
+    one_mistake(&table(10, 9), "13:15", &["couples 9 joints", "at most 8"]);
+}
+
+#[test]
+fn a_name_that_would_break_the_generated_module_is_refused_where_modules_are_made() {
+    let named = |name: &str| arm("").replace("name: arm", &format!("name: {name}")).into_bytes();
+    for name in ["Model", "Operations", "registry", "dynid_runtime", "Option", "std", "core", "f64", "UR10e"]
+    {
+        let found = read_all(&[("robots/x.yaml".to_owned(), named(name))]).expect_err(name);
+        assert_eq!(found.len(), 1);
+        let words = found[0].to_string();
+        assert!(words.starts_with("robots/x.yaml:1:1: ") && words.contains(name), "{words}");
+        // Read at run time, a name is no more than a label.
+        assert_eq!(parse("x.yaml", &named(name)).expect("a robot").name, name);
+    }
+    assert!(read_all(&[("x.yaml".to_owned(), named("arm_2"))]).is_ok());
 }
 
 #[test]
@@ -365,7 +446,7 @@ nominal: {parameters: {Fvm1: 1, Fvm2: 1}}
 #[test]
 fn nesting_and_size_have_bounds() {
     let deep = format!("name: {}{}", "[".repeat(5000), "]".repeat(5000));
-    assert!(mistakes(&deep)[0].contains("recursion limit"));
+    assert!(mistakes(&deep)[0].contains("nested deeper than 16"));
     let deep = format!("name: {}", "{a: ".repeat(100));
     assert!(mistakes(&deep)[0].contains("nested deeper"));
     let indented: String = (0..500).map(|k| format!("{}a:\n", " ".repeat(k))).collect();
@@ -396,7 +477,7 @@ fn expressions_print_as_they_are_written() {
         "-(d2 + 1)",
         "d2/(pi/2)",
         "1e-12",
-        "1.5e300",
+        "1.5e300*1e-300",
     ] {
         let robot = read(&arm_with_row(&format!("j: 2, sigma: 0, alpha: 0, d: {text}, theta: q2, r: 0")));
         assert_eq!(robot.frames[1].d.to_string(), text);

@@ -17,6 +17,7 @@
 #![deny(missing_docs)]
 
 mod base_parameter;
+pub mod bounds;
 mod drive;
 mod frame;
 mod joint;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
 use dynid_runtime::model::{JointIndex, Model, ParameterKind, Robot};
-use dynid_runtime::recording::{self, Trajectory};
+use dynid_runtime::recording::Trajectory;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, MotionKind, excite};
 use dynid_runtime::simulation::{LoopSettings, SimulationError, World, simulate};
@@ -14,6 +14,7 @@ use super::execute_words;
 use crate::failure::Failure;
 use crate::models;
 use crate::output::{Bar, print};
+use crate::recording_files::{RobotReference, write_recording};
 
 /// Where the demo writes.
 #[derive(Debug, Args)]
@@ -140,7 +141,6 @@ fn simulated(
 }
 
 fn save(folder: &Path, robot: &Robot, title: &str, motions: &[Trajectory]) -> Result<(), Failure> {
-    recording::write(folder, robot, &robot.name, title, motions)
-        .map(|_| ())
-        .map_err(|error| Failure::Input(error.to_string()))
+    let reference = RobotReference::Name(&robot.name);
+    write_recording((folder, "recording.yaml", "traj"), robot, reference, title, motions).map(|_| ())
 }

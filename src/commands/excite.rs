@@ -11,8 +11,9 @@ use dynid_runtime::simulation::excitation::{
 use dynid_runtime::simulation::{Reference, check_standard, to_csv};
 
 use crate::failure::Failure;
-use crate::motions::{MotionOptions, to_svg};
-use crate::output::{Bar, make_folder, print, table, write};
+use crate::motions::{MotionOptions, PLAN, PlannedMotion, plan_text, to_svg};
+use crate::output::{Bar, Together, print, table};
+use crate::ranges;
 use crate::robots::resolve;
 use crate::words::joint_number;
 
@@ -21,7 +22,7 @@ use crate::words::joint_number;
 pub(super) struct Arguments {
     /// A robot's name, or the path of a robot YAML
     robot: String,
-    /// Folder for motion1.csv, motion1.svg, ...
+    /// Folder for motions.yaml, which names a CSV and a figure for each motion
     #[arg(long)]
     out: PathBuf,
     /// For the power model: one motion for each joint, with the joints before it fixed, so that the observation
@@ -34,18 +35,39 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value = "determinant")]
     criterion: By,
     /// Random starts for each motion
-    #[arg(long, default_value_t = 4)]
+    #[arg(
+        long,
+        default_value_t = 4,
+        allow_negative_numbers = true,
+        value_parser = ranges::starts,
+        value_name = ranges::STARTS,
+    )]
     starts: usize,
     /// Candidate motions tried from each start
-    #[arg(long, default_value_t = 1500)]
+    #[arg(
+        long,
+        default_value_t = 1500,
+        allow_negative_numbers = true,
+        value_parser = ranges::evaluations,
+        value_name = ranges::EVALUATIONS,
+    )]
     evaluations: usize,
     /// The same seed gives the same motions
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Rows a second in the CSV files, Hz
-    #[arg(long, default_value_t = 1000.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 1000.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::file_rate,
+        value_name = ranges::FILE_RATE,
+    )]
     rate: f64,
 }
+
+/// Most rows of a motion's CSV; it is in memory while it is written.
+const MOST_ROWS: f64 = 1e6;
 
 /// What is searched for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -70,9 +92,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dynamics = resolve(&arguments.robot, None)?;
     let model = dynamics.model();
     let robot = model.robot();
-    if !(arguments.rate > 0.0 && arguments.rate <= 1e6) {
-        return Err(Failure::Input(format!("--rate {}: it must be a positive number of Hz", arguments.rate)));
-    }
     let chi = nominal(robot)?;
     let settings = ExcitationSettings {
         kind: arguments.motions.kind(),
@@ -85,16 +104,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         reach: arguments.motions.reach,
         seed: arguments.seed,
     };
-    make_folder(&arguments.out)?;
+    let mut files = Together::in_folder(&arguments.out)?;
     let plan = search(model, chi.as_deref(), &settings)?;
+    let mut named = Vec::new();
+    if let Some(longest) = plan.motions.iter().map(|m| m.duration()).find(|d| d * arguments.rate > MOST_ROWS)
+    {
+        return Err(Failure::Input(format!(
+            "--rate {}: a motion of {} s would have more than {MOST_ROWS:e} rows",
+            arguments.rate,
+            significant(longest, 3)
+        )));
+    }
     for (k, motion) in plan.motions.iter().enumerate() {
         let title = format!("{}: motion {} of {}", robot.name, k + 1, plan.motions.len());
-        write(
-            &arguments.out.join(format!("motion{}.csv", k + 1)),
-            to_csv(motion, arguments.rate).trim_end(),
-        )?;
-        write(&arguments.out.join(format!("motion{}.svg", k + 1)), &to_svg(motion, robot, &title))?;
+        let stem = format!("motion{}", k + 1);
+        let rows = to_csv(motion, arguments.rate);
+        let figure = to_svg(motion, robot, &title);
+        named.push(PlannedMotion {
+            file: files.add(&stem, "csv", &mut |out| out.write_all(rows.as_bytes()))?,
+            figure: files.add(&stem, "svg", &mut |out| out.write_all(figure.as_bytes()))?,
+        });
     }
+    files.commit(PLAN, &plan_text(&robot.name, &named), &["motion"])?;
     print(&summary(robot, &plan, arguments));
     Ok(())
 }

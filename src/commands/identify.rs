@@ -12,6 +12,7 @@ use dynid_runtime::report::{percent, significant};
 use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
 use crate::output::{print, table, write, write_json};
+use crate::ranges;
 use crate::recorded::{self, Recorded, left_out_words, observe_failure};
 use crate::verdict;
 use crate::words::joint_number;
@@ -29,8 +30,15 @@ pub(super) struct Arguments {
     /// The power model from dh in closed form instead of differentiating h as in the paper
     #[arg(long)]
     closed_form: bool,
-    /// Ratio of the largest to the smallest relative standard deviation among the essential parameters
-    #[arg(long, default_value_t = 20.0)]
+    /// Ratio of the largest to the smallest relative standard deviation among the essential parameters; 10 to 30
+    /// is usual
+    #[arg(
+        long,
+        default_value_t = 20.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::r_sigma,
+        value_name = ranges::R_SIGMA,
+    )]
     r_sigma: f64,
     /// Identify even where no such robot can have made the recording
     #[arg(long)]
@@ -51,12 +59,6 @@ pub(super) struct Arguments {
 
 /// Identifies, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.r_sigma.is_nan() || arguments.r_sigma <= 1.0 {
-        return Err(Failure::Input(format!(
-            "--r-sigma {}: it must be above 1; 10 to 30 is usual",
-            arguments.r_sigma
-        )));
-    }
     let power = Equations::Power { closed_form: arguments.closed_form };
     let equations: &[Equations] =
         if arguments.method.is_power() { &[power, Equations::Torque] } else { &[Equations::Torque] };

@@ -16,6 +16,7 @@ pub(crate) use identify::cells as parameter_cells;
 use clap::{Parser, Subcommand};
 
 use crate::failure::Failure;
+use crate::output::{complain, finished};
 use std::process::ExitCode;
 
 /// From a modified-DH table and a recording to a dynamic model you can trust.
@@ -52,12 +53,28 @@ enum Command {
 
 /// Runs the command line of this process and says how it went.
 pub fn run() -> ExitCode {
-    match execute(Cli::parse().command) {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(said) => return told_by_the_parser(&said),
+    };
+    // What was printed may have been lost even where the command did what it was asked for.
+    match execute(cli.command).and_then(|()| finished()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("{failure}");
+            complain(&failure.to_string());
             failure.exit_code()
         }
+    }
+}
+
+/// Help and version go to standard output, what is wrong with the words of a command to standard error.
+fn told_by_the_parser(said: &clap::Error) -> ExitCode {
+    match said.print() {
+        Err(error) if !said.use_stderr() && error.kind() != std::io::ErrorKind::BrokenPipe => {
+            complain(&format!("standard output: cannot write it: {error}"));
+            ExitCode::from(2)
+        }
+        _ => ExitCode::from(if said.use_stderr() { 2 } else { 0 }),
     }
 }
 

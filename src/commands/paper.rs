@@ -13,9 +13,9 @@ use dynid_runtime::signal::{Motion, Preparation, prepare};
 
 use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
-use crate::motions::check_size;
 use crate::output::{Bar, make_folder, print, table, write, write_page};
 use crate::paper_tables::{Results, Rows};
+use crate::ranges;
 use crate::recorded::read;
 use crate::robots::resolve;
 use crate::words::joint_number;
@@ -30,23 +30,59 @@ pub(super) struct Arguments {
     #[arg(long)]
     recording: Option<PathBuf>,
     /// Simulated repetitions, each with motions and noise of its own
-    #[arg(long, default_value_t = 5)]
+    #[arg(
+        long,
+        default_value_t = 5,
+        allow_negative_numbers = true,
+        value_parser = ranges::seeds,
+        value_name = ranges::SEEDS,
+    )]
     seeds: u64,
     /// Size of the physics that the model does not know; 1 is that of the real TX-40, 0 none
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::size,
+        value_name = ranges::SIZE,
+    )]
     residue: f64,
     /// Factor on the nominal noise
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::noise,
+        value_name = ranges::NOISE,
+    )]
     noise: f64,
     /// Points of the single motion
-    #[arg(long, default_value_t = 13)]
+    #[arg(
+        long,
+        default_value_t = 13,
+        allow_negative_numbers = true,
+        value_parser = ranges::points,
+        value_name = ranges::POINTS,
+    )]
     single_points: usize,
     /// Points of each motion of the sets
-    #[arg(long, default_value_t = 13)]
+    #[arg(
+        long,
+        default_value_t = 13,
+        allow_negative_numbers = true,
+        value_parser = ranges::points,
+        value_name = ranges::POINTS,
+    )]
     set_points: usize,
     /// Share of the position range that the motions use; with 13 points and 0.6 they last as long as the public
     /// recording of a TX-40
-    #[arg(long, default_value_t = 0.6, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 0.6,
+        allow_negative_numbers = true,
+        value_parser = ranges::share,
+        value_name = ranges::SHARE,
+    )]
     reach: f64,
     /// dh in closed form instead of differentiating h as in the paper
     #[arg(long)]
@@ -60,8 +96,6 @@ pub(super) struct Arguments {
 /// Runs the cases and prints the tables.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let settings = PaperSettings { closed_form: arguments.closed_form, ..PaperSettings::default() };
-    check_size("--residue", arguments.residue)?;
-    check_size("--noise", arguments.noise)?;
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
     }
@@ -78,9 +112,6 @@ fn simulated(settings: &PaperSettings, arguments: &Arguments) -> Result<(), Fail
     let Some(nominal) = &robot.nominal else {
         return Err(Failure::Input(format!("{} has no nominal parameters to simulate", robot.name)));
     };
-    if arguments.seeds == 0 {
-        return Err(Failure::Input("--seeds 0: there must be one at least".to_owned()));
-    }
     let campaign = Campaign {
         residue: arguments.residue,
         noise: arguments.noise,
@@ -225,8 +256,8 @@ fn markdown(said: &str, command: &str, file: &str, results: &Results<'_>) -> Str
 
 fn save(folder: &Path, file: &str, page: &str, figure: &str) -> Result<(), Failure> {
     make_folder(folder)?;
-    write_page(&folder.join(format!("{file}.md")), page)?;
-    write(&folder.join(format!("{file}.svg")), figure)
+    write(&folder.join(format!("{file}.svg")), figure)?;
+    write_page(&folder.join(format!("{file}.md")), page)
 }
 
 /// The torques of the first motion, measured and reconstructed by the cases, joint by joint (Figs. 2 to 4).

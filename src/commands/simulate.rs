@@ -8,17 +8,18 @@ use clap::Args;
 use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::{Model, Robot};
 use dynid_runtime::model_file::{Identified, to_yaml};
-use dynid_runtime::recording;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
 use dynid_runtime::simulation::{
     LoopSettings, Plant, Reference, Residue, Simulation, SimulationError, World, check_standard, simulate,
 };
 
-use crate::failure::{Failure, file_failure};
-use crate::motions::{MotionOptions, check_size, read as read_motions};
-use crate::output::{Bar, make_folder, print, table, write};
-use crate::robots::{Dynamics, resolve};
+use crate::failure::Failure;
+use crate::motions::{MotionOptions, read as read_motions};
+use crate::output::{Bar, make_folder, print, table};
+use crate::ranges;
+use crate::recording_files::{RobotReference, write_recording};
+use crate::robots::{Dynamics, read_yaml, resolve};
 use crate::saved::{known_parameters, own_dynamics, read_model};
 use elastic::elastic_joint;
 
@@ -34,32 +35,75 @@ pub(super) struct Arguments {
     #[arg(long)]
     follow: Option<PathBuf>,
     /// How many random motions
-    #[arg(long, default_value_t = 3)]
+    #[arg(
+        long,
+        default_value_t = 3,
+        allow_negative_numbers = true,
+        value_parser = ranges::motions,
+        value_name = ranges::MOTIONS,
+    )]
     motions: usize,
     #[command(flatten)]
     family: MotionOptions,
     /// Control rate, Hz
-    #[arg(long, default_value_t = 5000.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 5000.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::control_rate,
+        value_name = ranges::CONTROL_RATE,
+    )]
     rate: f64,
     /// Control samples for each recorded row
-    #[arg(long, default_value_t = 5)]
+    #[arg(
+        long,
+        default_value_t = 5,
+        allow_negative_numbers = true,
+        value_parser = ranges::record_every,
+        value_name = ranges::RECORD_EVERY,
+    )]
     record_every: usize,
     /// The same seed gives the same recording
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Factor on the robot's nominal noise of encoders and torques
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::noise,
+        value_name = ranges::NOISE,
+    )]
     noise: f64,
     /// Smallest step of the encoders, rad or m at the joint
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::quantum,
+        value_name = ranges::QUANTUM,
+    )]
     quantum: f64,
     /// Physics beyond the model of this size: Stribeck, load and uneven friction and ripple; 1 is a real robot's
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::size,
+        value_name = ranges::SIZE,
+    )]
     residue: f64,
     /// Torque ripple of this share of each joint's dry friction, once a motor turn
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_parser = ranges::size,
+        value_name = ranges::SIZE,
+    )]
     ripple: f64,
-    /// Elastic joint: JOINT:STIFFNESS[:DAMPING[:PLAY]], SI; may be repeated
+    /// Elastic joint: JOINT:STIFFNESS[:DAMPING[:PLAY]], SI, stiffness 1e-3..1e12, damping 0..1e9, play 0..10; may be
+    /// repeated
     #[arg(long)]
     elastic: Vec<String>,
     /// Feed nothing forward: the controller works from the errors alone
@@ -77,14 +121,6 @@ enum Parameters {
 
 /// Simulates and writes.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for (option, size) in [
-        ("--noise", arguments.noise),
-        ("--quantum", arguments.quantum),
-        ("--residue", arguments.residue),
-        ("--ripple", arguments.ripple),
-    ] {
-        check_size(option, size)?;
-    }
     let saved = saved_model(&arguments.robot)?;
     let dynamics = match &saved {
         Some(identified) => own_dynamics(identified, Path::new(&arguments.robot))?,
@@ -122,9 +158,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(bar);
     let trajectories: Vec<_> = runs.iter().map(|run| run.recorded.clone()).collect();
     let title = format!("closed-loop simulation of {}, seed {}", robot.name, arguments.seed);
-    let name = named_in_recording(&dynamics, arguments, saved.is_some())?;
-    let path = recording::write(&arguments.out, robot, &name, &title, &trajectories)
-        .map_err(|error| Failure::Input(error.to_string()))?;
+    let own_table = match &dynamics {
+        Dynamics::Generated(_) => None,
+        Dynamics::Recursive(model) if saved.is_some() => Some(to_yaml(model.robot()).into_bytes()),
+        Dynamics::Recursive(_) => Some(read_yaml(Path::new(&arguments.robot))?),
+    };
+    let reference = own_table.as_deref().map_or(RobotReference::Name(&robot.name), RobotReference::Yaml);
+    let place = (arguments.out.as_path(), "recording.yaml", "traj");
+    let path = write_recording(place, robot, reference, &title, &trajectories)?;
     print(&summary(&path, &runs));
     Ok(())
 }
@@ -151,24 +192,6 @@ fn missing(robot: &Robot, saved: bool, followed: bool) -> Option<String> {
     }
     (!needed.is_empty())
         .then(|| format!("{} cannot be simulated: its YAML lacks {}", robot.name, needed.join(" and ")))
-}
-
-/// How the recording names its robot: by name where it is generated, else by the path of a YAML beside the recording: a
-/// copy of the one that was given, or the model's own table.
-fn named_in_recording(dynamics: &Dynamics, arguments: &Arguments, saved: bool) -> Result<String, Failure> {
-    let given = Path::new(&arguments.robot);
-    let (name, text) = match dynamics {
-        Dynamics::Generated(model) => return Ok(model.robot().name.to_string()),
-        Dynamics::Recursive(model) if saved => ("robot.yaml".to_owned(), to_yaml(model.robot())),
-        Dynamics::Recursive(_) => {
-            let text = std::fs::read_to_string(given)
-                .map_err(|error| file_failure("read the robot", given, &error))?;
-            let name = given.file_name().map(|name| name.to_string_lossy().into_owned());
-            (name.unwrap_or_else(|| "robot.yaml".to_owned()), text)
-        }
-    };
-    write(&arguments.out.join(&name), text.trim_end())?;
-    Ok(format!("./{name}"))
 }
 
 fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
@@ -200,9 +223,6 @@ fn planned(
     if let Some(path) = &arguments.follow {
         let read = read_motions(path, model.robot().joints())?;
         return Ok(read.into_iter().map(|motion| Box::new(motion) as Box<dyn Reference>).collect());
-    }
-    if arguments.motions == 0 {
-        return Err(Failure::Input("--motions 0: there must be one at least".to_owned()));
     }
     let mut motions: Vec<Box<dyn Reference>> = Vec::new();
     for k in 0..arguments.motions {

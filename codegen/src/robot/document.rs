@@ -5,7 +5,7 @@ use saphyr_parser::{Event, Marker, Parser, ScalarStyle};
 
 /// Deepest nesting that is read; a robot needs four levels.
 const MAX_DEPTH: usize = 16;
-/// Longest file that is read, bytes; a robot of 64 frames needs a few thousand.
+/// Longest file that is read, bytes; a robot of the most frames needs a few thousand.
 const MAX_BYTES: usize = 1 << 20;
 
 /// Where a file starts.
@@ -107,6 +107,8 @@ fn tree(bytes: &[u8]) -> Result<Node, Fault> {
             let place = Place::of(*e.marker());
             match indenting_tab(text, place.line) {
                 Some(tab) => Fault::new(tab, "not YAML: indented with a tab; expected spaces"),
+                // The parser has a limit of its own and reads ahead.
+                None if e.info().contains("recursion limit") => too_deep(place),
                 None => Fault::new(place, format!("not YAML: {}", e.info())),
             }
         })?;
@@ -119,6 +121,10 @@ fn tree(bytes: &[u8]) -> Result<Node, Fault> {
         Some(node) => Ok(node),
         None => Err(Fault::empty()),
     }
+}
+
+fn too_deep(place: Place) -> Fault {
+    Fault::new(place, format!("nested deeper than {MAX_DEPTH} levels; a robot needs four"))
 }
 
 /// The text of a file that is not too long, without a byte order mark.
@@ -183,8 +189,7 @@ impl Tree {
     /// A list or a group begins.
     fn open(&mut self, place: Place, value: Value) -> Result<(), Fault> {
         if self.open.len() == MAX_DEPTH {
-            let message = format!("nested deeper than {MAX_DEPTH} levels; a robot needs four");
-            return Err(Fault::new(place, message));
+            return Err(too_deep(place));
         }
         self.open.push((Node { place, value }, None));
         Ok(())

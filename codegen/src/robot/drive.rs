@@ -2,10 +2,12 @@
 
 use super::document::{Node, Value};
 use super::drive_table::{DriveTable, exact};
+use super::magnitudes::within;
 use super::reader::Reader;
 use super::table::TableRow;
 use crate::exact::determinant;
 use dynid_description::JointKind;
+use dynid_description::bounds::{FASTEST_GEAR, MOST_COUPLED};
 use num_traits::Zero;
 
 const KEYS: [&str; 2] = ["gear", "coupled_friction"];
@@ -62,6 +64,15 @@ fn read_gear(
         Some((0..n).map(|m| (0..n).map(|k| if k == m { ratios[m] } else { 0.0 }).collect()).collect())
     };
     let gear = gear?;
+    for &ratio in gear.iter().flatten().filter(|ratio| **ratio != 0.0) {
+        within(reader, node, "a ratio of gear", ratio, [1.0 / FASTEST_GEAR, FASTEST_GEAR]);
+    }
+    let coupled =
+        (0..n).filter(|&m| (0..n).any(|k| k != m && (gear[m][k] != 0.0 || gear[k][m] != 0.0))).count();
+    if coupled > MOST_COUPLED {
+        reader.report(node.place, format!("gear couples {coupled} joints: expected at most {MOST_COUPLED}"));
+        return None;
+    }
     let mut right = true;
     for m in 0..n {
         if gear[m][m] == 0.0 {

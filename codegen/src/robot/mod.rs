@@ -48,6 +48,7 @@ mod drive;
 mod drive_table;
 mod expression;
 mod formula;
+mod magnitudes;
 mod parse;
 mod reader;
 mod rows;

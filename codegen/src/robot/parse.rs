@@ -5,10 +5,12 @@ use super::document::{Node, Place, START, Value, read_document};
 use super::drive::read_drive;
 use super::drive_table::DriveTable;
 use super::formula::joint_variable;
+use super::magnitudes::within;
 use super::reader::Reader;
 use super::rows::read_frames;
 use super::simulation_values::{read_limits, read_nominal};
 use super::table::RobotTable;
+use dynid_description::bounds::HEAVIEST;
 use dynid_description::{JointKind, Limits};
 use std::collections::HashSet;
 
@@ -73,7 +75,10 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
     };
     let constants = fields.get("constants").map(|node| read_constants(reader, node)).unwrap_or_default();
     let gravity = match fields.get("gravity") {
-        Some(node) => reader.numbers(node, "gravity", 3, &constants).map(|g| [g[0], g[1], g[2]]),
+        Some(node) => reader.numbers(node, "gravity", 3, &constants).map(|g| {
+            g.iter().for_each(|&x| within(reader, node, "gravity", x, [0.0, HEAVIEST]));
+            [g[0], g[1], g[2]]
+        }),
         None => Some([0.0, 0.0, -9.81]),
     };
     let frames = reader.required(&fields, "frames").and_then(|node| read_frames(reader, node, &constants))?;

@@ -3,14 +3,14 @@
 use super::document::{Node, Place, Value};
 use super::expression::Expression;
 use super::formula::Formula;
+use super::magnitudes;
 use super::reader::Reader;
 use super::table::TableRow;
 use dynid_description::JointKind;
+use dynid_description::bounds::MAX_FRAMES;
 use std::f64::consts::FRAC_PI_4;
 
 const KEYS: [&str; 9] = ["j", "parent", "sigma", "gamma", "b", "alpha", "d", "theta", "r"];
-/// Most rows that a table may have.
-const MAX_FRAMES: usize = 64;
 
 /// Reads `frames`. An entry that is wrong is reported and taken as 0, so that what counts joints can be checked too;
 /// `None` where the joints cannot be counted.
@@ -26,7 +26,8 @@ pub(super) fn read_frames(
         return None;
     }
     if rows.len() > MAX_FRAMES {
-        reader.report(node.place, format!("frames has {} rows; expected at most {MAX_FRAMES}", rows.len()));
+        let place = rows[MAX_FRAMES].place;
+        reader.report(place, format!("frames has {} rows; expected at most {MAX_FRAMES}", rows.len()));
         return None;
     }
     let frames: Vec<_> =
@@ -76,6 +77,7 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) };
         let Some(node) = node else { return Expression::ZERO };
         let value = reader.constant(node, key, constants).unwrap_or(Expression::ZERO);
+        magnitudes::check(reader, node, key, &value);
         if matches!(key, "alpha" | "gamma") {
             warn_of_rounded(reader, node, key, &value);
         }
@@ -90,6 +92,9 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
             && let Err(message) = check_variable(&formula, key, j, kind, kind == moves)
         {
             reader.report(node.place, message);
+        }
+        if let Some(value) = &formula.constant {
+            magnitudes::check(reader, node, key, value);
         }
         if let Some(angle) = formula.constant.as_ref().filter(|_| key == "theta") {
             warn_of_rounded(reader, node, key, angle);

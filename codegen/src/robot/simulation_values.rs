@@ -3,8 +3,10 @@
 use super::diagnostic::nearest;
 use super::document::{Node, Value, shortened};
 use super::drive_table::DriveTable;
+use super::magnitudes::within;
 use super::reader::Reader;
 use super::table::{NominalValues, TableRow, standard_parameters};
+use dynid_description::bounds::{LARGEST_NOMINAL, WIDEST_LIMIT};
 use dynid_description::{JointKind, Limits};
 
 /// Reads `limits`: per joint a number x, which stands for [-x, x], or [low, high]; one number stands for every joint.
@@ -53,6 +55,7 @@ fn range(reader: &mut Reader, node: &Node, key: &str, constants: &[(String, f64)
             reader.report(node.place, format!("{what} is {size}: expected a number above 0, or [low, high]"));
             return None;
         }
+        within(reader, node, &what, size, [1.0 / WIDEST_LIMIT, WIDEST_LIMIT]);
         return Some([-size, size]);
     }
     let ends = reader.numbers(node, &what, 2, constants)?;
@@ -63,6 +66,14 @@ fn range(reader: &mut Reader, node: &Node, key: &str, constants: &[(String, f64)
         );
         return None;
     }
+    ends.iter().for_each(|&end| within(reader, node, &what, end, [0.0, WIDEST_LIMIT]));
+    within(
+        reader,
+        node,
+        &format!("the width of the {what}"),
+        ends[1] - ends[0],
+        [1.0 / WIDEST_LIMIT, f64::MAX],
+    );
     Some([ends[0], ends[1]])
 }
 
@@ -123,6 +134,9 @@ fn not_negative(
     if let Some(negative) = values.iter().find(|&&x| x < 0.0) {
         reader.report(node.place, format!("{what} has {negative}: expected no number below 0"));
     }
+    if let Some(&largest) = values.iter().max_by(|a, b| a.total_cmp(b)) {
+        within(reader, node, what, largest, [0.0, LARGEST_NOMINAL]);
+    }
     values
 }
 
@@ -159,6 +173,7 @@ fn read_parameters(
             reader
                 .report(key.place, format!("parameter {name} is there twice; first at line {}", first.line));
         } else if let Some(number) = reader.number(value, name, constants) {
+            within(reader, value, name, number, [0.0, LARGEST_NOMINAL]);
             values.push((name.to_owned(), number));
         }
     }

@@ -2,6 +2,7 @@
 
 use super::error::FileError;
 use crate::model::{RecursiveModel, Robot};
+use dynid_description::bounds;
 
 /// Checks that models and effects can be evaluated with a table.
 pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
@@ -10,13 +11,18 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
     if n == 0 {
         return wrong("frames".to_owned(), "a robot has one joint at least");
     }
-    if robot.gravity.iter().any(|x| !x.is_finite()) {
-        return wrong("gravity".to_owned(), "it is not finite");
+    let beyond = |x: &f64, most: f64| x.is_nan() || x.abs() > most;
+    if robot.gravity.iter().any(|x| beyond(x, bounds::HEAVIEST)) {
+        return wrong("gravity".to_owned(), "it is not finite, or no robot has it");
     }
     for (k, f) in robot.frames.iter().enumerate() {
-        if [f.gamma, f.b, f.alpha, f.d, f.theta, f.r].iter().any(|x| !x.is_finite()) {
-            return wrong(format!("frames[{k}]"), "it is not finite");
+        let angles = [f.gamma, f.alpha, f.theta].iter().any(|x| beyond(x, bounds::WIDEST));
+        if angles || [f.b, f.d, f.r].iter().any(|x| beyond(x, bounds::LONGEST)) {
+            return wrong(format!("frames[{k}]"), "an angle or a length is not finite, or no robot has it");
         }
+    }
+    if robot.drive.gear.iter().any(|x| beyond(x, bounds::FASTEST_GEAR)) {
+        return wrong("drive.gear".to_owned(), "a ratio is not finite, or no robot has it");
     }
     if let Some(k) = robot.drive.coupled_friction.iter().position(|&motor| motor >= n) {
         return wrong(format!("drive.coupled_friction[{k}]"), "there is no such motor");
@@ -46,8 +52,11 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
         ("torque", &limits.torque),
     ] {
         let fits = limits.is_empty() || limits.len() == n;
-        if !fits || limits.iter().flatten().any(|x| x.is_nan()) {
-            return wrong(format!("limits.{name}"), "one [low, high] per joint, or none at all");
+        if !fits || limits.iter().flatten().any(|x| beyond(x, bounds::WIDEST_LIMIT)) {
+            return wrong(
+                format!("limits.{name}"),
+                "one [low, high] per joint that a robot can have, or none at all",
+            );
         }
     }
     check_nominal(robot, n)?;

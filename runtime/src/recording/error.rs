@@ -93,7 +93,7 @@ impl RecordingError {
             std::io::ErrorKind::NotFound => "there is no such file".into(),
             std::io::ErrorKind::PermissionDenied => "it may not be read".into(),
             std::io::ErrorKind::IsADirectory => "it is a folder, a file was expected".into(),
-            _ => error.to_string(),
+            _ => error.get_ref().map_or_else(|| error.to_string(), ToString::to_string),
         };
         Self::File { file: file.display().to_string(), message }
     }

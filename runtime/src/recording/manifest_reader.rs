@@ -1,6 +1,5 @@
 //! A manifest from its YAML.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -10,10 +9,15 @@ use super::column::Column;
 use super::manifest::{Channel, Layout, Manifest, Side, Time, Window};
 use super::manifest_values::number;
 use super::unit::{Quantity, Unit};
+use crate::regular_file;
+
 use super::yaml::{MAX_BYTES, Mistake, Node, Place, read_positions};
 
 /// Keys without which there is no recording.
 const NEEDED: [&str; 4] = ["robot", "time", "position", "torque"];
+
+/// Most trajectories of a recording: each of them reads its file from the beginning.
+const MOST_TRAJECTORIES: usize = 2000;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -51,11 +55,7 @@ impl Manifest {
     /// # Errors
     /// A file that cannot be read; otherwise as [`Manifest::parse`].
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
-        let file = std::fs::File::open(path).map_err(|e| RecordingError::io(path, &e))?;
-        let mut bytes = Vec::new();
-        // One byte more than may be there shows that there are too many.
-        let limit = MAX_BYTES as u64 + 1;
-        file.take(limit).read_to_end(&mut bytes).map_err(|e| RecordingError::io(path, &e))?;
+        let bytes = regular_file::read(path, MAX_BYTES as u64).map_err(|e| RecordingError::io(path, &e))?;
         Self::parse(path, &bytes)
     }
 
@@ -142,6 +142,11 @@ impl Manifest {
         }
         if self.layout.delimiter == self.layout.decimal {
             return Err(self.error(&["layout"], "delimiter and decimal point are the same byte"));
+        }
+        if self.trajectories.len() > MOST_TRAJECTORIES {
+            let message =
+                format!("{} given; a recording has at most {MOST_TRAJECTORIES}", self.trajectories.len());
+            return Err(self.error(&["trajectories", &MOST_TRAJECTORIES.to_string()], &message));
         }
         let listed = !self.trajectories.is_empty();
         if !listed {

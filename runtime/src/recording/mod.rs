@@ -61,4 +61,4 @@ pub use rows::Rows;
 pub use table::TableReader;
 pub use trajectory::Trajectory;
 pub use unit::{Quantity, Unit};
-pub use write::write;
+pub use write::{manifest_text, write_rows};

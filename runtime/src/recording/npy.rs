@@ -5,6 +5,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::{Column, Reason, RecordingError, Rows};
+use crate::regular_file;
 
 /// Reads the wanted columns of a two-dimensional little-endian `.npy` array (`float64` or `float32`) block by block:
 /// rows are instants, columns are channels. In Fortran order (`numpy.save(f, numpy.asfortranarray(a))`) only the wanted
@@ -23,6 +24,11 @@ pub(super) struct NpyReader<R> {
     bytes: Vec<u8>,
 }
 
+/// Bytes read at a time.
+const AT_ONCE: usize = 1 << 22;
+/// Most columns of an array.
+const MOST_COLUMNS: usize = 1 << 16;
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Shape {
     rows: usize,
@@ -34,7 +40,7 @@ struct Shape {
 
 impl NpyReader<File> {
     pub fn open(path: &Path, file: &str, wanted: &[Column]) -> Result<Self, RecordingError> {
-        let source = File::open(path).map_err(|e| RecordingError::io(path, &e))?;
+        let source = regular_file::open(path).map_err(|e| RecordingError::io(path, &e))?;
         Self::new(source, file, wanted)
     }
 }
@@ -70,7 +76,9 @@ impl<R: Read + Seek> NpyReader<R> {
     }
 
     pub fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
-        let count = most.min(self.shape.rows - self.row);
+        let row = if self.shape.by_column { 1 } else { self.shape.columns };
+        let at_once = (AT_ONCE / (row * self.shape.width)).max(1);
+        let count = most.min(self.shape.rows - self.row).min(at_once);
         if count == 0 {
             return Ok(0);
         }
@@ -166,6 +174,9 @@ fn header(source: &mut impl Read) -> Result<(u64, Shape), String> {
         .collect::<Result<_, _>>()?;
     match sizes[..] {
         [rows] => Ok(((before + length) as u64, Shape { rows, columns: 1, width, by_column: false })),
+        [_, columns] if columns > MOST_COLUMNS => Err(format!(
+            "an array of shape {shape}: more than {MOST_COLUMNS} columns are no recording; is it transposed?"
+        )),
         [rows, columns] if columns > 0 => {
             Ok(((before + length) as u64, Shape { rows, columns, width, by_column }))
         }
@@ -215,6 +226,21 @@ mod tests {
     }
 
     #[test]
+    fn an_array_of_a_hundred_million_columns_takes_no_memory() {
+        let error = read(file("'<f8'", "False", "(10, 100000000)", &[]), &[0]).expect_err("too wide");
+        assert!(error.to_string().contains("more than 65536 columns"), "{error}");
+        // Wide rows are read a few at a time.
+        let numbers = doubles(&(0..3 * 60_000).map(f64::from).collect::<Vec<_>>());
+        let bytes = file("'<f8'", "False", "(3, 60000)", &numbers);
+        let mut reader = NpyReader::new(Cursor::new(bytes), "x.npy", &[Column::Index(1)]).expect("an array");
+        let mut rows = Rows::new(1);
+        while reader.read(&mut rows, 1 << 16).expect("rows") > 0 {
+            assert!(reader.bytes.len() <= AT_ONCE);
+        }
+        assert_eq!(rows.columns[0], [1.0, 60_001.0, 120_001.0]);
+    }
+
+    #[test]
     fn both_orders_and_both_widths_are_read() {
         let by_row = doubles(&[0.0, 1.0, 2.0, 10.0, 11.0, 12.0, 20.0, 21.0, 22.0]);
         let by_column = doubles(&[0.0, 10.0, 20.0, 1.0, 11.0, 21.0, 2.0, 12.0, 22.0]);
@@ -246,7 +272,9 @@ mod tests {
         assert!(error(file("'<f8'", "False", "(3, 3)", &doubles(&[1.0])), &[0]).contains("ends before"));
         assert!(error(file("'<f8'", "False", "(1, 2)", &doubles(&[1.0, 2.0])), &[2]).contains("from 0 to 1"));
         let huge = format!("({}, {})", usize::MAX, usize::MAX);
-        assert!(error(file("'<f8'", "False", &huge, &[]), &[0]).contains("ends before"));
+        assert!(error(file("'<f8'", "False", &huge, &[]), &[0]).contains("columns"));
+        let long = format!("({}, 5)", usize::MAX);
+        assert!(error(file("'<f8'", "False", &long, &[]), &[0]).contains("ends before"));
     }
 
     proptest! {

@@ -7,6 +7,7 @@ use std::path::Path;
 use super::fields::{blanks_at, find, is_passed_over, no_text, split};
 use super::number::{Field, parse_field, plain_decimal};
 use super::{Column, Layout, Reason, RecordingError, Rows};
+use crate::regular_file;
 
 /// Reads the wanted columns of a delimited text file block by block, so that text and numbers are never in memory
 /// together.
@@ -46,10 +47,7 @@ impl TableReader<File> {
     /// A file that cannot be read, an empty one, a column that is not there (the message names those
     /// that are), a name where there is no header.
     pub fn open(path: &Path, file: &str, layout: &Layout, wanted: &[Column]) -> Result<Self, RecordingError> {
-        let source = File::open(path).map_err(|e| RecordingError::io(path, &e))?;
-        if source.metadata().is_ok_and(|m| m.is_dir()) {
-            return Err(RecordingError::io(path, &std::io::ErrorKind::IsADirectory.into()));
-        }
+        let source = regular_file::open(path).map_err(|e| RecordingError::io(path, &e))?;
         Self::new(source, file, layout, wanted)
     }
 }

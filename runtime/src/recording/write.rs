@@ -1,49 +1,23 @@
-//! Writing a recording: CSV files and the manifest that reads them back.
+//! A recording as text: the rows of each motion, and the manifest that reads them back. Who calls this decides where
+//! the text goes.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
 
-use super::{RecordingError, Trajectory};
+use super::Trajectory;
 use crate::model::{JointIndex, JointKind, Robot};
 
-/// Writes trajectories of a robot to `folder` (made where it does not exist) as `traj1.csv`, `traj2.csv`, ... and
-/// `recording.yaml`; returns the path of the manifest. Files of those names are replaced.
-///
-/// `robot_reference` is how the manifest names the robot: a name from `robots/` or a path. Numbers are written so
-/// that they are read back exactly.
+/// Writes the rows of a motion as CSV with the columns that [`manifest_text`] names. Numbers are written so that they
+/// are read back exactly.
 ///
 /// # Errors
-/// [`RecordingError::File`] for a folder or file that cannot be written.
-pub fn write(
-    folder: &Path,
-    robot: &Robot,
-    robot_reference: &str,
-    title: &str,
-    trajectories: &[Trajectory],
-) -> Result<PathBuf, RecordingError> {
-    fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
-    for (k, trajectory) in trajectories.iter().enumerate() {
-        let path = folder.join(format!("traj{}.csv", k + 1));
-        write_rows(&path, trajectory).map_err(|e| failed(&path, &e))?;
-    }
-    let path = folder.join("recording.yaml");
-    fs::write(&path, manifest(robot, robot_reference, title, trajectories)).map_err(|e| failed(&path, &e))?;
-    Ok(path)
-}
-
-fn failed(path: &Path, error: &std::io::Error) -> RecordingError {
-    RecordingError::File { file: path.display().to_string(), message: format!("cannot be written: {error}") }
-}
-
-fn write_rows(path: &Path, trajectory: &Trajectory) -> std::io::Result<()> {
+/// What `out` says.
+pub fn write_rows(trajectory: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
     let n = trajectory.position.len();
-    let mut file = std::io::BufWriter::with_capacity(1 << 16, fs::File::create(path)?);
     let names = |letter: &str| (1..=n).map(|j| format!(",{letter}{j}")).collect::<String>();
     let velocity = trajectory.velocity.as_ref();
     let velocity_names = velocity.map_or(String::new(), |_| names("dq"));
-    writeln!(file, "t{}{velocity_names}{}", names("q"), names("tau"))?;
+    writeln!(out, "t{}{velocity_names}{}", names("q"), names("tau"))?;
     let mut line = String::new();
     for (k, t) in trajectory.time.iter().enumerate() {
         line.clear();
@@ -54,12 +28,20 @@ fn write_rows(path: &Path, trajectory: &Trajectory) -> std::io::Result<()> {
         for channel in channels {
             let _ = write!(line, ",{}", channel[k]);
         }
-        writeln!(file, "{line}")?;
+        writeln!(out, "{line}")?;
     }
-    file.flush()
+    Ok(())
 }
 
-fn manifest(robot: &Robot, robot_reference: &str, title: &str, trajectories: &[Trajectory]) -> String {
+/// The manifest of motions that [`write_rows`] wrote, each given with the name of its file beside the manifest.
+///
+/// `robot_reference` is how the manifest names the robot: a name from `robots/` or a path.
+pub fn manifest_text(
+    robot: &Robot,
+    robot_reference: &str,
+    title: &str,
+    motions: &[(&str, &Trajectory)],
+) -> String {
     let kinds = robot.joint_kinds();
     let n = kinds.len();
     let columns = |letter: &str| (1..=n).map(|j| format!("{letter}{j}")).collect::<Vec<_>>().join(", ");
@@ -76,12 +58,12 @@ fn manifest(robot: &Robot, robot_reference: &str, title: &str, trajectories: &[T
     let _ = writeln!(text, "layout: {{header: true, delimiter: \",\"}}");
     let _ = writeln!(text, "time: {{column: t, unit: s}}");
     let _ = writeln!(text, "position: {{columns: [{}], unit: {}}}", columns("q"), units("rad", "m"));
-    if trajectories.iter().any(|t| t.velocity.is_some()) {
+    if motions.iter().any(|(_, t)| t.velocity.is_some()) {
         let _ = writeln!(text, "velocity: {{columns: [{}], unit: {}}}", columns("dq"), units("rad/s", "m/s"));
     }
     let _ = writeln!(text, "torque: {{columns: [{}], unit: {}}}", columns("tau"), units("N.m", "N"));
     let _ = writeln!(text, "trajectories:");
-    for (k, trajectory) in trajectories.iter().enumerate() {
+    for (file, trajectory) in motions {
         let fixed: Vec<String> = trajectory
             .fixed
             .iter()
@@ -89,13 +71,15 @@ fn manifest(robot: &Robot, robot_reference: &str, title: &str, trajectories: &[T
             .map(|&j| robot.joint_number(JointIndex(j)).to_string())
             .collect();
         let fixed = if fixed.is_empty() { String::new() } else { format!(", fixed: [{}]", fixed.join(", ")) };
-        let _ = writeln!(text, "  - {{file: traj{}.csv{fixed}}}", k + 1);
+        let _ = writeln!(text, "  - {{file: {}{fixed}}}", quoted(file));
     }
     text
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::model::{Drive, Frame, Limits};
     use crate::recording::{Manifest, load};
@@ -121,8 +105,17 @@ mod tests {
         };
         let written = [trajectory(1.0, vec![]), trajectory(0.7, vec![1])];
         let folder = std::env::temp_dir().join(format!("dynid-write-{}", std::process::id()));
-        let path =
-            write(&folder, &robot, "test_arm", "colons: and \"quotes\"", &written).expect("it is written");
+        fs::create_dir_all(&folder).expect("a folder");
+        let named: Vec<(String, &Trajectory)> =
+            written.iter().enumerate().map(|(k, t)| (format!("motion, {k}.csv"), t)).collect();
+        for (name, motion) in &named {
+            let mut file = fs::File::create(folder.join(name)).expect("a file");
+            write_rows(motion, &mut file).expect("it is written");
+        }
+        let motions: Vec<(&str, &Trajectory)> = named.iter().map(|(name, t)| (name.as_str(), *t)).collect();
+        let path = folder.join("recording.yaml");
+        let text = manifest_text(&robot, "test_arm", "colons: and \"quotes\"", &motions);
+        fs::write(&path, text).expect("a manifest");
         let manifest = Manifest::read(&path).expect("the manifest keeps to the contract");
         let read = load(&manifest, &robot).expect("it loads");
         let _ = fs::remove_dir_all(&folder);

@@ -22,6 +22,9 @@ pub struct Decimator {
     taps: Vec<f64>,
 }
 
+/// Half the longest filter, samples; a recording that it fits into has a rate a hundred thousand times the band.
+const LONGEST: f64 = 1e6;
+
 /// The rows that a decimator keeps from a range of valid samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeptRows {
@@ -54,7 +57,7 @@ impl Decimator {
     /// of taps grows with 1 / band, so that the transition keeps its shape.
     ///
     /// # Errors
-    /// A factor of 0, or a band outside of (0, 1].
+    /// A factor of 0, a band outside of (0, 1], or a filter of more than two million taps.
     pub fn with_band(factor: usize, band: f64) -> Result<Self, SignalError> {
         if factor == 0 {
             return Err(SignalError::Factor);
@@ -65,7 +68,11 @@ impl Decimator {
         if factor == 1 && band == 1.0 {
             return Ok(Self { factor, taps: vec![1.0] });
         }
-        let half = (10.0 * factor as f64 / band).ceil() as usize;
+        let half = (10.0 * factor as f64 / band).ceil();
+        if half > LONGEST {
+            return Err(SignalError::TooManyTaps(2.0 * half));
+        }
+        let half = half as usize;
         let cutoff = band / factor as f64;
         Ok(Self { factor, taps: hamming_low_pass(half, cutoff) })
     }

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::Decimator;
+use crate::signal::SignalError;
 use crate::signal::oracle::{oracle, worst};
 
 fn decimator(factor: usize) -> Decimator {
@@ -142,4 +143,14 @@ proptest! {
             prop_assert!((y - slope * c as f64).abs() < 1e-9);
         }
     }
+}
+
+#[test]
+fn a_filter_longer_than_memory_is_refused_before_it_is_made() {
+    let longest = Decimator::factor_for(500.0, 1e-9);
+    for (factor, band) in [(longest, 1.0), (1, 1e-300), (50_000_000, 1.0)] {
+        let refused = Decimator::with_band(factor, band);
+        assert!(matches!(refused, Err(SignalError::TooManyTaps(_))), "{factor} {band}");
+    }
+    assert!(Decimator::with_band(25_000, 1.0).is_ok());
 }

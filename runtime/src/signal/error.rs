@@ -62,6 +62,9 @@ pub enum SignalError {
     /// A pass band that is not between 0 and the new Nyquist frequency.
     #[error("cut-off at {0} of the new Nyquist frequency: it must lie above 0 and at most at 1")]
     Band(f64),
+    /// A filter longer than the working memory allows: a band or a rate far below the recording's.
+    #[error("a filter of {0:e} samples is too long: the band or the rate is too low for this recording")]
+    TooManyTaps(f64),
     /// More samples than the working memory allows.
     #[error("{name}: {samples} samples on the uniform grid are too many; are the time stamps right?")]
     TooLong {

@@ -70,7 +70,11 @@ impl<'a> Sensors<'a> {
     pub fn position(&mut self, j: usize, q: f64) -> f64 {
         let noisy = q + noise(&self.settings.position_noise, j, &mut self.position_stream);
         match self.settings.position_quantum.get(j) {
-            Some(&quantum) if quantum > 0.0 => (noisy / quantum).round() * quantum,
+            Some(&quantum) if quantum > 0.0 => {
+                // Steps beyond all numbers are finer than the reading itself.
+                let steps = (noisy / quantum).round();
+                if steps.is_finite() { steps * quantum } else { noisy }
+            }
             _ => noisy,
         }
     }

@@ -4,7 +4,11 @@ use dynid_runtime::model::{JointIndex, JointNumber, Robot};
 use dynid_runtime::simulation::ElasticJoint;
 
 use crate::failure::Failure;
+use crate::ranges;
 use crate::words::joint_number;
+
+/// Reads a number within its range.
+type Parser = fn(&str) -> Result<f64, String>;
 
 /// The elastic joint of a robot that a value of the option is for.
 pub(super) fn elastic_joint(robot: &Robot, text: &str) -> Result<ElasticJoint, Failure> {
@@ -19,11 +23,19 @@ pub(super) fn elastic_joint(robot: &Robot, text: &str) -> Result<ElasticJoint, F
             known.join(", ")
         ))
     })?;
-    let numbers: Vec<f64> = fields.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
-    match numbers[..] {
-        [stiffness] => Ok(ElasticJoint { joint, stiffness, damping: 0.0, play: 0.0 }),
-        [stiffness, damping] => Ok(ElasticJoint { joint, stiffness, damping, play: 0.0 }),
-        [stiffness, damping, play] => Ok(ElasticJoint { joint, stiffness, damping, play }),
-        _ => Err(wrong()),
+    let mut elastic = ElasticJoint { joint, stiffness: 0.0, damping: 0.0, play: 0.0 };
+    let numbers: Vec<&str> = fields.collect();
+    if numbers.is_empty() || numbers.len() > 3 {
+        return Err(wrong());
     }
+    let parts: [(&str, Parser, &mut f64); 3] = [
+        ("stiffness", ranges::stiffness, &mut elastic.stiffness),
+        ("damping", ranges::damping, &mut elastic.damping),
+        ("play", ranges::play, &mut elastic.play),
+    ];
+    for (number, (name, parser, value)) in numbers.into_iter().zip(parts) {
+        *value = parser(number)
+            .map_err(|why| Failure::Input(format!("--elastic {text}: {name} {number}: {why}")))?;
+    }
+    Ok(elastic)
 }

@@ -1,7 +1,6 @@
 //! Why a robot has no recursive model.
 
-/// Most frames, fixed ones included, that a table may have: scratch lives on the stack.
-pub const MAX_FRAMES: usize = 16;
+pub use dynid_description::bounds::MAX_FRAMES;
 
 /// Why a robot has no recursive model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

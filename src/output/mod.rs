@@ -1,0 +1,115 @@
+//! Words and tables on a terminal, files for other programs.
+
+mod file;
+mod terminal;
+mod together;
+
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, ContentArrangement, Table};
+
+pub use terminal::{complain, finished, on_one_line, print, shown, warn};
+pub use together::Together;
+
+use crate::failure::{Failure, file_failure};
+
+/// A table for a terminal. A header that starts with `<` sets its column to the left; the others hold numbers.
+pub fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
+    let mut table = Table::new();
+    table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(header.iter().map(|name| name.trim_start_matches('<')));
+    for row in rows {
+        table.add_row(row);
+    }
+    for (column, name) in table.column_iter_mut().zip(header) {
+        if !name.starts_with('<') {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table.to_string().lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
+}
+
+/// Replaces a file as a whole, or writes to standard output for `-`.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path; what the file held before is still there then.
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        terminal::to_standard_output(&format!("{text}\n"));
+        return finished();
+    }
+    file::replace(path, &mut |out: &mut dyn Write| out.write_all(text.as_bytes()))
+        .map_err(|error| file_failure("write it", path, &error))
+}
+
+/// Makes a folder, before long work that would be lost without it.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path.
+pub fn make_folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path).map_err(|error| file_failure("make the folder", path, &error))
+}
+
+/// Writes a page that is made by a command. What the file already has from its line `## Discussion` on is a person's
+/// and stays.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path.
+pub fn write_page(path: &Path, text: &str) -> Result<(), Failure> {
+    let before = std::fs::read_to_string(path).unwrap_or_default();
+    let discussion = before.find("\n## Discussion\n").map_or("", |at| &before[at..]);
+    write(path, &format!("{}\n{}", text.trim_end(), discussion))
+}
+
+/// Writes a value as JSON, or to standard output for `-`.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path.
+pub fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::Data(format!("the result cannot be written as JSON: {error}")))?;
+    write(path, &text)
+}
+
+/// True where progress may be drawn: a person is watching.
+pub fn watched() -> bool {
+    std::io::stderr().is_terminal()
+}
+
+/// A progress bar on standard error; silent where nobody watches.
+pub struct Bar(indicatif::ProgressBar);
+
+impl Bar {
+    /// A bar that counts `what`.
+    pub fn new(what: &'static str) -> Self {
+        let bar = if watched() { indicatif::ProgressBar::new(0) } else { indicatif::ProgressBar::hidden() };
+        // The template is a literal; should it not parse, the default style serves as well.
+        if let Ok(style) = indicatif::ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta}") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        Self(bar)
+    }
+
+    /// Moves it to `done` of `all`.
+    pub fn at(&self, done: usize, all: usize) {
+        self.0.set_length(all as u64);
+        self.0.set_position(done as u64);
+    }
+}
+
+impl Bar {
+    /// Moves it to a share of the whole, and says what is being done.
+    pub fn share(&self, done: f64, what: &str) {
+        self.0.set_message(on_one_line(what));
+        self.at((1000.0 * done.clamp(0.0, 1.0)) as usize, 1000);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
