@@ -84,28 +84,39 @@ impl EncoderNoise {
                 fixed: Vec::new(),
             }
         };
-        let mut samples = 4 * decimator.taps().len() + 16;
+        let mut samples = 64;
         let motion = loop {
             let motion = match prepare(&reach(samples), preparation) {
                 Err(SignalError::TooShort { needed, .. }) => {
-                    samples = 4 * (needed + decimator.taps().len());
+                    samples = 4 * needed;
                     continue;
                 }
                 other => other?,
             };
-            if samples >= 2 * (motion.edge_samples + decimator.taps().len()) {
+            if samples >= 4 * motion.edge_samples {
                 break motion;
             }
-            samples = 4 * (motion.edge_samples + decimator.taps().len());
+            samples = 8 * motion.edge_samples;
         };
         let response = motion.ddq.first().map_or(&[][..], Vec::as_slice);
-        let gain: f64 = response
-            .windows(decimator.taps().len())
-            .map(|window| window.iter().zip(decimator.taps()).map(|(x, h)| x * h).sum::<f64>().powi(2))
-            .sum();
+        // What is left of it has died out at both ends; the filter of the rows may be far longer.
+        let largest = response.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let lives = |x: &f64| x.abs() > DIED_OUT * largest;
+        let first = response.iter().position(lives).unwrap_or(0);
+        let last = response.iter().rposition(lives).map_or(0, |last| last + 1);
+        let (response, taps) = (&response[first..last.max(first)], decimator.taps());
+        let at = |k: usize| -> f64 {
+            let from = (k + 1).saturating_sub(taps.len());
+            let to = (k + 1).min(response.len());
+            (from..to).map(|i| response[i] * taps[k - i]).sum()
+        };
+        let gain: f64 = (0..response.len() + taps.len() - 1).map(|k| at(k).powi(2)).sum();
         Ok(self.density.iter().map(|d| d * 0.5 * rate * gain).collect())
     }
 }
+
+/// Part of its largest value below which a response counts as over.
+const DIED_OUT: f64 = 1e-9;
 
 /// The parts of a position that are looked at.
 fn stretches(position: &[f64], rate: f64) -> Vec<&[f64]> {

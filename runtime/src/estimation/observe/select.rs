@@ -65,9 +65,11 @@ pub(super) fn select(rows: &Candidates<'_>, equations: Equations) -> Result<Vec<
                 || settings.windows.iter().any(|w| t - support >= w[0] - 1e-9 && t + support <= w[1] + 1e-9)
         })
         .collect();
-    let mut moving = moving(motion, grid, decimator, detected, &settings.standstill)?;
+    let lobe = decimator.factor();
+    let mut moving = rows_that_move(motion, grid, lobe, detected, settings)?;
     if matches!(settings.standstill, Standstill::Automatic | Standstill::Detected(_)) {
-        leave_out_turning_motors(drive, motion, grid, decimator.factor(), &mut moving);
+        leave_out_turning_motors(drive, motion, grid, lobe, &mut moving);
+        keep_short_strokes(&rows_that_move(motion, grid, lobe / 2, detected, settings)?, &mut moving);
     }
     let count = if equations == Equations::Torque { n } else { 1 };
     Ok((0..count)
@@ -100,19 +102,30 @@ pub(super) fn select(rows: &Candidates<'_>, equations: Equations) -> Result<Vec<
         .collect())
 }
 
-/// For each joint and row, whether the joint moves.
-fn moving(
+/// A row that a joint turns round in has its sign mistimed, but where strokes are hardly longer than the main lobe,
+/// nearly every row has: a joint that would lose more than half of the rows of its `slower` speeds keeps those.
+fn keep_short_strokes(slower: &[Vec<bool>], moving: &mut [Vec<bool>]) {
+    let count = |rows: &[bool]| rows.iter().filter(|used| **used).count();
+    for (moving, slower) in moving.iter_mut().zip(slower) {
+        if 2 * count(moving) < count(slower) {
+            moving.clone_from(slower);
+        }
+    }
+}
+
+/// For each joint and row, whether the joint moves, and turns round nowhere within `reach` samples.
+fn rows_that_move(
     motion: &Motion,
     grid: KeptRows,
-    decimator: &Decimator,
+    reach: usize,
     detected: &StandstillSpeeds,
-    policy: &Standstill,
+    settings: &ObserveSettings,
 ) -> Result<Vec<Vec<bool>>, ObserveError> {
     let n = motion.dq.len();
-    let speeds: Vec<f64> = match policy {
-        Standstill::Automatic => return Ok(detected.moving(motion, &grid, decimator.factor())),
+    let speeds: Vec<f64> = match &settings.standstill {
+        Standstill::Automatic => return Ok(detected.moving(motion, &grid, reach)),
         Standstill::Detected(before) if before.thresholds.len() == n => {
-            return Ok(before.moving(motion, &grid, decimator.factor()));
+            return Ok(before.moving(motion, &grid, reach));
         }
         Standstill::Detected(before) => {
             return Err(ObserveError::StandstillSpeeds { found: before.thresholds.len(), expected: n });
