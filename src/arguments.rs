@@ -6,6 +6,8 @@ use clap::Args;
 use dynid_runtime::estimation::observe::{ObserveSettings, Standstill};
 use dynid_runtime::prediction::Comparison;
 
+use crate::ranges;
+
 /// Which recording is read.
 #[derive(Debug, Clone, Args)]
 pub struct Source {
@@ -15,10 +17,10 @@ pub struct Source {
     #[arg(long)]
     pub robot: Option<String>,
     /// Use only what comes after this time, s
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = ranges::instant, value_name = ranges::INSTANT)]
     pub from: Option<f64>,
     /// Use only what comes before this time, s
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = ranges::instant, value_name = ranges::INSTANT)]
     pub to: Option<f64>,
 }
 
@@ -40,7 +42,7 @@ impl Source {
 pub struct Sampling {
     /// Band of the equations, Hz: what is faster is filtered out of torques and model alike [default: the widest, up
     /// to 50 Hz, in which the encoders' noise hardly shows in the accelerations]
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = ranges::band, value_name = ranges::BAND)]
     pub band: Option<f64>,
     #[command(flatten)]
     /// Which rows.
@@ -52,7 +54,7 @@ pub struct Sampling {
 pub struct ComparisonOptions {
     /// Widest band of the comparison, Hz: what is faster is filtered out of torques and model alike [default: 25]. A
     /// recording that carries less is compared in what it carries
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = ranges::band, value_name = ranges::BAND)]
     pub band: Option<f64>,
     #[command(flatten)]
     /// Which rows.
@@ -63,20 +65,38 @@ pub struct ComparisonOptions {
 #[derive(Debug, Clone, Default, Args)]
 pub struct RowOptions {
     /// Equations a second, Hz [default: twice the band]
-    #[arg(long)]
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        value_parser = ranges::rows_rate,
+        value_name = ranges::ROWS_RATE,
+    )]
     pub rate: Option<f64>,
     /// Cut-off of the position filter, Hz [default: twice the band, at most a fifth of the recording's rate]
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = ranges::cutoff, value_name = ranges::CUTOFF)]
     pub cutoff: Option<f64>,
     /// Leave out rows where the joint is slower than this, rad/s or m/s: one value, or one per joint [default: 2 %
     /// of the joint's fastest speed]
-    #[arg(long, value_delimiter = ',', conflicts_with = "all_rows")]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        conflicts_with = "all_rows",
+        allow_negative_numbers = true,
+        value_parser = ranges::standstill,
+        value_name = ranges::STANDSTILL,
+    )]
     pub standstill: Vec<f64>,
     /// Keep the rows where joints stand still
     #[arg(long)]
     pub all_rows: bool,
     /// Threads; the result is the same for every number [default: all cores]
-    #[arg(long, default_value_t = 0)]
+    #[arg(
+        long,
+        default_value_t = 0,
+        allow_negative_numbers = true,
+        value_parser = ranges::threads,
+        value_name = ranges::THREADS,
+    )]
     pub threads: usize,
 }
 
@@ -85,24 +105,32 @@ pub struct RowOptions {
 pub struct DiagnosisOptions {
     /// Highest frequency of the rows, Hz, and widest band of the errors that are told [default: by the recording's
     /// noise, and 25]
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = ranges::band, value_name = ranges::BAND)]
     pub band: Option<f64>,
     /// Cut-off of the filters of positions and torques, Hz [default: by the band, at most 60]
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = ranges::cutoff, value_name = ranges::CUTOFF)]
     pub cutoff: Option<f64>,
     /// Leave out rows where the joint is slower than this, rad/s or m/s: one value, or one per joint [default: 1.5 %
     /// of the joint's fastest speed]
-    #[arg(long, value_delimiter = ',')]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        value_parser = ranges::standstill,
+        value_name = ranges::STANDSTILL,
+    )]
     pub standstill: Vec<f64>,
-    /// Name less: judge every law beside the nuisances of real recordings and against the variation between stretches
-    /// of the recording itself (with a baseline, its own variation always counts)
-    #[arg(long)]
-    pub cautious: bool,
     /// Look for pushes that a single joint sees while it moves, too; what a law leaves near a reversal may look like one
     #[arg(long)]
     pub single_joint_contacts: bool,
     /// Threads; the result is the same for every number [default: all cores]
-    #[arg(long, default_value_t = 0)]
+    #[arg(
+        long,
+        default_value_t = 0,
+        allow_negative_numbers = true,
+        value_parser = ranges::threads,
+        value_name = ranges::THREADS,
+    )]
     pub threads: usize,
 }
 

@@ -1,11 +1,12 @@
 //! Cases as folders, in the form of a challenge: what the diagnosis reads, a motion for a test, and the truth.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
 
+use dynid::output;
+use dynid::recording_files::{RobotReference, write_recording};
 use dynid_runtime::model::Robot;
-use dynid_runtime::recording::{self, Trajectory};
+use dynid_runtime::recording::Trajectory;
 
 use crate::case::Case;
 use crate::failure::Failure;
@@ -16,31 +17,16 @@ use crate::secret::is_change;
 pub fn write(folder: &Path, robot: &Robot, case: &Case, recordings: &Recordings) -> Result<(), Failure> {
     let folder = folder.join(case.name());
     let title = "closed-loop motion, 500 Hz";
-    recording::write(&folder, robot, &case.robot, title, &recordings.motions)?;
-    beside(&folder, "test", robot, case, &recordings.test)?;
+    let write = |manifest: &str, stem: &str, motions: &[Trajectory]| {
+        let reference = RobotReference::Name(&case.robot);
+        write_recording((&folder, manifest, stem), robot, reference, title, motions)
+    };
+    write("recording.yaml", "traj", &recordings.motions)?;
+    write("test.yaml", "test", &recordings.test)?;
     if !recordings.baseline.is_empty() {
-        beside(&folder, "baseline", robot, case, &recordings.baseline)?;
+        write("baseline.yaml", "baseline", &recordings.baseline)?;
     }
-    fs::write(folder.join("truth.yaml"), truth(case, recordings))?;
-    Ok(())
-}
-
-/// Another recording in the same folder, with its own names.
-fn beside(
-    folder: &Path,
-    name: &str,
-    robot: &Robot,
-    case: &Case,
-    motions: &[Trajectory],
-) -> Result<(), Failure> {
-    let own = folder.join(name);
-    let manifest = recording::write(&own, robot, &case.robot, "closed-loop motion, 500 Hz", motions)?;
-    let text = fs::read_to_string(&manifest)?;
-    for k in 1..=motions.len() {
-        fs::rename(own.join(format!("traj{k}.csv")), folder.join(format!("{name}{k}.csv")))?;
-    }
-    fs::write(folder.join(format!("{name}.yaml")), text.replace("file: traj", &format!("file: {name}")))?;
-    fs::remove_dir_all(own)?;
+    output::write(&folder.join("truth.yaml"), &truth(case, recordings))?;
     Ok(())
 }
 

@@ -88,7 +88,7 @@ fn nowhere(
     Ok(vec![("size", magnitude)])
 }
 
-const TABLE: [Hiding; 23] = [
+const TABLE: [Hiding; 24] = [
     law(EffectKind::Stribeck, "extra level at rest, of the dry friction", 0.3, 2.0, |world, model, s, m| {
         let joint = Joint::of(model, s);
         let (level, vs) = (m * joint.friction, s.between(0, 0.03, 0.12) * joint.speed);
@@ -190,6 +190,19 @@ const TABLE: [Hiding; 23] = [
             let k = 2.0 * (m * joint.friction) / joint.range;
             world.put(&joint.term(s, Vec::new(), vec![k]));
             Ok(vec![("k", k)])
+        },
+    ),
+    // A curve that no line and no wave follows.
+    law(
+        EffectKind::PositionDependentTorque,
+        "quadratic and cubic part, of the dry friction",
+        0.3,
+        3.0,
+        |world, model, s, m| {
+            let joint = Joint::of(model, s);
+            let part = m * joint.friction;
+            world.put(&joint.term(s, vec![0.0, 0.5 * joint.range], vec![0.0, part, part, 0.0, 0.0]));
+            Ok(vec![("part", part)])
         },
     ),
     Hiding {

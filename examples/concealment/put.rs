@@ -52,7 +52,15 @@ impl Joint {
     pub fn term(&self, secret: &Secret, shape: Vec<f64>, amplitude: Vec<f64>) -> EffectTerm {
         let (speed, range, gear) = (self.speed, self.range, self.gear);
         EffectTerm {
-            scale: Some(TermScale { speed, range, torque: 1.0, duration: 10.0, gear, prismatic: false }),
+            scale: Some(TermScale {
+                speed,
+                range,
+                centre: 0.0,
+                torque: 1.0,
+                duration: 10.0,
+                gear,
+                prismatic: false,
+            }),
             ..term(secret.effect, Place::Joint(self.joint), shape, amplitude)
         }
     }

@@ -2,6 +2,8 @@
 #![deny(missing_docs)]
 
 #[cfg(feature = "diagnosis")]
+pub mod confirmation;
+#[cfg(feature = "diagnosis")]
 pub mod diagnosis;
 pub mod effects;
 pub mod estimation;
@@ -14,6 +16,7 @@ pub mod plausibility;
 #[cfg(feature = "diagnosis")]
 pub mod prediction;
 pub mod recording;
+pub mod regular_file;
 pub mod report;
 pub mod signal;
 #[cfg(feature = "simulation")]

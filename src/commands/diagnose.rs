@@ -6,17 +6,19 @@ mod reference;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
 use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
+use crate::errors::prediction_failure;
 use crate::failure::Failure;
 use crate::output::{Bar, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
 use crate::words::joint_number;
-use compare::{fitted, tested};
+use compare::{Test, fitted, tested};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
@@ -63,15 +65,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (None, None) => Vec::new(),
     };
     let settings = settings(&arguments.sampling, model.robot().joints());
+    let test = match &arguments.test {
+        Some(path) => Some(Test::new(&source.other(path), &arguments.sampling)?),
+        None => None,
+    };
     let bar = Bar::new("diagnosis");
-    let outcome = diagnose(model, &measured.trajectories, &baseline, &settings, &bar);
+    let outcome = match &test {
+        Some(test) => {
+            diagnose_and_confirm(model, &measured.trajectories, &baseline, &test.prepared, &settings, &bar)
+        }
+        None => diagnose(model, &measured.trajectories, &baseline, &settings, &bar).map_err(Into::into),
+    };
     drop(bar);
-    let diagnosis = outcome.map_err(|error| diagnosis_failure(&source.recording, &error))?;
+    let diagnosis = outcome.map_err(|error| match (&error, &arguments.test) {
+        (ConfirmationError::Test(error), Some(path)) => prediction_failure(path, error),
+        (ConfirmationError::Diagnosis(error), _) => diagnosis_failure(&source.recording, error),
+        (error, _) => Failure::Data(format!("{}: {error}", source.recording.display())),
+    })?;
     let extras = Extras {
         fitted: fitted(&measured, &diagnosis, &arguments.sampling),
-        tested: match &arguments.test {
-            Some(path) => Some(tested(&source.other(path), &diagnosis, &arguments.sampling)?),
-            None => None,
+        tested: match (&test, &arguments.test) {
+            (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
+            _ => None,
         },
         forward: simulated(&measured, &diagnosis, arguments.closed_loop),
         joints: (0..model.robot().joints()).map(|j| joint_number(model.robot(), j)).collect(),
@@ -97,7 +112,6 @@ fn settings(options: &DiagnosisOptions, joints: usize) -> Settings {
     settings.band = options.band;
     settings.cutoff = options.cutoff;
     settings.standstill_speeds = options.speeds(joints);
-    settings.cautious = options.cautious;
     settings.single_joint_contacts = options.single_joint_contacts;
     settings.threads = options.threads;
     settings

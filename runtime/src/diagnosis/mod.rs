@@ -98,8 +98,8 @@ mod stages;
 pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
-    OrderSpectrum, ParameterShift, ParameterValue, Removed, Sampling, SearchOutcome, Small, StopReason,
-    TorqueSeries, Unexplained,
+    OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
+    StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
 pub use predict::term_torques;
 pub use settings::{Progress, Settings, Silent};

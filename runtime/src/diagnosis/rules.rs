@@ -130,21 +130,10 @@ pub(super) const SHORTEST_BLOCK: f64 = 0.1;
 /// Blocks are this many times as long as the residual's decorrelation lag. Judgement, as the tests of `significance`
 /// have it.
 pub(super) const LAGS_PER_BLOCK: usize = 2;
-/// Chance gains come this many times as often as Student's tail says where neighbouring blocks are still correlated.
-/// Statistics: bounded by a test of `significance`.
-pub(super) const BLOCK_CORRELATION_INFLATION: usize = 2;
-/// The same for the AR(1) test, whose correlation is estimated from few rows. Judgement on top of the tests of `ar1`;
-/// false namings in `docs/concealment_short.md`.
-pub(super) const AUTOCORRELATION_INFLATION: usize = 4;
 /// Autocorrelation below which residuals count as uncorrelated: 4 % of the variance in common. Judgement.
 pub(super) const UNCORRELATED: f64 = 0.2;
-/// The AR(1) coefficient is taken this many standard errors (1 / sqrt of the rows) higher than estimated: fits take the
-/// slow parts out of a residual first. Statistics: tests of `ar1`.
-pub(super) const RHO_MARGIN: f64 = 2.0;
-/// Largest AR(1) coefficient. Judgement: beyond it a short recording has hardly an independent row left.
-pub(super) const HIGHEST_RHO: f64 = 0.97;
-/// Fewest blocks that a slope may rest on, weighted by what they carry. Statistics: two degrees of freedom.
-pub(super) const LEAST_CARRYING_BLOCKS: f64 = 3.0;
+/// Fewest units that a law of time may rest on, weighted by what they carry. Statistics: two degrees of freedom.
+pub(super) const LEAST_CARRYING_UNITS: f64 = 3.0;
 /// Fewest blocks for a mean gain. Statistics: three degrees of freedom.
 pub(super) const LEAST_BLOCKS: f64 = 4.0;
 /// Highest confidence that is told. Judgement: no model of noise is right beyond it.
@@ -172,6 +161,9 @@ pub(super) const UNIT_OF_ITSELF: [f64; 2] = [1.0, 8.0];
 pub(super) const UNITS_WANTED: f64 = 10.0;
 /// Relative ridge of the regressions on white rows. Numerics.
 pub(super) const CALIBRATION_RIDGE: f64 = 1e-10;
+/// A law that takes away this part of the squares of another joint's residual has changed what is noise there.
+/// Judgement: below it, the noise is the same as before; saves time.
+pub(super) const FREED: f64 = 0.01;
 /// Directions of a law with less than this part of its squares are rounding. Numerics.
 pub(super) const LEAST_EIGENVALUE: f64 = 1e-6;
 /// Torques of a joint repeat to this share of their root mean square, where nothing shows that they repeat better.
@@ -190,9 +182,6 @@ pub(super) const PRESLIDING_NUISANCE: f64 = 0.002;
 
 // ---- Search -------------------------------------------------------------------------------------------------------
 
-/// A law gives way to its nested special case where that one makes this fraction of its gain. Judgement; backlash
-/// against joint_elasticity in `docs/concealment.md`.
-pub(super) const NESTED_CASE_SUFFICES: f64 = 0.9;
 /// Most candidates of a round whose evidence is worked out. Times only: those further down explain too little.
 pub(super) const MOST_CHECKED: usize = 30;
 /// Rivals that are told. Words only.
@@ -200,9 +189,14 @@ pub(super) const RIVALS: usize = 5;
 /// A law is tried as the first of a pair where its p-value is below this. Judgement: lets one in a hundred accidents
 /// be tried, each second law is then tested with all comparisons counted; `docs/concealment_short.md`.
 pub(super) const FIRST_OF_PAIR: f64 = 0.01;
+/// Most laws that are tried as the first of a pair, those that gain most. Times only.
+pub(super) const MOST_FIRSTS: usize = 12;
 /// An accepted effect stays where it explains this part of the fraction that was asked of it. Judgement: others that
 /// came later explain some of it too.
 pub(super) const KEPT_FRACTION: f64 = 0.6;
+/// An effect that was accepted stays up to this many times the level that it had to pass. Statistics: stepwise regression
+/// asks less to stay than to enter (Efroymson 1960), or what is near the level comes and goes.
+pub(super) const LEVEL_TO_STAY: f64 = 5.0;
 /// Largest error, in units of its number, along the way to which derivatives are taken: an exponential factor of two.
 /// Judgement.
 pub(super) const LARGEST_ERROR: f64 = 0.7;

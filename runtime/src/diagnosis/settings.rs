@@ -2,6 +2,7 @@
 
 use super::error::DiagnosisError;
 use super::rules;
+use crate::effects::{EffectKind, Place};
 use crate::estimation::choose_bandwidth;
 use crate::recording::Trajectory;
 
@@ -42,14 +43,11 @@ pub struct Settings {
     /// Speeds below which the joints count as standing still, one per joint, rad/s or m/s; used for all rows instead of
     /// `standstill`. Speed 0 keeps every row where a joint's speed does not change its sign within the window.
     pub standstill_speeds: Option<Vec<f64>>,
-    /// Whether, without a baseline, laws are judged beside the nuisances of real recordings (position noise times inertia,
-    /// presliding) and against the variation between stretches of the recording itself. Fewer laws are then named that
-    /// are not there, and weak ones that are there are missed more often. With a baseline it is always done, by units
-    /// of the baseline.
-    pub cautious: bool,
     /// Whether pushes that a single joint sees while it moves are looked for in what the search leaves. Off unless asked
     /// for: what a law near a reversal leaves still looks like a push.
     pub single_joint_contacts: bool,
+    /// Laws at places that are not tried, because other evidence speaks against them.
+    pub excluded: Vec<(EffectKind, Place)>,
     /// Threads; 0: as many as the machine has. The outcome does not depend on them.
     pub threads: usize,
 }
@@ -107,8 +105,8 @@ impl Default for Settings {
             band: None,
             cutoff: None,
             standstill_speeds: None,
-            cautious: false,
             single_joint_contacts: false,
+            excluded: Vec::new(),
             threads: 2,
         }
     }

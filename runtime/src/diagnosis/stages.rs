@@ -3,7 +3,7 @@
 use super::contact::search::{self as contact_search, Contacts};
 use super::contact::{moving, standing};
 use super::error::DiagnosisError;
-use super::explanation::explain::{Ended, explain};
+use super::explanation::explain::{Ended, explain, small};
 use super::explanation::standard_model::StandardModelFit;
 use super::explanation::standstill;
 use super::outcome::{Diagnosis, Sampling};
@@ -100,7 +100,9 @@ pub(super) fn run(
             delay: prepared.delay,
             sampling,
         };
-        let mut diagnosis = explain(&search, ended, settings)?;
+        let small = small(&search, settings);
+        search.model = search.model.without_nuisances()?;
+        let mut diagnosis = Diagnosis { small, ..explain(&search, ended, settings)? };
         standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
         progress.at(1.0, "done");
         return Ok(diagnosis);
@@ -157,15 +159,14 @@ fn begin<'a>(
         let fit = Fit::weighted(&rows.slow, &prepared.sigma)?;
         context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
     }
-    let calibrated = change || motions.settings().cautious;
-    let extended = ExtendedModel::new(context, rows.slow, rows.fast, change, calibrated)?;
+    let extended = ExtendedModel::new(context, rows.slow, rows.fast, change)?;
     let mut search = Search::new(extended, &motions.slowest, motions.settings(), progress);
     // No law is tried where only joints that hardly move would show it.
     let judged = &prepared.moving.judged;
     for candidates in [&mut search.slow, &mut search.fast] {
         candidates.retain(|c| c.own.iter().any(|&j| judged[j]));
     }
-    let standard = StandardModelFit::new(&search.model, &prepared.aligned)?;
+    let standard = StandardModelFit::new(&search.model.without_nuisances()?, &prepared.aligned)?;
     Ok(Begun { search, standard, sampling })
 }
 

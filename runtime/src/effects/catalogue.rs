@@ -45,6 +45,7 @@ catalogue! {
     friction_level_change: FrictionLevelChange,
     torque_ripple: TorqueRipple,
     spring: Spring,
+    position_dependent_torque: PositionDependentTorque,
     payload: Payload,
     added_mass: AddedMass,
     base_tilt: BaseTilt,
@@ -93,6 +94,6 @@ impl EffectKind {
 
     /// Its nested special case (backlash with zero gap is elasticity).
     pub fn special_case(self) -> Option<Self> {
-        self.properties().special_case.and_then(|effect| Self::from_id(effect.words().id))
+        self.properties().special_case.and_then(|case| Self::from_id(case.effect.words().id))
     }
 }

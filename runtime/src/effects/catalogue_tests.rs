@@ -4,8 +4,15 @@ use super::*;
 use crate::model::{Model, Robot};
 use crate::simulation::testing::arm;
 
-const SCALE: Scale =
-    Scale { speed: 2.0, range: 3.0, torque: 40.0, duration: 12.0, gear: 100.0, prismatic: false };
+const SCALE: Scale = Scale {
+    speed: 2.0,
+    range: 3.0,
+    centre: 0.0,
+    torque: 40.0,
+    duration: 12.0,
+    gear: 100.0,
+    prismatic: false,
+};
 
 fn robot() -> Robot {
     arm().0.robot().clone()

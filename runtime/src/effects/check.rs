@@ -14,7 +14,8 @@ pub struct TermError {
 }
 
 /// A joint on which every law offers all of its shapes.
-const WIDE: Scale = Scale { speed: 1.0, range: 1e3, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
+const WIDE: Scale =
+    Scale { speed: 1.0, range: 1e3, centre: 0.0, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
 
 impl EffectTerm {
     /// Checks that every place, length and number of the term is one that its effect has on this robot.

@@ -57,7 +57,7 @@ pub struct Properties {
     pub repeats: bool,
     /// The nested special case: what it comes back to where its own number vanishes. It must explain clearly more
     /// than that one to be named.
-    pub special_case: Option<&'static dyn Effect>,
+    pub special_case: Option<SpecialCase>,
     /// What it is drawn over.
     pub abscissa: Abscissa,
     /// Whether it is drawn along the motion, torque times the direction. Friction opposes the motion: over anything
@@ -66,6 +66,15 @@ pub struct Properties {
     /// Whether it is a law of friction that any recording of a robot may have: against a baseline it is then fitted to
     /// both, and only what differs is a change.
     pub standing_friction: bool,
+}
+
+/// What an effect comes back to where its own number vanishes.
+#[derive(Clone, Copy)]
+pub struct SpecialCase {
+    /// The simpler effect.
+    pub effect: &'static dyn Effect,
+    /// It is named instead where it makes this part of the gain.
+    pub suffices: f64,
 }
 
 /// How much rows are smoothed.

@@ -11,6 +11,8 @@ pub struct Scale {
     pub speed: f64,
     /// Travel between the lowest and the highest position, rad or m.
     pub range: f64,
+    /// Middle between them, rad or m.
+    pub centre: f64,
     /// Largest torque of the standard model, N.m or N.
     pub torque: f64,
     /// Latest time in any motion, s.
@@ -91,6 +93,11 @@ pub trait JointLaw: Sync {
 
     /// Values of the columns at an instant.
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, memory: f64, out: &mut [f64]);
+
+    /// Whether these amplitudes are mostly those of the effect's special case, whatever the rest of them gains.
+    fn is_mostly_special(&self, _amplitude: &[f64]) -> bool {
+        false
+    }
 
     /// New inner state after a travel of the joint; laws without memory keep 0.
     fn advance(&self, _shape: &[f64], memory: f64, _travel: f64) -> f64 {

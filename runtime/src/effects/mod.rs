@@ -36,7 +36,7 @@ pub use check::TermError;
 pub use compliance::{Compliance, Transmission, deflection};
 pub use contact::{ContactForce, JointTorque, unit_force_torques};
 pub use coupled::CoupledRotor;
-pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, Words};
+pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, SpecialCase, Words};
 pub use form::Form;
 pub use joint_law::{At, AtRest, JointLaw, Scale};
 pub use place::Place;

@@ -51,6 +51,8 @@ impl EffectTerm {
 pub struct TermScale {
     pub speed: f64,
     pub range: f64,
+    #[serde(default)]
+    pub centre: f64,
     pub torque: f64,
     pub duration: f64,
     pub gear: f64,
@@ -60,7 +62,7 @@ pub struct TermScale {
 impl TermScale {
     /// A revolute joint with speed, travel, torque, time and gear of one: shapes are numbers in SI as they stand.
     pub const UNIT: Self =
-        Self { speed: 1.0, range: 1.0, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
+        Self { speed: 1.0, range: 1.0, centre: 0.0, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
 }
 
 impl From<Scale> for TermScale {
@@ -68,6 +70,7 @@ impl From<Scale> for TermScale {
         Self {
             speed: s.speed,
             range: s.range,
+            centre: s.centre,
             torque: s.torque,
             duration: s.duration,
             gear: s.gear,
@@ -81,6 +84,7 @@ impl From<TermScale> for Scale {
         Self {
             speed: s.speed,
             range: s.range,
+            centre: s.centre,
             torque: s.torque,
             duration: s.duration,
             gear: s.gear,

@@ -1,5 +1,7 @@
 //! The models before and after a diagnosis, on the recording and on a test recording.
 
+use std::path::Path;
+
 use dynid_runtime::diagnosis::Diagnosis;
 use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::Model;
@@ -26,21 +28,29 @@ pub(super) fn fitted(
     before_and_after(model, diagnosis, &prepared, &windows).ok()
 }
 
-/// The errors on a recording that took no part.
-pub(super) fn tested(
-    source: &Source,
-    diagnosis: &Diagnosis,
-    options: &DiagnosisOptions,
-) -> Result<Tested, Failure> {
-    let measured = measure(source)?;
-    let model = measured.dynamics.model();
-    let prepared = options
-        .comparison(model.robot().joints())
-        .prepare(&measured.trajectories)
-        .map_err(|error| prediction_failure(&source.recording, &error))?;
-    let evaluation = before_and_after(model, diagnosis, &prepared, &[])
-        .map_err(|error| prediction_failure(&source.recording, &error))?;
-    Ok(Tested { name: measured.title, evaluation })
+/// A test recording, ready to be predicted.
+pub(super) struct Test {
+    measured: Measured,
+    pub prepared: Prepared,
+}
+
+impl Test {
+    /// Reads and prepares it.
+    pub fn new(source: &Source, options: &DiagnosisOptions) -> Result<Self, Failure> {
+        let measured = measure(source)?;
+        let prepared = options
+            .comparison(measured.dynamics.model().robot().joints())
+            .prepare(&measured.trajectories)
+            .map_err(|error| prediction_failure(&source.recording, &error))?;
+        Ok(Self { measured, prepared })
+    }
+}
+
+/// The errors on a test recording.
+pub(super) fn tested(test: &Test, path: &Path, diagnosis: &Diagnosis) -> Result<Tested, Failure> {
+    let evaluation = before_and_after(test.measured.dynamics.model(), diagnosis, &test.prepared, &[])
+        .map_err(|error| prediction_failure(path, &error))?;
+    Ok(Tested { name: test.measured.title.clone(), evaluation })
 }
 
 /// The standard model and the model with the findings, on the same rows. The skew that the diagnosis took out of the

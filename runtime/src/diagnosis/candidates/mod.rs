@@ -1,6 +1,7 @@
 //! Candidates: every effect of the catalogue at every place, with a grid of shapes, as columns on the rows.
 
 pub(in crate::diagnosis) mod candidate;
+pub(in crate::diagnosis) mod companions;
 pub(in crate::diagnosis) mod nuisances;
 pub(in crate::diagnosis) mod order_line;
 pub(in crate::diagnosis) mod spectrum;

@@ -8,18 +8,20 @@ use crate::diagnosis::rules::PRESLIDING_NUISANCE;
 use crate::effects::{EffectKind, Place};
 use crate::signal::{Stencil, central_difference};
 
-/// All columns that are fitted beside the base parameters and never named: the skew of the torques, the nuisances where
-/// laws are `calibrated`, and, against a baseline (`change`), the recording's own friction as the last three of every joint.
+/// Columns of the skew of the torques, the first of them.
+pub(in crate::diagnosis) const SKEW_COLUMNS: usize = 1;
+/// Nuisances of each joint, which come next.
+pub(in crate::diagnosis) const NUISANCES: usize = 2;
+
+/// All columns that are fitted beside the base parameters and never named: the skew of the torques, the nuisances, and,
+/// against a baseline (`change`), the recording's own friction as the last three of every joint.
 pub(in crate::diagnosis) fn always_there(
     context: &Context<'_>,
     design: &Design,
     change: bool,
-    calibrated: bool,
 ) -> Vec<Vec<f64>> {
     let mut out = delay_columns(context, design);
-    if calibrated {
-        out.extend(nuisance_columns(context, design));
-    }
+    out.extend(nuisance_columns(context, design));
     if change {
         out.extend(target_friction_columns(context, design));
     }

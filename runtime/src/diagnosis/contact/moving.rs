@@ -3,7 +3,7 @@
 use crate::diagnosis::contact::force::{JointRow, UnitForces};
 use crate::diagnosis::contact::scan::{Pushed, Track, scan, together};
 use crate::diagnosis::contact::search::Contacts;
-use crate::diagnosis::judging::ar1::Places;
+use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS, INNER_LINK_BETTER};

@@ -72,7 +72,7 @@ pub(in crate::diagnosis) fn explain(
         mismatch: curves::mismatch(model, standard),
         verdict: Vec::new(),
         cannot_tell,
-        small: small(search, settings),
+        small: Vec::new(),
         unexplained: curves::unexplained(model),
         shifts: shifts(robot, &standard.estimated, &after),
         standard: standard.estimated.clone(),
@@ -88,6 +88,7 @@ pub(in crate::diagnosis) fn explain(
             removed: ended.report.removed.iter().map(removed).collect(),
         },
         not_judged: Vec::new(),
+        refuted: Vec::new(),
         findings,
     };
     diagnosis.verdict = words::verdict(&diagnosis);
@@ -123,7 +124,7 @@ fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
 }
 
 /// What is there and below what is named.
-fn small(search: &Search<'_>, settings: &Settings) -> Vec<Small> {
+pub(in crate::diagnosis) fn small(search: &Search<'_>, settings: &Settings) -> Vec<Small> {
     let context = &search.model.context;
     let unit = |own: &[usize]| own.first().map_or("N.m", |&j| context.scales[j].torque_unit());
     let laws = search.small(settings).into_iter();

@@ -4,8 +4,9 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::curves;
 use crate::diagnosis::explanation::quantities::{Quantified, quantified, uncertainty};
+use crate::diagnosis::explanation::standard_model::estimated;
 use crate::diagnosis::explanation::words;
-use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue};
+use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue, WithoutIt};
 use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::effects::{EffectKind, EffectTerm, Place};
@@ -46,8 +47,9 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     deviations.0.iter_mut().chain(&mut deviations.1).for_each(|s| *s *= accepted.inflation);
     let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
     let scale = accepted.place.joint().map(|j| model.context.scales[j].into());
-    let after = regression.held_out(false)?.error_on(&accepted.own);
-    let before = model.without(k)?.regression(window).held_out(false)?.error_on(&accepted.own);
+    let reduced = model.without(k)?;
+    let after = regression.held_out(false)?.error_on(&accepted.shows_on);
+    let before = reduced.regression(window).held_out(false)?.error_on(&accepted.shows_on);
     let mut finding = Finding {
         confidence: accepted.confidence,
         significance: accepted.significance,
@@ -57,6 +59,10 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
         share: 1.0 - (after / before).powi(2),
         alternatives: alternatives(model, k),
         curve: curves::of_term(model, accepted, k),
+        without: Some(WithoutIt {
+            chi: estimated(&reduced.slow).chi,
+            effects: (0..reduced.terms.len()).map(|i| bare_term(&reduced, i)).collect(),
+        }),
         ..Finding::of(EffectTerm {
             joints: named_on(robot, accepted.effect, accepted.place),
             amplitude,
@@ -67,6 +73,22 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     };
     finding.sentence = words::sentence(robot, accepted.effect, &finding);
     Ok(finding)
+}
+
+/// Term k of a model with its amplitudes, whose uncertainty nobody asks for.
+fn bare_term(model: &ExtendedModel<'_>, k: usize) -> EffectTerm {
+    let accepted = &model.terms[k];
+    let regression = model.regression(accepted.effect.properties().window);
+    let amplitude: Vec<f64> = regression.term_columns[k].clone().map(|c| regression.fit.chi[c]).collect();
+    let deviations = (vec![0.0; amplitude.len()], vec![0.0; accepted.shape.len()]);
+    let Quantified { amplitude, sigma, .. } = quantified(model, accepted, amplitude, deviations);
+    EffectTerm {
+        joints: named_on(model.context.model.robot(), accepted.effect, accepted.place),
+        amplitude,
+        sigma,
+        scale: accepted.place.joint().map(|j| model.context.scales[j].into()),
+        ..unit_term(accepted.effect, accepted.place, accepted.shape.clone())
+    }
 }
 
 /// The rivals of a term, and why they were not chosen.

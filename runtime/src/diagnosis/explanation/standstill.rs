@@ -64,6 +64,7 @@ pub(in crate::diagnosis) fn explain(
         sampling,
         search: SearchOutcome { stop: StopReason::NoneAccepted, removed: Vec::new() },
         not_judged: Vec::new(),
+        refuted: Vec::new(),
         findings,
     };
     diagnosis.verdict = verdict(robot, rest, &diagnosis);

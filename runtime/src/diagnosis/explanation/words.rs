@@ -94,9 +94,15 @@ pub(in crate::diagnosis) fn not_judged(joints: &[NotJudged]) -> Option<String> {
 /// The verdict first.
 pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
     let mut lines = Vec::new();
+    let unexplained = d.unexplained.share > rules::UNEXPLAINED;
     if d.findings.is_empty() {
+        let head = if unexplained {
+            "Something is missing that cannot be named"
+        } else {
+            "Nothing is missing that this recording can show"
+        };
         lines.push(format!(
-            "The standard model explains this recording: its held-out error is {:.2} %, and none of {} things tried improves it reliably.",
+            "{head}: the held-out error of the standard model is {:.2} %, and none of {} things tried improves it reliably.",
             100.0 * d.held_out.before,
             d.tried
         ));
@@ -124,7 +130,7 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             100.0 * d.held_out.after
         ));
     }
-    if d.unexplained.share > rules::UNEXPLAINED {
+    if unexplained {
         lines.push(format!(
             "{:.0} % of what remains is not noise: something is left that nothing in the catalogue explains.",
             100.0 * d.unexplained.share

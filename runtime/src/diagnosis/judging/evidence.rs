@@ -1,16 +1,11 @@
-//! How sure it is that a gain is no accident, where residuals are not white and many candidates were tried.
+//! How sure it is that a waveform without a free amplitude is there, and that one law gains more than another.
 
 use crate::diagnosis::candidates::candidate::Candidate;
-use crate::diagnosis::judging::ar1::{Ar1, Places, decorrelation_lag};
-use crate::diagnosis::judging::judge::Verdict;
+use crate::diagnosis::judging::autocorrelation::{Places, decorrelation_lag};
 use crate::diagnosis::judging::regression::Regression;
-use crate::diagnosis::judging::significance::{Block, Evidence, mean_gain, mean_root, slope};
+use crate::diagnosis::judging::significance::{Block, Evidence, mean_root};
 use crate::diagnosis::rows::gram::dot;
-use crate::diagnosis::rules::{
-    AUTOCORRELATION_INFLATION, BLOCK_CORRELATION_INFLATION, LAGS_PER_BLOCK, LONGEST_BLOCK, SHIFTS,
-    SHIFTS_LEFT_OUT, SHORTEST_BLOCK,
-};
-use nalgebra::{DMatrix, DVector};
+use crate::diagnosis::rules::{LAGS_PER_BLOCK, LONGEST_BLOCK, SHIFTS, SHIFTS_LEFT_OUT, SHORTEST_BLOCK};
 use std::collections::BTreeMap;
 
 /// One shape of a candidate, by its index.
@@ -31,80 +26,6 @@ impl Regression {
         let ranges: Vec<_> = (0..design.joints).map(|j| design.of_joint(j)).collect();
         let evidence = shift_test(&residual, &waveform, &ranges, &self.sigma);
         Evidence { comparisons: candidate.shapes, ..evidence }
-    }
-
-    /// Wald's test of the amplitudes with the residual's own AR(1) autocorrelation, taken with the candidate fitted:
-    /// for a recording with too few blocks of motion to compare. `None` where there are no degrees of freedom left.
-    ///
-    /// Only for laws of one joint: what residuals of different joints have in common is not counted.
-    fn autocorrelation_evidence(&self, candidate: &Candidate, trial: usize) -> Option<Evidence> {
-        let trial = &candidate.trials[trial];
-        let design = &self.design;
-        let part = self.fit.project_out(trial)?;
-        let (amplitude, _) = part.solve(candidate)?;
-        let all = part.columns(design, trial);
-        let residual = self.residual();
-        let mut left = residual.clone();
-        for (column, a) in all.iter().zip(amplitude.iter()) {
-            left.iter_mut().zip(column).for_each(|(r, c)| *r -= a * c);
-        }
-        let columns: Vec<Vec<f64>> = part.determined().into_iter().map(|k| all[k].clone()).collect();
-        let k = columns.len();
-        // The fit makes the residual smaller than the noise by this factor of its squares.
-        let (rows, fitted) = (design.rows.len() as f64, (design.columns.len() + k) as f64);
-        let spared = 1.0 - fitted / rows;
-        if spared <= 0.0 {
-            return None;
-        }
-        let mut products = DVector::zeros(k);
-        let mut covariance = DMatrix::zeros(k, k);
-        let mut freedom = f64::INFINITY;
-        for (j, s) in self.sigma.iter().enumerate() {
-            let places = Places::of(design, j);
-            let noise = Ar1::of(&places, &left, design.rows_within(LONGEST_BLOCK));
-            let weight = 1.0 / (s * s);
-            covariance += noise.covariance(&places, &columns) * (weight * weight / spared);
-            for r in design.of_joint(j) {
-                for (product, column) in products.iter_mut().zip(&columns) {
-                    *product += weight * column[r] * residual[r];
-                }
-            }
-            if candidate.own.contains(&j) {
-                freedom = freedom.min(noise.independent_rows() * spared);
-            }
-        }
-        let squares = products.dot(&covariance.cholesky()?.solve(&products));
-        let evidence = Evidence::fisher(squares, k, freedom);
-        Some(Evidence { comparisons: AUTOCORRELATION_INFLATION * candidate.shapes, ..evidence })
-    }
-
-    /// Evidence that what a candidate predicts for held-out motion is really there, whatever depends on what within a
-    /// block of motion.
-    ///
-    /// With enough blocks it is their mean gain. A short recording has too few for a mean to say much: there a law of
-    /// one joint is tested against AR(1) noise; for laws of several joints, blocks are only as long as the residual is
-    /// correlated, and the slope of the residual on the predicted change of torque is tested too.
-    pub fn block_evidence(&self, candidate: &Candidate, verdict: &Verdict) -> Evidence {
-        let design = &self.design;
-        // Shapes are chosen on other motion than they are judged on; on a single motion they are not.
-        let shapes = if design.is_single_motion() { candidate.shapes } else { 1 };
-        let of = |per_block| {
-            let blocks = self.blocks((candidate, verdict.trial), per_block);
-            blocks.map(|b| b.into_values().collect::<Vec<Block>>())
-        };
-        if !design.short {
-            let long = of(design.rows_within(LONGEST_BLOCK));
-            return long.map_or(Evidence::NONE, |long| Evidence { comparisons: shapes, ..mean_gain(&long) });
-        }
-        if candidate.own.len() == 1 {
-            return self.autocorrelation_evidence(candidate, verdict.trial).unwrap_or(Evidence::NONE);
-        }
-        let Some(short) = of(self.rows_per_block(&candidate.own)) else {
-            return Evidence::NONE;
-        };
-        let (slope, gain) = (slope(&short), mean_gain(&short));
-        let better = if slope.p_value < gain.p_value { slope } else { gain };
-        Evidence { comparisons: 2 * BLOCK_CORRELATION_INFLATION * shapes, ..better }
     }
 
     /// Probability that a law which gains more than its rival on held-out motion does so by accident: their gains are

@@ -19,9 +19,11 @@ pub(in crate::diagnosis) struct Verdict {
     pub gain: f64,
     /// Held out, in units of the noise variance, one value per fold.
     pub held_out: Vec<f64>,
-    /// Held-out gain as a fraction of the held-out squares of its own joints.
+    /// Joints that it shows on: its own, or another one where it explains more, through the parameters that joints share.
+    pub shows_on: Vec<usize>,
+    /// Held-out gain as a fraction of the held-out squares of these joints.
     pub explained_fraction: f64,
-    /// In-sample gain as a fraction of the squares of its own joints.
+    /// In-sample gain as a fraction of the squares of these joints.
     pub fitted_fraction: f64,
 }
 
@@ -64,31 +66,47 @@ impl Regression {
             return None;
         }
         let mut held_out = Vec::new();
-        let (mut own_gain, mut before) = (0.0, 0.0);
-        for fold in &self.folds {
+        let mut of_joint = vec![(0.0, 0.0); self.sigma.len()];
+        for (fold, left) in self.folds.iter().zip(&self.held_out_squares) {
             let prediction = self.predict(candidate, &best, fold)?;
             let mut sum = 0.0;
             for (j, &s) in self.sigma.iter().enumerate() {
                 let w = 1.0 / (s * s);
+                of_joint[j].1 += w * left[j];
                 for (g, _) in fold.test.iter().enumerate().filter(|(_, t)| **t) {
                     let gain = w * prediction.gain(&self.design, j, g);
                     sum += gain;
-                    if candidate.own.contains(&j) {
-                        own_gain += gain;
-                        before += w * prediction.fit.squares(&self.design, j, g);
-                    }
+                    of_joint[j].0 += gain;
                 }
             }
             held_out.push(sum);
         }
-        let explained_fraction = held_out.iter().sum::<f64>().min(own_gain) / before.max(1e-300);
+        let total = held_out.iter().sum::<f64>();
+        let share = |joints: &[usize]| {
+            let sum = |f: &dyn Fn(usize) -> f64| joints.iter().map(|&j| f(j)).sum::<f64>();
+            total.min(sum(&|j| of_joint[j].0)) / sum(&|j| of_joint[j].1).max(1e-300)
+        };
+        let others = (0..self.sigma.len()).filter(|j| !candidate.own.contains(j)).map(|j| vec![j]);
+        let shows_on = [candidate.own.clone()]
+            .into_iter()
+            .chain(others)
+            .max_by(|a, b| share(a).total_cmp(&share(b)))
+            .unwrap_or_default();
+        let explained_fraction = share(&shows_on);
         // More than all can only be rounding, of columns that the design nearly makes itself.
         if explained_fraction > 1.0 {
             return None;
         }
-        let squares = candidate.own.iter().map(|&j| self.target_squares(j)).sum::<f64>();
+        let squares = shows_on.iter().map(|&j| self.target_squares(j)).sum::<f64>();
         let fitted_fraction = best.gain / squares.max(1e-300);
-        Some(Verdict { trial: best.trial, gain: best.gain, held_out, explained_fraction, fitted_fraction })
+        Some(Verdict {
+            trial: best.trial,
+            gain: best.gain,
+            held_out,
+            shows_on,
+            explained_fraction,
+            fitted_fraction,
+        })
     }
 
     /// The candidate fitted to the segments of a fold.
@@ -118,12 +136,17 @@ impl Regression {
     }
 
     /// Whether a candidate improves later time of a single motion when everything, standard parameters included, is
-    /// fitted to the time before, on its own joints. (The others see it only through parameters that they share, whose
-    /// extrapolation from a part of a motion is noise.)
+    /// fitted to the time before, on the joints that it `shows_on`. (The others see it only through parameters that they
+    /// share, whose extrapolation from a part of a motion is noise.)
     ///
     /// # Errors
     /// [`SingularDesign`] where the time before has no fit.
-    pub fn holds_forward(&self, candidate: &Candidate, trial: usize) -> Result<bool, SingularDesign> {
+    pub fn holds_forward(
+        &self,
+        candidate: &Candidate,
+        trial: usize,
+        shows_on: &[usize],
+    ) -> Result<bool, SingularDesign> {
         let segments = self.design.segments.len();
         let trial = &candidate.trials[trial];
         let mut gain = 0.0;
@@ -132,7 +155,7 @@ impl Regression {
             let Some(part) = fit.project_out(trial) else { return Ok(false) };
             let Some((amplitude, _)) = part.solve(candidate) else { return Ok(false) };
             let prediction = Prediction::new(&fit, trial, &part, amplitude);
-            for &j in &candidate.own {
+            for &j in shows_on {
                 let weight = 1.0 / (self.sigma[j] * self.sigma[j]);
                 for g in cut..segments {
                     gain += weight * prediction.gain(&self.design, j, g);

@@ -1,12 +1,13 @@
 //! Judging: what a candidate gains on motion that it was not fitted to, and how sure it is that this is no accident.
 
 pub(in crate::diagnosis) mod ar;
-pub(in crate::diagnosis) mod ar1;
+pub(in crate::diagnosis) mod autocorrelation;
 pub(in crate::diagnosis) mod calibration;
 pub(in crate::diagnosis) mod evidence;
 pub(in crate::diagnosis) mod folds;
 pub(in crate::diagnosis) mod held_out;
 pub(in crate::diagnosis) mod judge;
+pub(in crate::diagnosis) mod moderation;
 pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod regression;
@@ -16,3 +17,4 @@ mod testing;
 #[cfg(test)]
 mod tests;
 pub(in crate::diagnosis) mod units;
+pub(in crate::diagnosis) mod white_products;

@@ -86,11 +86,6 @@ impl Residualised {
         columns
     }
 
-    /// Columns that have a part of their own.
-    pub fn determined(&self) -> Vec<usize> {
-        (0..self.with_residual.len()).filter(|&k| self.squares[(k, k)] > 0.0).collect()
-    }
-
     /// Amplitudes and in-sample gain; `None` where an amplitude has a sign that the law does not have.
     pub fn solve(&self, candidate: &Candidate) -> Option<(DVector<f64>, f64)> {
         let (s, b) = (&self.squares, &self.with_residual);

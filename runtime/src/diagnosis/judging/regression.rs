@@ -17,6 +17,8 @@ pub(in crate::diagnosis) struct Regression {
     /// Fit to all segments.
     pub fit: Fit,
     pub folds: Vec<Fold>,
+    /// What is left of the held-out rows of each fold, joint by joint, squared.
+    pub held_out_squares: Vec<Vec<f64>>,
     /// Columns of each term; empty where its amplitude is fixed.
     pub term_columns: Vec<Range<usize>>,
     /// y without any term of fixed amplitude.
@@ -45,7 +47,9 @@ impl Regression {
         let folds = folds(&design, &fit.sigma)?;
         let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
         let sigma = fit.sigma.clone();
-        Ok(Self { design, sigma, fit, folds, term_columns: Vec::new(), measured, fixed_columns })
+        let held_out_squares = held_out_squares(&design, &fit, &folds);
+        let term_columns = Vec::new();
+        Ok(Self { design, sigma, fit, folds, held_out_squares, term_columns, measured, fixed_columns })
     }
 
     /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again.
@@ -75,6 +79,7 @@ impl Regression {
         self.fit = Fit::weighted(&self.design, &self.sigma)?;
         self.sigma.clone_from(&self.fit.sigma);
         self.folds = folds(&self.design, &self.sigma)?;
+        self.held_out_squares = held_out_squares(&self.design, &self.fit, &self.folds);
         Ok(())
     }
 
@@ -96,4 +101,15 @@ impl Regression {
     pub fn residual(&self) -> Vec<f64> {
         self.fit.residual(&self.design)
     }
+}
+
+/// Squares that the fit of each fold leaves of the segments that it holds out, joint by joint; on a single motion those of
+/// the fit to all of it, beside which laws are judged there.
+fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold]) -> Vec<Vec<f64>> {
+    let of_fold = |fold: &Fold| {
+        let fit = if design.is_single_motion() { whole } else { &fold.fit };
+        let held: Vec<usize> = (0..fold.test.len()).filter(|&g| fold.test[g]).collect();
+        (0..design.joints).map(|j| held.iter().map(|&g| fit.squares(design, j, g)).sum()).collect()
+    };
+    folds.iter().map(of_fold).collect()
 }

@@ -93,6 +93,23 @@ impl Units {
         Self { units, rows, stretches, duration, target_duration }
     }
 
+    /// Number of motions.
+    pub fn files(&self) -> usize {
+        self.units.iter().map(|u| u.file + 1).max().unwrap_or(0)
+    }
+
+    /// Mean number of units of a motion.
+    pub fn of_a_motion(&self) -> f64 {
+        let mut files: Vec<usize> = self.units.iter().map(|u| u.file).collect();
+        files.dedup();
+        self.units.len() as f64 / files.len().max(1) as f64
+    }
+
+    /// Whether a motion belongs to the recording that is diagnosed.
+    pub fn is_target(&self, file: usize) -> bool {
+        self.units.iter().any(|u| u.file == file && u.target)
+    }
+
     /// Whether there is a baseline.
     pub fn change(&self) -> bool {
         self.units.iter().any(|u| !u.target)

@@ -36,6 +36,18 @@ pub struct Finding {
     /// Where it is a contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<ContactForce>,
+    /// The model without it, everything else fitted anew; `None` where it is no term of the fit.
+    #[serde(skip)]
+    pub without: Option<WithoutIt>,
+}
+
+/// A model without one of its effects.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WithoutIt {
+    /// Base parameters.
+    pub chi: Vec<f64>,
+    /// The other effects.
+    pub effects: Vec<EffectTerm>,
 }
 
 impl Finding {
@@ -55,6 +67,7 @@ impl Finding {
             curve: None,
             term,
             contacts: Vec::new(),
+            without: None,
         }
     }
 }
@@ -122,6 +135,19 @@ pub struct Removed {
     pub effect: String,
     /// Numbers j of its joints; empty for the whole robot.
     pub joints: Vec<usize>,
+}
+
+/// A law that the recording shows and that made a test recording worse: it is not in the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refuted {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of its joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// Relative error of the test recording's torques on its joints without it.
+    pub test_before: f64,
+    /// With it.
+    pub test_after: f64,
 }
 
 /// A joint on which nothing could be looked for.

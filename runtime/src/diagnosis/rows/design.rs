@@ -53,7 +53,10 @@ impl Design {
     /// Rows of all motions as `selection` has them, with the columns of the standard model.
     pub fn new(model: &dyn Model, signals: &[Signals], selection: &RowSelection<'_>) -> Self {
         let parameters = model.robot().base.len();
-        let kernel = |s: &Signals| hann((selection.half * s.rate).round().max(2.0) as usize);
+        let kernel = |s: &Signals| {
+            // A window longer than the motion has no rows, however much longer.
+            hann((selection.half * s.rate).round().clamp(2.0, 2.0 + s.len() as f64) as usize)
+        };
         let mut design = Self {
             joints: model.robot().joints(),
             parameters,
@@ -180,7 +183,7 @@ impl Design {
 
     /// The block of motion that a row is in, where blocks are `rows` rows long: the same for all joints.
     pub fn block(&self, row: RowAt, rows: usize) -> (usize, usize) {
-        (row.signal, row.centre / (self.spacing(row.signal) * rows.max(1)))
+        (row.signal, row.centre / self.spacing(row.signal).saturating_mul(rows.max(1)))
     }
 
     /// All rows of a joint.

@@ -26,6 +26,7 @@ pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: 
             Scale {
                 speed: speeds[j].max(1e-9),
                 range: (high - low).max(1e-9),
+                centre: if low <= high { 0.5 * (low + high) } else { 0.0 },
                 torque: torque[j].max(1e-9),
                 duration,
                 gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),

@@ -2,10 +2,12 @@
 
 use crate::diagnosis::candidates::nuisances::friction_columns;
 use crate::diagnosis::judging::units::Units;
+use crate::diagnosis::judging::white_products::Regressors;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::REPEATS;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Units of a design and the friction that is free in each of its motions.
 #[derive(Clone)]
@@ -15,11 +17,13 @@ pub(in crate::diagnosis) struct Bench {
     pub own_friction: Range<usize>,
     /// Friction columns of each joint on its rows; none where there is no baseline.
     pub free: Vec<Vec<Vec<f64>>>,
+    /// Other laws of each joint, values on its rows, which tell how much laws of this joint vary.
+    pub companions: Arc<Vec<Vec<Vec<f64>>>>,
     pub of_joint: Vec<Range<usize>>,
 }
 
 impl Bench {
-    pub fn new(context: &Context<'_>, design: &Design) -> Self {
+    pub fn new(context: &Context<'_>, design: &Design, companions: Vec<Vec<Vec<f64>>>) -> Self {
         let units = Units::of(design);
         let change = units.change();
         let free = |j| if change { friction_columns(context, design, j) } else { Vec::new() };
@@ -27,8 +31,20 @@ impl Bench {
             own_friction: design.columns.len() - if change { 3 * design.joints } else { 0 }
                 ..design.columns.len(),
             free: (0..design.joints).map(free).collect(),
+            companions: Arc::new(companions),
             of_joint: (0..design.joints).map(|j| design.of_joint(j)).collect(),
             units,
+        }
+    }
+
+    /// What laws on the rows of a design are judged against.
+    pub fn regressors<'b>(&'b self, design: &'b Design) -> Regressors<'b> {
+        Regressors {
+            shared: &design.columns,
+            y: &design.y,
+            free: &self.free,
+            companions: &self.companions,
+            of_joint: &self.of_joint,
         }
     }
 

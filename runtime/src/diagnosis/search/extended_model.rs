@@ -1,6 +1,7 @@
 //! The standard model with accepted effects, fitted on the rows of both smoothing windows.
 
-use crate::diagnosis::candidates::nuisances::always_there;
+use crate::diagnosis::candidates::companions::companions;
+use crate::diagnosis::candidates::nuisances::{NUISANCES, SKEW_COLUMNS, always_there};
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::error::SingularDesign;
@@ -22,8 +23,6 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
     pub terms: Vec<Accepted>,
     /// Whether only what changed since a baseline is looked for.
     pub change: bool,
-    /// Whether laws are judged beside nuisances and against the variation that is there anyway.
-    pub calibrated: bool,
 }
 
 impl<'a> ExtendedModel<'a> {
@@ -36,15 +35,15 @@ impl<'a> ExtendedModel<'a> {
         slow: Design,
         fast: Design,
         change: bool,
-        calibrated: bool,
     ) -> Result<Self, SingularDesign> {
         let regression = |design: Design| {
-            let nuisances = always_there(&context, &design, change, calibrated);
+            let nuisances = always_there(&context, &design, change);
             Regression::new(design, nuisances)
         };
         let (slow, fast) = (regression(slow)?, regression(fast)?);
-        let benches = [&slow, &fast].map(|r| Bench::new(&context, &r.design));
-        Ok(Self { context, slow, fast, benches, terms: Vec::new(), change, calibrated })
+        let bench = |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design));
+        let benches = [bench(&slow), bench(&fast)];
+        Ok(Self { context, slow, fast, benches, terms: Vec::new(), change })
     }
 
     /// The regression on the rows of a window.
@@ -92,8 +91,31 @@ impl<'a> ExtendedModel<'a> {
     /// # Errors
     /// [`SingularDesign`] where there is no fit without it, or the model could not be built once more.
     pub fn without(&self, term: usize) -> Result<Self, DiagnosisError> {
+        let mut copy = self.copy()?;
+        copy.terms.remove(term);
+        copy.refit()?;
+        Ok(copy)
+    }
+
+    /// A copy without the nuisances that laws are judged beside, everything else refitted: what a model that is saved
+    /// predicts has no part of them.
+    ///
+    /// # Errors
+    /// As [`Self::without`].
+    pub fn without_nuisances(&self) -> Result<Self, DiagnosisError> {
+        let mut copy = self.copy()?;
+        for regression in [&mut copy.slow, &mut copy.fast] {
+            let first = regression.design.parameters + SKEW_COLUMNS;
+            let joints = regression.design.joints;
+            regression.silence(first..first + NUISANCES * joints);
+        }
+        copy.refit()?;
+        Ok(copy)
+    }
+
+    fn copy(&self) -> Result<Self, DiagnosisError> {
         let context = &self.context;
-        let mut copy = Self {
+        Ok(Self {
             context: Context::new(
                 context.model,
                 context.signals,
@@ -105,11 +127,7 @@ impl<'a> ExtendedModel<'a> {
             benches: self.benches.clone(),
             terms: self.terms.clone(),
             change: self.change,
-            calibrated: self.calibrated,
-        };
-        copy.terms.remove(term);
-        copy.refit()?;
-        Ok(copy)
+        })
     }
 
     /// What the model with all terms leaves of the torques on the rows of another design of the same motions.
@@ -122,7 +140,7 @@ impl<'a> ExtendedModel<'a> {
         for (column, &x) in design.columns.iter().zip(chi.iter()) {
             subtract(column, x);
         }
-        let always = always_there(&self.context, design, self.change, self.calibrated);
+        let always = always_there(&self.context, design, self.change);
         for (k, column) in always.iter().enumerate() {
             subtract(column, chi[design.parameters + k]);
         }

@@ -5,8 +5,9 @@
 //! per cent of the friction and more than the baseline's own units differ by.
 
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::calibration::{Background, Regressors, calibrate};
+use crate::diagnosis::judging::calibration::{Law, calibrate};
 use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::judging::white_products::{Background, Regressors};
 use crate::diagnosis::rules::LEAST_FRICTION_CHANGE;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
@@ -33,11 +34,17 @@ impl Search<'_> {
             .filter(|k| !bench.own_friction.contains(k))
             .map(|k| design.columns[k].clone())
             .collect();
-        let regressors =
-            Regressors { shared: &shared, y: &design.y, free: &bench.free, of_joint: &bench.of_joint };
+        let regressors = Regressors {
+            shared: &shared,
+            y: &design.y,
+            free: &bench.free,
+            companions: &bench.companions,
+            of_joint: &bench.of_joint,
+        };
         let residual = regression.residual();
         let background = Background::new(&bench.units, &regressors, &residual, self.threads);
         let changed: Vec<(usize, Evidence)> = (0..joints)
+            .filter(|&j| !settings.excluded.contains(&(EffectKind::FrictionLevelChange, Place::Joint(j))))
             .filter_map(|j| {
                 let evidence = self.friction_evidence(j, &shared, &background, &residual)?;
                 let sure = evidence.confidence(joints) >= settings.least_confidence;
@@ -79,6 +86,7 @@ impl Search<'_> {
             effect: EffectKind::FrictionLevelChange,
             place: Place::Joint(joint),
             own: vec![joint],
+            shows_on: vec![joint],
             shape: before.to_vec(),
             fixed: None,
             significance,
@@ -116,9 +124,16 @@ impl Search<'_> {
             .collect();
         let mut free = bench.free.clone();
         free[joint].drain(..2);
-        let regressors = Regressors { shared, y: &design.y, free: &free, of_joint: &bench.of_joint };
-        let found = calibrate(&bench.units, &regressors, background, &law, residual, false)?;
-        Some(found.evidence(found.lambda))
+        let regressors = Regressors {
+            shared,
+            y: &design.y,
+            free: &free,
+            companions: &bench.companions,
+            of_joint: &bench.of_joint,
+        };
+        let law = Law { columns: &law, residual, common: false, trend_of: 0 };
+        let found = calibrate(&bench.units, &regressors, background, &law)?;
+        Some(found.evidence())
     }
 
     /// Change of a joint's friction torque in the recording, as a share of the friction torque of the baseline.

@@ -1,20 +1,23 @@
 //! What every law must pass before it is named: evidence against the variation that is there anyway, and a size that
 //! stands above what the robot's torques repeat to.
 
+use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::candidates::companions::LEVELS;
 use crate::diagnosis::candidates::trial::dense_columns;
-use crate::diagnosis::judging::calibration::{Background, Calibrated, Regressors, calibrate, rival_p_value};
-use crate::diagnosis::rules::{COMPARABLE, MOST_COMPARED, TOLD_APART};
+use crate::diagnosis::judging::calibration::{Calibrated, Law, calibrate};
+use crate::diagnosis::judging::white_products::Background;
+use crate::diagnosis::rules::{LEAST_CARRYING_UNITS, MOST_COMPARED};
 use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 use std::sync::OnceLock;
 
-/// What a number must gain where the best of so many candidates is taken (Foster and George 1994).
-fn penalty(candidates: usize) -> f64 {
-    2.0 * (candidates.max(2) as f64).ln()
+/// Whether a law is a number of the model that changes with time, on one joint.
+fn is_trend(candidate: &Candidate) -> bool {
+    candidate.effect.properties().abscissa == Abscissa::Time && candidate.own.len() == 1
 }
 
 /// What a law's evidence and size say.
@@ -44,17 +47,6 @@ pub(in crate::diagnosis) struct SmallLaw {
     pub size: Size,
 }
 
-/// How a candidate stands against rivals on other joints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::diagnosis) enum Standing {
-    /// It explains more than each of them, and not by accident.
-    Ahead,
-    /// It cannot be told from this one of the round.
-    Tied(usize),
-    /// One of them explains more.
-    Beaten,
-}
-
 /// A law's evidence and size.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::diagnosis) struct Gate {
@@ -62,17 +54,28 @@ pub(in crate::diagnosis) struct Gate {
     pub gain: f64,
     pub calibrated: Calibrated,
     pub size: Size,
+    /// Residual of the model with it.
+    pub left: Vec<f64>,
 }
 
-/// What a round's evidence is worked out beside, on the rows of each window.
-#[derive(Default)]
-pub(in crate::diagnosis) struct Backgrounds {
+/// What a round has worked out: evidence of the model as it is on the rows of each window, and of each candidate.
+pub(in crate::diagnosis) struct RoundEvidence {
     slow: OnceLock<Background>,
     fast: OnceLock<Background>,
+    gates: Vec<OnceLock<Option<Gate>>>,
 }
 
-impl Backgrounds {
-    fn of(&self, window: SmoothingWindow) -> &OnceLock<Background> {
+impl RoundEvidence {
+    /// Of a round of so many candidates, nothing worked out yet.
+    pub fn new(candidates: usize) -> Self {
+        Self {
+            slow: OnceLock::new(),
+            fast: OnceLock::new(),
+            gates: (0..candidates).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    pub(super) fn of(&self, window: SmoothingWindow) -> &OnceLock<Background> {
         match window {
             SmoothingWindow::Slow => &self.slow,
             SmoothingWindow::Fast => &self.fast,
@@ -81,11 +84,14 @@ impl Backgrounds {
 }
 
 impl Search<'_> {
-    /// Evidence and size of a candidate of a round beside the model as it is.
-    fn gate(&self, against: &Backgrounds, ranked: &Ranked) -> Option<Gate> {
+    /// Evidence and size of a candidate of a round beside the model as it is, worked out once.
+    pub(super) fn gate<'b>(&self, round: &'b RoundEvidence, ranked: &[Ranked], k: usize) -> Option<&'b Gate> {
+        round.gates[k].get_or_init(|| self.work_out(round, &ranked[k])).as_ref()
+    }
+
+    fn work_out(&self, against: &RoundEvidence, ranked: &Ranked) -> Option<Gate> {
         let (regression, candidate) = self.of(ranked);
-        let (model, bench) = (&self.model, self.model.bench(ranked.window));
-        let design = &regression.design;
+        let (bench, design) = (self.model.bench(ranked.window), &regression.design);
         let trial = &candidate.trials[ranked.verdict.trial];
         let part = regression.fit.project_out(trial)?;
         let (amplitude, gain) = part.solve(candidate)?;
@@ -95,70 +101,54 @@ impl Search<'_> {
             change.iter_mut().zip(column).for_each(|(s, c)| *s += a * c);
         }
         let left: Vec<f64> = before.iter().zip(&change).map(|(r, c)| r - c).collect();
-        let law =
-            dense_columns(&model.context, design, candidate.effect, candidate.place, &trial.shape, false);
-        let regressors = Regressors {
-            shared: &design.columns,
-            y: &design.y,
-            free: &bench.free,
-            of_joint: &bench.of_joint,
-        };
-        let common = model.change && candidate.effect.properties().standing_friction;
+        let columns = self.columns(ranked);
+        let regressors = bench.regressors(design);
         let background = against
             .of(ranked.window)
             .get_or_init(|| Background::new(&bench.units, &regressors, &before, self.threads));
-        let calibrated = calibrate(&bench.units, &regressors, background, &law, &left, common)?;
-        let sizes = candidate.own.iter().map(|&j| bench.size(design, j, &change, &left));
-        let size = sizes.max_by(|a, b| (a.law / a.repeats).total_cmp(&(b.law / b.repeats)))?;
-        Some(Gate { gain, calibrated, size })
-    }
-
-    /// How a candidate of a round stands against rivals on other joints, which reach it through the parameters that
-    /// joints share: by what they explain of all joints in a residual made white.
-    pub(in crate::diagnosis) fn standing(
-        &self,
-        against: &Backgrounds,
-        ranked: &[Ranked],
-        candidate: usize,
-    ) -> Standing {
-        let law = self.of(&ranked[candidate]).1;
-        let Some(own) = self.gate(against, &ranked[candidate]) else { return Standing::Beaten };
-        let (gain, window) = (ranked[candidate].verdict.gain, ranked[candidate].window);
-        let mut rivals: Vec<usize> = (0..ranked.len())
-            .filter(|&k| ranked[k].window == window && ranked[k].verdict.gain > COMPARABLE * gain)
-            .filter(|&k| self.of(&ranked[k]).1.own.iter().all(|j| !law.own.contains(j)))
-            .collect();
-        rivals.sort_by(|&a, &b| ranked[b].verdict.gain.total_cmp(&ranked[a].verdict.gain));
-        rivals.truncate(MOST_COMPARED);
-        let gates = parallel::map(self.threads, rivals.len(), |k| self.gate(against, &ranked[rivals[k]]));
-        let penalty = penalty(self.tries());
-        let worth = |c: &Calibrated| c.squares - penalty * c.numbers as f64;
-        let mut standing = Standing::Ahead;
-        for (&k, other) in rivals.iter().zip(&gates) {
-            let Some(other) = other else { continue };
-            let ahead = worth(&own.calibrated) - worth(&other.calibrated);
-            if ahead < -penalty {
-                return Standing::Beaten;
-            }
-            if rival_p_value(&own.calibrated, ahead) > TOLD_APART {
-                standing = Standing::Tied(k);
-            }
+        let law = self.law(ranked, &columns, &left);
+        let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
+        // A law of time that shows in few units is an event: whatever else happened then is not told from it.
+        if is_trend(candidate) && !self.model.change && calibrated.carrying < LEAST_CARRYING_UNITS {
+            return None;
         }
-        standing
+        let sizes = ranked.verdict.shows_on.iter().map(|&j| bench.size(design, j, &change, &left));
+        let size = sizes.max_by(|a, b| (a.law / a.repeats).total_cmp(&(b.law / b.repeats)))?;
+        Some(Gate { gain, calibrated, size, left })
     }
 
-    /// What the gate makes of a candidate at a level over `tries` candidates.
+    /// A candidate of a round as columns over all rows, those of a baseline too.
+    pub(super) fn columns(&self, ranked: &Ranked) -> Vec<Vec<f64>> {
+        let (regression, candidate) = self.of(ranked);
+        let shape = &candidate.trials[ranked.verdict.trial].shape;
+        let context = &self.model.context;
+        dense_columns(context, &regression.design, candidate.effect, candidate.place, shape, false)
+    }
+
+    /// The law of a candidate of a round, given its columns and what the model with it leaves.
+    pub(super) fn law<'b>(&self, ranked: &Ranked, columns: &'b [Vec<f64>], residual: &'b [f64]) -> Law<'b> {
+        let candidate = self.of(ranked).1;
+        let properties = candidate.effect.properties();
+        Law {
+            columns,
+            residual,
+            common: self.model.change && properties.standing_friction,
+            trend_of: if is_trend(candidate) { LEVELS } else { 0 },
+        }
+    }
+
+    /// What the gate makes of a candidate of a round at a level over all candidates.
     pub(in crate::diagnosis) fn judged_by_gate(
         &self,
-        against: &Backgrounds,
-        ranked: &Ranked,
-        tries: usize,
+        round: &RoundEvidence,
+        ranked: &[Ranked],
+        k: usize,
         least_confidence: f64,
     ) -> Outcome {
-        let Some(gate) = self.gate(against, ranked) else { return Outcome::Fails };
+        let Some(gate) = self.gate(round, ranked, k) else { return Outcome::Fails };
         let calibrated = &gate.calibrated;
-        let evidence = calibrated.evidence(calibrated.lambda);
-        let confidence = evidence.confidence(tries);
+        let evidence = calibrated.evidence();
+        let confidence = evidence.confidence(self.tries());
         if confidence < least_confidence {
             return Outcome::Fails;
         }
@@ -175,15 +165,12 @@ impl Search<'_> {
 
     /// Laws that are certainly there beside the model as it is, and too small to be named.
     pub(in crate::diagnosis) fn small(&self, settings: &Settings) -> Vec<SmallLaw> {
-        if !self.model.calibrated {
-            return Vec::new();
-        }
         let mut ranked = self.ranked(None);
         ranked.retain(|r| r.verdict.total() > 0.0 && r.verdict.fitted_fraction > 0.0);
         ranked.truncate(MOST_COMPARED);
-        let against = Backgrounds::default();
+        let round = RoundEvidence::new(ranked.len());
         let outcomes = parallel::map(self.threads, ranked.len(), |k| {
-            self.judged_by_gate(&against, &ranked[k], self.tries(), settings.least_confidence)
+            self.judged_by_gate(&round, &ranked, k, settings.least_confidence)
         });
         let mut small: Vec<SmallLaw> = Vec::new();
         for (r, outcome) in ranked.iter().zip(outcomes) {

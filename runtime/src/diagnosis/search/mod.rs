@@ -11,5 +11,6 @@ pub(in crate::diagnosis) mod report;
 pub(in crate::diagnosis) mod round;
 pub(in crate::diagnosis) mod run;
 pub(in crate::diagnosis) mod select;
+pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod state;
 pub(in crate::diagnosis) mod term;

@@ -4,7 +4,9 @@
 //! alone. With one of them in the model, the other can be, and then the first beside it.
 
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::rules::FIRST_OF_PAIR;
+use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::rules::{FIRST_OF_PAIR, MOST_FIRSTS};
+use crate::diagnosis::search::gate::RoundEvidence;
 use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
@@ -42,7 +44,12 @@ impl Search<'_> {
         let mut ranked = self.ranked(None);
         ranked
             .retain(|r| self.of(r).1.own.len() == 1 && r.verdict.explained_fraction >= settings.least_share);
-        let evidence = parallel::map(self.threads, ranked.len(), |k| self.evidence(&ranked[k]));
+        ranked.truncate(MOST_FIRSTS);
+        let round = RoundEvidence::new(ranked.len());
+        let evidence = parallel::map(self.threads, ranked.len(), |k| match self.gate(&round, &ranked, k) {
+            Some(gate) => gate.calibrated.evidence(),
+            None => Evidence::NONE,
+        });
         ranked
             .iter()
             .zip(evidence)

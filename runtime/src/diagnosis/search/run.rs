@@ -5,7 +5,7 @@
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::StopReason;
-use crate::diagnosis::rules::KEPT_FRACTION;
+use crate::diagnosis::rules::{KEPT_FRACTION, LEVEL_TO_STAY};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::round::Winner;
@@ -114,7 +114,16 @@ impl Search<'_> {
             let old = self.model.terms.remove(k);
             self.refit_and_update()?;
             let joint = (old.own.len() < self.model.slow.design.joints).then(|| old.own[0]);
-            let replacement = self.best(settings, joint, 1)?.winner.map(|w| self.accept(&w));
+            // What was certain when it joined stays up to a higher level: its variation is estimated anew in each round.
+            let doubt = (LEVEL_TO_STAY * (1.0 - settings.least_confidence)).min(0.5);
+            let lenient = Settings { least_confidence: 1.0 - doubt, ..settings.clone() };
+            let same = |w: &Winner| {
+                let candidate = &self.candidates(w.window)[w.index];
+                candidate.effect == old.effect && candidate.place == old.place
+            };
+            let winner = self.best(&lenient, joint, 1)?.winner;
+            let holds = |w: &Winner| same(w) || w.confidence >= settings.least_confidence;
+            let replacement = winner.filter(holds).map(|w| self.accept(&w));
             let keep = match replacement {
                 Some(new) if new.effect == old.effect && new.place == old.place => Some(Accepted {
                     shape: new.shape,
@@ -174,7 +183,7 @@ impl Search<'_> {
             .judge(&candidate)
             .is_some_and(|v| v.explained_fraction >= KEPT_FRACTION * settings.least_share && v.total() > 0.0);
         let better = if regression.design.is_single_motion() {
-            regression.holds_forward(&candidate, 0)?
+            regression.holds_forward(&candidate, 0, &term.shows_on)?
         } else {
             with < without
         };
@@ -184,5 +193,5 @@ impl Search<'_> {
 
 /// Held-out error of the joints of a term.
 fn held_out_error(model: &ExtendedModel<'_>, term: &Accepted) -> Result<f64, SingularDesign> {
-    Ok(model.regression(term.effect.properties().window).held_out(false)?.error_on(&term.own))
+    Ok(model.regression(term.effect.properties().window).held_out(false)?.error_on(&term.shows_on))
 }

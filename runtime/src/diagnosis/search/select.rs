@@ -4,23 +4,28 @@ use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
-use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rules::{
-    FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, NESTED_CASE_SUFFICES, RIVALS, STRETCHES_PER_LOSS,
+    FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, RIVALS, STRETCHES_PER_LOSS,
 };
-use crate::diagnosis::search::gate::{Backgrounds, Outcome, Standing};
+use crate::diagnosis::search::gate::{Outcome, RoundEvidence};
 use crate::diagnosis::search::round::{Ranked, Round, Tie, Winner};
+use crate::diagnosis::search::standing::Standing;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
-use crate::effects::SmoothingWindow;
+use crate::effects::{Form, SmoothingWindow};
 use crate::parallel;
 
-/// How a candidate comes out of the calibration.
+/// How a candidate comes out of the gate.
 enum Weight {
-    /// It may be named: its confidence, significance and the factor on its standard deviations where it was calibrated.
-    Named(Option<[f64; 3]>),
-    /// It cannot be told from a law on another joint.
+    /// It may be named.
+    Named {
+        confidence: f64,
+        significance: f64,
+        /// Factor on its standard deviations.
+        inflation: f64,
+    },
+    /// It cannot be told from a law at another place.
     Tied(Tie),
     /// It is no more than the variation that is there anyway, or a rival explains more.
     Fails,
@@ -39,74 +44,66 @@ impl Search<'_> {
         rounds: usize,
     ) -> Result<Round, SingularDesign> {
         let mut ties = Vec::new();
-        let against = Backgrounds::default();
         let ranked = self.ranked(joint);
+        let evidence_of_round = RoundEvidence::new(ranked.len());
         let holding = self.holding(&ranked, settings);
-        let tries = rounds * self.tries();
-        for (h, (k, evidence)) in holding.iter().enumerate() {
-            let (regression, candidate) = self.of(&ranked[*k]);
-            let verdict = &ranked[*k].verdict;
-            // Whatever explains more of a joint than something that is no accident is no accident either.
-            let confidence = holding[h..]
-                .iter()
-                .filter(|(l, _)| self.of(&ranked[*l]).1.own == candidate.own)
-                .map(|(_, evidence)| evidence.confidence(tries))
-                .fold(0.0, f64::max);
-            if confidence < settings.least_confidence {
+        for &k in &holding {
+            let (regression, candidate) = self.of(&ranked[k]);
+            let verdict = &ranked[k].verdict;
+            let Some(most) = self.waveform_confidence(&ranked[k], rounds, settings) else { continue };
+            if regression.design.is_single_motion()
+                && !regression.holds_forward(candidate, verdict.trial, &verdict.shows_on)?
+            {
                 continue;
             }
-            if regression.design.is_single_motion() && !regression.holds_forward(candidate, verdict.trial)? {
-                continue;
-            }
-            if self.nested_case_suffices(&ranked, candidate, verdict) {
+            if self.nested_case_suffices(&ranked, k) {
                 continue;
             }
             // On one joint alone a law's rivals on others are not seen: what was tied with one stays so.
             if joint.is_some() && self.is_tied(candidate) {
                 continue;
             }
-            let weight = match self.calibrated(&against, &ranked, *k, tries, settings) {
-                Weight::Named(weight) => weight,
+            let weight = self.weight(&evidence_of_round, &ranked, k, (settings.least_confidence, rounds));
+            let (confidence, significance, inflation) = match weight {
+                Weight::Named { confidence, significance, inflation } => {
+                    (confidence, significance, inflation)
+                }
                 Weight::Tied(tie) => {
                     ties.push(tie);
                     continue;
                 }
                 Weight::Fails => continue,
             };
-            let [confidence, significance, inflation] = match weight {
-                Some(weight) => [confidence.min(weight[0]), weight[1], weight[2]],
-                None => [confidence, evidence.significance, 1.0],
-            };
             let winner = Some(Winner {
-                window: ranked[*k].window,
-                index: ranked[*k].index,
+                window: ranked[k].window,
+                index: ranked[k].index,
                 verdict: verdict.clone(),
                 significance,
-                confidence,
+                confidence: confidence.min(most),
                 inflation,
-                rivals: self.rivals(&ranked, *k, settings),
+                rivals: self.rivals(&ranked, k, settings),
             });
             return Ok(Round { winner, ties });
         }
         Ok(Round { winner: None, ties })
     }
 
-    /// What the variation that is there anyway says of a candidate of a round, and its rivals on other joints.
-    fn calibrated(
+    /// What the variation that is there anyway says of a candidate of a round, and its rivals at other places, at a
+    /// confidence over so many rounds.
+    fn weight(
         &self,
-        against: &Backgrounds,
+        round: &RoundEvidence,
         ranked: &[Ranked],
         k: usize,
-        tries: usize,
-        settings: &Settings,
+        (least_confidence, rounds): (f64, usize),
     ) -> Weight {
-        if !self.model.calibrated {
-            return Weight::Named(None);
-        }
-        let gate = self.judged_by_gate(against, &ranked[k], tries, settings.least_confidence);
+        let rounds = rounds.max(1) as f64;
+        let least = 1.0 - (1.0 - least_confidence) / rounds;
+        let gate = self.judged_by_gate(round, ranked, k, least);
         let Outcome::Passes { confidence, significance, inflation } = gate else { return Weight::Fails };
-        match self.standing(against, ranked, k) {
-            Standing::Ahead => Weight::Named(Some([confidence, significance, inflation])),
+        let confidence = 1.0 - rounds * (1.0 - confidence);
+        match self.standing(round, ranked, k, least) {
+            Standing::Ahead => Weight::Named { confidence, significance, inflation },
             Standing::Tied(rival) => {
                 let (candidate, rival) = (self.of(&ranked[k]).1, self.of(&ranked[rival]).1);
                 Weight::Tied(Tie {
@@ -137,17 +134,15 @@ impl Search<'_> {
         ranked
     }
 
-    /// The first of them that hold, by their place in the ranking, and the evidence for each.
-    fn holding(&self, ranked: &[Ranked], settings: &Settings) -> Vec<(usize, Evidence)> {
-        let holding: Vec<usize> = (0..ranked.len())
+    /// The first of them that hold, by their place in the ranking.
+    fn holding(&self, ranked: &[Ranked], settings: &Settings) -> Vec<usize> {
+        (0..ranked.len())
             .filter(|&k| {
                 let (regression, candidate) = self.of(&ranked[k]);
                 holds(regression, candidate, &ranked[k].verdict, settings)
             })
             .take(MOST_CHECKED)
-            .collect();
-        let evidence = parallel::map(self.threads, holding.len(), |h| self.evidence(&ranked[holding[h]]));
-        holding.into_iter().zip(evidence).collect()
+            .collect()
     }
 
     /// The regression of a ranked candidate, and the candidate.
@@ -155,14 +150,15 @@ impl Search<'_> {
         (self.model.regression(ranked.window), &self.candidates(ranked.window)[ranked.index])
     }
 
-    /// How sure it is that the gain of a ranked candidate is no accident.
-    pub(in crate::diagnosis) fn evidence(&self, ranked: &Ranked) -> Evidence {
+    /// How sure it is that a law without a free amplitude is there, by its waveform; 1 for all others, `None` where it is
+    /// not sure enough.
+    fn waveform_confidence(&self, ranked: &Ranked, rounds: usize, settings: &Settings) -> Option<f64> {
         let (regression, candidate) = self.of(ranked);
-        if candidate.fixed.is_some() {
-            regression.waveform_evidence(candidate, ranked.verdict.trial)
-        } else {
-            regression.block_evidence(candidate, &ranked.verdict)
+        if candidate.fixed.is_none() {
+            return Some(1.0);
         }
+        let evidence = regression.waveform_evidence(candidate, ranked.verdict.trial);
+        Some(evidence.confidence(rounds * self.tries())).filter(|c| *c >= settings.least_confidence)
     }
 
     /// Other explanations of the joints of a candidate.
@@ -192,14 +188,23 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Whether the nested special case of a law explains nearly as much at the same place.
-    fn nested_case_suffices(&self, ranked: &[Ranked], more: &Candidate, verdict: &Verdict) -> bool {
-        let Some(nested) = more.effect.special_case() else { return false };
+    /// Whether the nested special case of a law explains nearly as much at the same place, or the law is mostly that.
+    fn nested_case_suffices(&self, ranked: &[Ranked], k: usize) -> bool {
+        let (regression, more) = self.of(&ranked[k]);
+        let (Some(nested), Some(case)) = (more.effect.special_case(), more.effect.properties().special_case)
+        else {
+            return false;
+        };
+        let trial = &more.trials[ranked[k].verdict.trial];
+        let amplitude = regression.fit.project_out(trial).and_then(|part| part.solve(more));
+        let mostly = match (more.effect.form(), amplitude) {
+            (Form::Joint(law), Some((amplitude, _))) => law.is_mostly_special(amplitude.as_slice()),
+            _ => false,
+        };
+        let least = if mostly { 0.0 } else { case.suffices * ranked[k].verdict.total() };
         ranked.iter().any(|other| {
             let candidate = self.of(other).1;
-            candidate.effect == nested
-                && candidate.place == more.place
-                && other.verdict.total() > NESTED_CASE_SUFFICES * verdict.total()
+            candidate.effect == nested && candidate.place == more.place && other.verdict.total() > least
         })
     }
 
@@ -224,6 +229,7 @@ impl Search<'_> {
             effect: candidate.effect,
             place: candidate.place,
             own: candidate.own.clone(),
+            shows_on: winner.verdict.shows_on.clone(),
             shape: candidate.trials[winner.verdict.trial].shape.clone(),
             fixed: candidate.fixed,
             significance: winner.significance,

@@ -11,7 +11,7 @@ use crate::diagnosis::search::line::{JointLines, all_lines};
 use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::SmoothingWindow;
+use crate::effects::{EffectKind, Place, SmoothingWindow};
 use crate::model::JointIndex;
 use crate::parallel;
 
@@ -45,7 +45,12 @@ impl<'a> Search<'a> {
         progress.at(0.15, "order spectra");
         let (threads, change) = (settings.threads, model.change);
         let spectra = order_spectra(&model, slowest, threads);
-        let lines = all_lines(&model.context, &spectra, slowest, threads);
+        let mut lines = all_lines(&model.context, &spectra, slowest, threads);
+        for (j, lines) in lines.iter_mut().enumerate() {
+            if settings.excluded.contains(&(EffectKind::TorqueRipple, Place::Joint(j))) {
+                lines.lines.clear();
+            }
+        }
         let orders: Vec<Vec<f64>> = spectra.iter().map(|s| peaks(s, PEAKS)).collect();
         let context = &model.context;
         let slow = proposals(context, SmoothingWindow::Slow, change, &orders);
@@ -62,8 +67,9 @@ impl<'a> Search<'a> {
             progress.at(0.35 + 0.2 * done, "fast effects");
         });
         // What this motion cannot show is not tried.
-        slow.retain(|c| model.slow.is_identifiable(c));
-        fast.retain(|c| model.fast.is_identifiable(c));
+        let wanted = |c: &Candidate| !settings.excluded.contains(&(c.effect, c.place));
+        slow.retain(|c| wanted(c) && model.slow.is_identifiable(c));
+        fast.retain(|c| wanted(c) && model.fast.is_identifiable(c));
         let ties = Vec::new();
         Self { model, slow, fast, rejected: Vec::new(), ties, spectra, lines, tried, threads }
     }
@@ -117,6 +123,11 @@ impl<'a> Search<'a> {
     /// Whether a candidate is in the model already, or has been taken out of it.
     pub fn is_excluded(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
+        // Where the special case was enough, the general one would take its place by what is left of it.
+        let special = candidate.effect.special_case();
+        if self.model.terms.iter().any(|t| t.place == candidate.place && Some(t.effect) == special) {
+            return true;
+        }
         !candidate.effect.properties().repeats && self.model.terms.iter().any(same)
             || self.rejected.iter().any(same)
     }

@@ -9,6 +9,8 @@ pub(in crate::diagnosis) struct Accepted {
     pub place: Place,
     /// Joints (0-based) whose residual it explains.
     pub own: Vec<usize>,
+    /// Joints that it shows on, where the errors with and without it are compared.
+    pub shows_on: Vec<usize>,
     pub shape: Vec<f64>,
     /// The amplitude, where the effect's law leaves none free.
     pub fixed: Option<f64>,

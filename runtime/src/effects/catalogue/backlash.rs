@@ -1,7 +1,8 @@
 //! Play between motor and link (Nordin and Gutman 2002).
 
 use crate::effects::{
-    Abscissa, Compliance, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Transmission, Words,
+    Abscissa, Compliance, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, SpecialCase,
+    Transmission, Words,
 };
 
 /// What a person is told.
@@ -21,7 +22,7 @@ const PROPERTIES: Properties = Properties {
     sought: Sought::Always,
     follows_parameters: false,
     repeats: false,
-    special_case: Some(&super::joint_elasticity::JointElasticity),
+    special_case: Some(SpecialCase { effect: &super::joint_elasticity::JointElasticity, suffices: 0.9 }),
     abscissa: Abscissa::Load,
     along_motion: false,
     standing_friction: false,

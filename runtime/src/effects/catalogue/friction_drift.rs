@@ -2,7 +2,7 @@
 
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
-    Sought, Step, Words,
+    Sought, SpecialCase, Step, Words,
 };
 
 /// What a person is told.
@@ -22,7 +22,10 @@ const PROPERTIES: Properties = Properties {
     sought: Sought::Always,
     follows_parameters: false,
     repeats: false,
-    special_case: Some(&super::friction_level_change::FrictionLevelChange),
+    special_case: Some(SpecialCase {
+        effect: &super::friction_level_change::FrictionLevelChange,
+        suffices: 0.9,
+    }),
     abscissa: Abscissa::Time,
     along_motion: true,
     standing_friction: true,

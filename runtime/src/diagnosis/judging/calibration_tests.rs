@@ -1,0 +1,196 @@
+use super::*;
+use crate::diagnosis::judging::units::{Unit, Units};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const ROWS: usize = 150;
+
+fn normal(rng: &mut Pcg64) -> f64 {
+    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
+}
+
+/// One joint, `files` motions of one unit each of which the last is the target where there is a baseline.
+fn units(files: usize, baseline: bool) -> Units {
+    Units {
+        units: (0..files).map(|f| Unit { file: f, target: !baseline || f + 1 == files }).collect(),
+        rows: vec![(0..files).map(|f| f * ROWS..(f + 1) * ROWS).collect()],
+        stretches: vec![(0..files).map(|f| f * ROWS..(f + 1) * ROWS).collect()],
+        duration: 1.0,
+        target_duration: 1.0,
+    }
+}
+
+fn alone(
+    units: &Units,
+    regressors: &Regressors<'_>,
+    law: &[Vec<f64>],
+    residual: &[f64],
+    common: bool,
+) -> Option<Calibrated> {
+    let background = Background::new(units, regressors, residual, 1);
+    calibrate(units, regressors, &background, &Law { columns: law, residual, common, trend_of: 0 })
+}
+
+fn wave(rng: &mut Pcg64, rows: usize) -> Vec<f64> {
+    let waves: Vec<[f64; 3]> =
+        (0..4).map(|k| [normal(rng), rng.random_range(0.0..6.3), 0.03 * f64::from(k + 1)]).collect();
+    (0..rows).map(|t| waves.iter().map(|[a, phase, w]| a * (w * t as f64 + phase).sin()).sum()).collect()
+}
+
+/// Noise that remembers, quantised, twice as loud in every other stretch of time.
+fn noise(rng: &mut Pcg64, rows: usize) -> Vec<f64> {
+    let mut x = 0.0;
+    (0..rows)
+        .map(|t| {
+            x = 0.8 * x + 0.6 * normal(rng);
+            let loud = if t / 40 % 2 == 0 { 1.0 } else { 2.0 };
+            (loud * x / 0.2).round() * 0.2
+        })
+        .collect()
+}
+
+/// Evidence with the measured variation and without it, for a law whose amplitude is `amplitude` in the target (or
+/// everywhere, without a baseline) and differs by `spread` from one motion to the next.
+fn judged(rng: &mut Pcg64, files: usize, baseline: bool, amplitude: f64, spread: f64) -> [Evidence; 2] {
+    let rows = files * ROWS;
+    let shared = vec![wave(rng, rows), wave(rng, rows)];
+    let law = wave(rng, rows);
+    let mut y = noise(rng, rows);
+    let free = if baseline { vec![vec![1.0; rows], wave(rng, rows)] } else { vec![] };
+    for f in 0..files {
+        let level = if !baseline || f + 1 == files { amplitude } else { 0.0 } + spread * normal(rng);
+        let friction = 3.0 * normal(rng);
+        for t in f * ROWS..(f + 1) * ROWS {
+            y[t] += 2.0 * shared[0][t] - shared[1][t] + level * law[t];
+            y[t] += free.iter().map(|c| friction * c[t]).sum::<f64>();
+        }
+    }
+    let residual: Vec<f64> = (0..rows)
+        .map(|t| {
+            let there = if !baseline || t / ROWS + 1 == files { amplitude } else { 0.0 };
+            y[t] - 2.0 * shared[0][t] + shared[1][t] - there * law[t]
+        })
+        .collect();
+    let all = 0..rows;
+    let regressors = Regressors {
+        shared: &shared,
+        y: &y,
+        free: &[free],
+        companions: &[vec![]],
+        of_joint: std::slice::from_ref(&all),
+    };
+    let found = alone(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
+    [found.evidence(), Calibrated { lambda: 1.0, ..found }.evidence()]
+}
+
+fn rates(seed: u64, files: usize, baseline: bool, amplitude: f64, spread: f64, level: f64) -> [f64; 2] {
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let runs = 1000;
+    let mut below = [0; 2];
+    for _ in 0..runs {
+        let evidence = judged(&mut rng, files, baseline, amplitude, spread);
+        below.iter_mut().zip(evidence).for_each(|(b, e)| *b += usize::from(e.p_value < level));
+    }
+    below.map(|b| b as f64 / f64::from(runs))
+}
+
+#[test]
+fn a_law_that_varies_anyway_is_no_change_however_well_its_noise_is_known() {
+    let [calibrated, naive] = rates(5, 12, true, 0.0, 1.0, 0.01);
+    println!("calibrated {calibrated}, without {naive}");
+    assert!(calibrated < 0.025, "{calibrated}");
+    assert!(naive > 0.2, "{naive}");
+}
+
+#[test]
+fn coloured_quantised_noise_that_is_louder_at_times_is_no_change() {
+    let [calibrated, _] = rates(6, 12, true, 0.0, 0.0, 0.01);
+    assert!(calibrated < 0.02, "{calibrated}");
+    let [alone, _] = rates(7, 10, false, 0.0, 0.0, 0.01);
+    assert!(alone < 0.02, "{alone}");
+}
+
+#[test]
+fn a_change_that_stands_out_of_the_variation_is_found_at_a_level_over_many_candidates() {
+    let [changed, _] = rates(8, 12, true, 5.0, 0.3, 1e-4);
+    assert!(changed > 0.7, "{changed}");
+    let [alone, _] = rates(9, 10, false, 1.6, 0.05, 1e-4);
+    assert!(alone > 0.9, "{alone}");
+}
+
+#[test]
+fn a_law_that_is_in_both_recordings_is_no_change() {
+    let mut rng = Pcg64::seed_from_u64(10);
+    let (files, rows) = (12, 12 * ROWS);
+    let law = wave(&mut rng, rows);
+    let y: Vec<f64> = noise(&mut rng, rows).iter().zip(&law).map(|(n, l)| n + 5.0 * l).collect();
+    let residual: Vec<f64> = y.iter().zip(&law).map(|(y, l)| y - 5.0 * l).collect();
+    let all = 0..rows;
+    let regressors = Regressors {
+        shared: &[],
+        y: &y,
+        free: &[vec![]],
+        companions: &[vec![]],
+        of_joint: std::slice::from_ref(&all),
+    };
+    let tail = |common| {
+        let law = std::slice::from_ref(&law);
+        let found = alone(&units(files, true), &regressors, law, &residual, common).expect("determined");
+        found.evidence().p_value
+    };
+    assert!(tail(true) > 1e-3, "{}", tail(true));
+}
+
+#[test]
+fn a_column_that_the_model_makes_itself_has_no_evidence() {
+    let mut rng = Pcg64::seed_from_u64(11);
+    let rows = 10 * ROWS;
+    let (y, column) = (noise(&mut rng, rows), wave(&mut rng, rows));
+    let all = 0..rows;
+    let shared = [column.clone()];
+    let regressors = Regressors {
+        shared: &shared,
+        y: &y,
+        free: &[vec![]],
+        companions: &[vec![]],
+        of_joint: std::slice::from_ref(&all),
+    };
+    assert_eq!(alone(&units(10, false), &regressors, &[column], &y, false), None);
+}
+
+#[test]
+fn of_two_laws_the_true_one_is_told_apart_only_where_it_is_well_ahead() {
+    let mut rng = Pcg64::seed_from_u64(12);
+    let rows = 10 * ROWS;
+    let units = units(10, false);
+    let all = 0..rows;
+    // A rival that has half of its squares in common with the law is behind by half of what the law explains, S,
+    // with a deviation of 2 sqrt(lambda S): told apart at 5 % from S = 43 lambda on. Waves drawn at random may have more in
+    // common, and then stay tied however strong they are.
+    let mut told = |amplitude: f64| -> [usize; 2] {
+        let (mut right, mut wrong) = (0, 0);
+        for _ in 0..200 {
+            let law = wave(&mut rng, rows);
+            let other = wave(&mut rng, rows);
+            let rival: Vec<f64> = law.iter().zip(&other).map(|(a, b)| a + b).collect();
+            let noise = noise(&mut rng, rows);
+            let y: Vec<f64> = noise.iter().zip(&law).map(|(n, l)| n + amplitude * l).collect();
+            let regressors = Regressors {
+                shared: &[],
+                y: &y,
+                free: &[vec![]],
+                companions: &[vec![]],
+                of_joint: std::slice::from_ref(&all),
+            };
+            let judged = |law: &[f64]| alone(&units, &regressors, &[law.to_vec()], &y, false);
+            let (Some(a), Some(b)) = (judged(&law), judged(&rival)) else { continue };
+            right += usize::from(rival_p_value(&a, &b, a.squares - b.squares) < 0.05);
+            wrong += usize::from(rival_p_value(&b, &a, b.squares - a.squares) < 0.05);
+        }
+        [right, wrong]
+    };
+    let (weak, strong) = (told(0.4), told(3.0));
+    println!("[right, wrong] of 200: weak {weak:?}, strong {strong:?}");
+    assert!(weak[1] <= 4 && strong[1] <= 4, "{weak:?} {strong:?}");
+    assert!(weak[0] < 50 && strong[0] > 100, "{weak:?} {strong:?}");
+}

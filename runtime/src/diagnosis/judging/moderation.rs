@@ -1,0 +1,147 @@
+//! Variances that are known from few units each, moderated by those of their kind.
+//!
+//! A variance s2 of d degrees of freedom follows chi-squared around the true one; where the true ones of several
+//! quantities scatter as a scaled inverse chi-squared of d0 degrees of freedom around s02, s2 / s02 follows Fisher's
+//! distribution with d and d0 degrees of freedom, the best estimate of each true one is `(d0 s02 + d s2) / (d0 + d)`,
+//! and a ratio over it follows Fisher's distribution with d0 + d degrees of freedom (Smyth 2004, sections 3 and 4).
+//! Both d0 and s02 are those of the largest likelihood. (Smyth's own estimate, by moments of logarithms, looks at the
+//! small variances most, which with few degrees of freedom say least.)
+
+use statrs::function::gamma::ln_gamma;
+
+/// A variance that is known from few units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct Variance {
+    pub value: f64,
+    /// Degrees of freedom that it is known with.
+    pub freedom: f64,
+}
+
+/// Where variances of a kind scatter around, and how much.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct Prior {
+    pub variance: f64,
+    /// Degrees of freedom that it is worth.
+    pub freedom: f64,
+}
+
+impl Prior {
+    /// Of variances that were seen, with the correlation of each two of them; none where fewer than three say anything.
+    ///
+    /// Variances that are correlated scatter less than their number says, and their mean is known as well as that of
+    /// `count^2 / sum of correlations` independent ones, which is the most that it is worth.
+    pub fn of(seen: &[Variance], correlation: &dyn Fn(usize, usize) -> f64) -> Option<Self> {
+        let known: Vec<usize> = (0..seen.len())
+            .filter(|&i| seen[i].value > 0.0 && seen[i].value.is_finite() && seen[i].freedom >= 1.0)
+            .collect();
+        if known.len() < 3 {
+            return None;
+        }
+        let count = known.len() as f64;
+        let correlations: f64 = known
+            .iter()
+            .map(|&i| known.iter().map(|&k| if i == k { 1.0 } else { correlation(i, k) }).sum::<f64>())
+            .sum();
+        let freedom = known.iter().map(|&i| seen[i].freedom).sum::<f64>() / count;
+        let most = count * count / correlations.max(count) * freedom;
+        let known: Vec<Variance> = known.into_iter().map(|i| seen[i]).collect();
+        let at = |freedom: f64| {
+            let (variance, likelihood) = most_likely_variance(&known, freedom);
+            (Self { variance, freedom }, likelihood)
+        };
+        // From the most on downwards, down to one degree of freedom: how many they are hardly matters more closely.
+        let steps = (most.max(1.0).ln() / 1.3_f64.ln()).ceil() as i32;
+        let all = (0..=steps).map(|k| at((most * 1.3_f64.powi(-k)).max(1.0)));
+        all.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(prior, _)| prior)
+    }
+
+    /// A variance, moderated.
+    pub fn moderate(&self, own: Variance) -> Variance {
+        let sum = self.freedom + own.freedom;
+        Variance { value: (self.freedom * self.variance + own.freedom * own.value) / sum, freedom: sum }
+    }
+}
+
+/// The scale of the variances that is most likely where they scatter with so many degrees of freedom, and the
+/// logarithm of its likelihood, by golden sections of its logarithm.
+fn most_likely_variance(seen: &[Variance], freedom: f64) -> (f64, f64) {
+    let likelihood = |ln_scale: f64| -> f64 {
+        seen.iter().map(|v| ln_fisher(v.value.ln() - ln_scale, v.freedom, freedom) - ln_scale).sum()
+    };
+    let values = seen.iter().map(|v| v.value.ln());
+    let (mut low, mut high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    for _ in 0..SECTIONS {
+        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+        if likelihood(a) < likelihood(b) { low = a } else { high = b }
+    }
+    let best = 0.5 * (low + high);
+    (best.exp(), likelihood(best))
+}
+
+/// Golden sections: the width that is left is below a ten-thousandth of the first.
+const SECTIONS: usize = 20;
+
+/// Logarithm of Fisher's density at exp(`ln_x`).
+fn ln_fisher(ln_x: f64, d: f64, d0: f64) -> f64 {
+    ln_gamma((d + d0) / 2.0) - ln_gamma(d / 2.0) - ln_gamma(d0 / 2.0)
+        + d / 2.0 * (d / d0).ln()
+        + (d / 2.0 - 1.0) * ln_x
+        - (d + d0) / 2.0 * (d / d0 * ln_x.exp()).ln_1p()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use rand::SeedableRng;
+    use rand_distr::{ChiSquared, Distribution};
+    use rand_pcg::Pcg64;
+
+    const LOGPDF: [(f64, f64, f64, f64); 3] = [
+        (0.3, 3.0, 8.0, -0.372747088475073),
+        (1.7, 9.0, 40.0, -1.3937639318064328),
+        (5.0, 4.0, 1.5, -3.4790863903787983),
+    ];
+
+    #[test]
+    fn the_density_agrees_with_scipy() {
+        // scipy.stats.f.logpdf(x, d, d0)
+        for (x, d, d0, expected) in LOGPDF {
+            assert_relative_eq!(ln_fisher(f64::ln(x), d, d0), expected, max_relative = 1e-9);
+        }
+    }
+
+    #[test]
+    fn scatter_of_true_variances_is_found_and_moderated_ones_come_nearer_to_them() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let (d, d0, s02) = (8.0, 12.0, 2.5);
+        let inverse = ChiSquared::new(d0).expect("positive");
+        let own = ChiSquared::new(d).expect("positive");
+        let truth: Vec<f64> = (0..4000).map(|_| s02 * d0 / inverse.sample(&mut rng)).collect();
+        let seen: Vec<Variance> =
+            truth.iter().map(|v| Variance { value: v * own.sample(&mut rng) / d, freedom: d }).collect();
+        let prior = Prior::of(&seen, &|_, _| 0.0).expect("many");
+        assert!((prior.freedom - d0).abs() < 2.5, "{prior:?}");
+        assert_relative_eq!(prior.variance, s02, max_relative = 0.05);
+        let error = |guess: &dyn Fn(Variance) -> f64| -> f64 {
+            seen.iter().zip(&truth).map(|(v, t)| (guess(*v) / t).ln().powi(2)).sum()
+        };
+        assert!(error(&|v| prior.moderate(v).value) < 0.6 * error(&|v| v.value));
+    }
+
+    #[test]
+    fn variances_that_scatter_no_more_than_their_estimates_are_one_and_worth_their_independent_number() {
+        let mut rng = Pcg64::seed_from_u64(4);
+        let own = ChiSquared::new(9.0).expect("positive");
+        let seen: Vec<Variance> =
+            (0..6).map(|_| Variance { value: 4.0 + 0.01 * own.sample(&mut rng), freedom: 9.0 }).collect();
+        let independent = Prior::of(&seen, &|_, _| 0.0).expect("six");
+        assert_relative_eq!(independent.freedom, 54.0, max_relative = 1e-9);
+        // Three pairs, alike within each.
+        let pairs = Prior::of(&seen, &|i, k| f64::from(i / 2 == k / 2)).expect("six");
+        assert_relative_eq!(pairs.freedom, 27.0, max_relative = 1e-9);
+        assert_eq!(Prior::of(&seen[..2], &|_, _| 0.0), None);
+    }
+}

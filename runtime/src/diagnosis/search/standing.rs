@@ -1,0 +1,84 @@
+//! Whether what a law explains could as well be a law at another place.
+
+use crate::diagnosis::judging::calibration::{Calibrated, beside, rival_p_value};
+use crate::diagnosis::rules::{COMPARABLE, MOST_COMPARED, TOLD_APART};
+use crate::diagnosis::search::gate::{Gate, RoundEvidence};
+use crate::diagnosis::search::round::Ranked;
+use crate::diagnosis::search::state::Search;
+use crate::parallel;
+
+/// How a candidate stands against rivals at other places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::diagnosis) enum Standing {
+    /// It explains more than each of them, and not by accident.
+    Ahead,
+    /// It cannot be told from this one of the round.
+    Tied(usize),
+    /// One of them explains more.
+    Beaten,
+}
+
+/// What a number must gain where the best of so many candidates is taken (Foster and George 1994).
+fn penalty(candidates: usize) -> f64 {
+    2.0 * (candidates.max(2) as f64).ln()
+}
+
+impl Search<'_> {
+    /// How a candidate of a round stands against rivals at other places, which reach it through the parameters that
+    /// joints share: by what they explain of all joints in a residual made white. A law that is certain beside another
+    /// has no rival in it: they explain different things.
+    pub(in crate::diagnosis) fn standing(
+        &self,
+        round: &RoundEvidence,
+        ranked: &[Ranked],
+        candidate: usize,
+        least_confidence: f64,
+    ) -> Standing {
+        let law = self.of(&ranked[candidate]).1;
+        let Some(own) = self.gate(round, ranked, candidate) else { return Standing::Beaten };
+        let (gain, window) = (ranked[candidate].verdict.gain, ranked[candidate].window);
+        let mut rivals: Vec<usize> = (0..ranked.len())
+            .filter(|&k| ranked[k].window == window && ranked[k].verdict.gain > COMPARABLE * gain)
+            .filter(|&k| self.of(&ranked[k]).1.own != law.own)
+            .collect();
+        rivals.sort_by(|&a, &b| ranked[b].verdict.gain.total_cmp(&ranked[a].verdict.gain));
+        rivals.truncate(MOST_COMPARED);
+        let penalty = penalty(self.tries());
+        let worth = |c: &Calibrated| c.squares - penalty * c.numbers as f64;
+        let standings = parallel::map(self.threads, rivals.len(), |r| {
+            let Some(other) = self.gate(round, ranked, rivals[r]) else { return Standing::Ahead };
+            let ahead = worth(&own.calibrated) - worth(&other.calibrated);
+            if rival_p_value(&own.calibrated, &other.calibrated, ahead) <= TOLD_APART
+                || self.certain_beside(round, &ranked[candidate], own, &ranked[rivals[r]], least_confidence)
+            {
+                Standing::Ahead
+            } else if ahead < -penalty {
+                Standing::Beaten
+            } else {
+                Standing::Tied(rivals[r])
+            }
+        });
+        if standings.contains(&Standing::Beaten) {
+            return Standing::Beaten;
+        }
+        standings.into_iter().rfind(|s| *s != Standing::Ahead).unwrap_or(Standing::Ahead)
+    }
+
+    /// Whether a candidate is certain beside a rival, too.
+    fn certain_beside(
+        &self,
+        round: &RoundEvidence,
+        candidate: &Ranked,
+        own: &Gate,
+        rival: &Ranked,
+        least_confidence: f64,
+    ) -> bool {
+        let (bench, design) = (self.model.bench(candidate.window), &self.of(candidate).0.design);
+        let Some(background) = round.of(candidate.window).get() else { return false };
+        let columns = self.columns(candidate);
+        let law = self.law(candidate, &columns, &own.left);
+        let rival = self.columns(rival);
+        beside(&bench.units, &bench.regressors(design), background, &law, &own.calibrated, &rival)
+            .is_some_and(|left| left.evidence().confidence(self.tries()) >= least_confidence)
+    }
+}
