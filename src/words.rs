@@ -1,5 +1,6 @@
 //! Joints and confidences in words.
 
+use dynid_runtime::diagnosis::OnTest;
 use dynid_runtime::model::{JointIndex, Robot};
 use dynid_runtime::report::significant;
 
@@ -23,4 +24,12 @@ pub fn joint_words(joints: &[usize]) -> String {
 /// The confidence in words.
 pub fn confidence_words(confidence: f64) -> String {
     format!("confidence {}", significant(confidence, 4))
+}
+
+/// How much of a law a test recording shows, as the end of `on the test recording ..`.
+pub fn part_words(on_test: &OnTest) -> String {
+    match on_test.sigma {
+        Some(sigma) => format!("{:.2} ± {sigma:.2} of it is there", on_test.part),
+        None => format!("{:.2} of it is there", on_test.part),
+    }
 }
