@@ -1,6 +1,5 @@
 //! How much of the accelerations that a model is evaluated on is noise of the encoders.
 
-use super::observe::ObserveSettings;
 use crate::recording::Trajectory;
 use crate::signal::{Decimator, Preparation, SignalError, UniformGrid, prepare, welch};
 
@@ -54,22 +53,19 @@ impl EncoderNoise {
     }
 
     /// Variance that this noise has in the accelerations of a row, (rad/s²)² or (m/s²)²: what the position filter, two
-    /// differences and the decimation leave of it, at the rate of a trajectory.
+    /// differences and the filter of the rows leave of it, for a trajectory of `rate`, Hz.
     ///
     /// # Errors
-    /// Filters that the rate does not allow.
+    /// A position filter that the rate does not allow.
     pub fn in_accelerations(
         &self,
         rate: f64,
         preparation: &Preparation,
-        settings: &ObserveSettings,
+        rows: &Decimator,
     ) -> Result<Vec<f64>, SignalError> {
         if self.density.iter().all(|&d| d == 0.0) {
             return Ok(Vec::new());
         }
-        let factor = Decimator::factor_for(rate, settings.rate.unwrap_or(2.0 * settings.band));
-        let nyquist = 0.5 * rate / factor as f64;
-        let decimator = Decimator::with_band(factor, (settings.band / nyquist).min(1.0))?;
         // The response to a single wrong sample in the middle.
         let reach = |samples: usize| -> Trajectory {
             let mut position = vec![0.0; samples];
@@ -104,7 +100,7 @@ impl EncoderNoise {
         let lives = |x: &f64| x.abs() > DIED_OUT * largest;
         let first = response.iter().position(lives).unwrap_or(0);
         let last = response.iter().rposition(lives).map_or(0, |last| last + 1);
-        let (response, taps) = (&response[first..last.max(first)], decimator.taps());
+        let (response, taps) = (&response[first..last.max(first)], rows.taps());
         let at = |k: usize| -> f64 {
             let from = (k + 1).saturating_sub(taps.len());
             let to = (k + 1).min(response.len());
@@ -194,11 +190,10 @@ mod tests {
     #[test]
     fn its_part_of_the_accelerations_is_what_the_filters_leave() {
         let noise = EncoderNoise { density: vec![2.0 * 1e-8 / RATE] };
-        let settings = ObserveSettings { band: 25.0, ..ObserveSettings::default() };
+        let decimator = Decimator::for_rows(RATE, 25.0, None).expect("valid");
         let preparation = Preparation { cutoff: Some(50.0), ..Preparation::default() };
-        let expected = noise.in_accelerations(RATE, &preparation, &settings).expect("filters")[0];
+        let expected = noise.in_accelerations(RATE, &preparation, &decimator).expect("filters")[0];
         let Motion { ddq, edge_samples, .. } = prepare(&joint(0.0, 1e-4), &preparation).expect("long enough");
-        let decimator = Decimator::with_band(20, 1.0).expect("valid");
         let mut rows = vec![0.0; 2000];
         let count = decimator.decimate_run(&ddq[0][edge_samples..30_000 - edge_samples], &mut rows);
         let variance = rows[..count].iter().map(|x| x * x).sum::<f64>() / count as f64;

@@ -43,12 +43,15 @@
 mod attenuation;
 mod bandwidth;
 mod blocks;
+mod cautions;
+mod deviations;
 mod encoder_noise;
 mod essential;
 mod estimate;
 mod factor;
 mod householder;
 mod instrumental;
+mod method;
 pub mod observe;
 mod outcome;
 mod physical;
@@ -56,19 +59,20 @@ mod piecewise;
 mod recorded;
 mod residuals;
 mod robust;
+mod settings;
 mod solve;
 mod total;
 mod uncertainty;
+mod warning;
 mod weights;
 
 pub use bandwidth::{Bandwidth, choose_bandwidth};
 pub use encoder_noise::EncoderNoise;
-pub use estimate::{EstimateSettings, estimate};
+pub use estimate::estimate;
 pub use factor::{BLOCK_ROWS, Factor};
 pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
-pub use outcome::{
-    BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,
-};
+pub use method::{Method, Solver};
+pub use outcome::{BlockWeight, EquationError, Essential, Estimate, ParameterEstimate};
 pub use physical::{PhysicalFit, physical_fit};
 pub use piecewise::Piecewise;
 pub use recorded::{
@@ -76,4 +80,6 @@ pub use recorded::{
     observe_trajectories,
 };
 pub use residuals::{errors_against, per_equation, relative_error};
+pub use settings::EstimateSettings;
 pub use solve::{RANK_TOLERANCE, Solution};
+pub use warning::Warning;

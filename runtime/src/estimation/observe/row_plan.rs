@@ -87,9 +87,7 @@ fn check_frequencies(settings: &ObserveSettings) -> Result<(), ObserveError> {
 
 /// The filter for a recording's rate.
 pub(super) fn decimator(rate: f64, settings: &ObserveSettings) -> Result<Decimator, ObserveError> {
-    let factor = Decimator::factor_for(rate, settings.rate.unwrap_or(2.0 * settings.band));
-    let nyquist = 0.5 * rate / factor as f64;
-    Ok(Decimator::with_band(factor, (settings.band / nyquist).min(1.0))?)
+    Ok(Decimator::for_rows(rate, settings.band, settings.rate)?)
 }
 
 /// The band that a filter lets through, Hz.
