@@ -7,20 +7,12 @@ use crate::model::{
 };
 use crate::recording::Trajectory;
 use crate::signal::Motion;
+use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
 
 /// A planar arm of two joints, its standard parameters as base parameters.
 fn arm() -> RecursiveModel {
-    let row = |parent, d| Frame {
-        parent,
-        kind: JointKind::Revolute,
-        gamma: 0.0,
-        b: 0.0,
-        alpha: 0.0,
-        d,
-        theta: 0.0,
-        r: 0.0,
-    };
+    let row = |parent, d| Frame { parent, d, ..Frame::on_base(JointKind::Revolute) };
     let frames = vec![row(None, 0.0), row(Some(0), 0.5)];
     let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
     let robot = Robot::with_standard_as_base("arm", [0.0, -9.81, 0.0], frames, drive, Limits::default());
@@ -61,7 +53,7 @@ fn swinging(model: &dyn Model, chi: &[f64], late: f64, noise: f64) -> Motion {
     let [q, dq, ddq] = signals(late);
     let mut torque = torques(model, chi, StateSlices::new(&q, &dq, &ddq).states());
     for value in torque.iter_mut().flatten() {
-        *value += noise * (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
+        *value += noise * normal(&mut random);
     }
     let [q, dq, ddq] = signals(0.0);
     Motion {

@@ -57,12 +57,12 @@ fn simulated_states_take_away_what_noise_in_the_states_does() {
     settings.sensors.position_noise.iter_mut().for_each(|sigma| *sigma *= 100.0);
     let mut plant = Plant::new(&model, &chi).unwrap();
     let recorded = simulate(&mut plant, &motion, &settings, &mut |_| {}).unwrap().recorded;
+    let clean = run(&model, &chi, &motion, 1).0.truth;
     let error = |found: &[f64]| {
         let torques = |motions: &[Motion]| {
             observe(&model, motions, Equations::Torque, None, &ObserveSettings::default(), None).unwrap()
         };
-        let clean = run(&model, &chi, &motion, 1).0.truth;
-        crate::estimation::relative_error(&torques(&[clean]), found)
+        crate::estimation::relative_error(&torques(std::slice::from_ref(&clean)), found)
     };
     let prepared = prepare(&recorded, &Preparation::default()).unwrap();
     let observed =
