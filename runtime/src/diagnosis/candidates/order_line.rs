@@ -6,7 +6,7 @@
 //! reaches far. Both are asked for, motion by motion, at the full rate, of the residual without what is slower than a few
 //! waves.
 
-use super::wave::{Orders, Sample, wave};
+use super::wave::{Orders, Sample, turned, wave};
 use crate::diagnosis::rules::{
     LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
     LINE_PICKED_ABOVE, LINE_SLOWER,
@@ -75,7 +75,7 @@ pub(in crate::diagnosis) fn lines(
         };
         let order = median(|l| l.order);
         let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
-        let wave = wave(&all, order);
+        let wave = wave(&all, &turned(&all, order));
         found.push(Line {
             order,
             cosine: wave.c,
@@ -145,11 +145,13 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
     let near = Orders { first: order - 0.5 * step, step: 0.125 * step, count: 9 };
     let highest = near.all().zip(near.waves(&samples)).max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
     let Some((order, fitted)) = highest else { return Look::Blind };
-    let predicted = |fit: &[Sample], test: &[Sample]| {
-        let w = wave(fit, order);
+    let turned = turned(&samples, order);
+    let (first, second) = ((first, &turned[..half]), (second, &turned[half..]));
+    let predicted = |fit: (&[Sample], &[(f64, f64)]), test: (&[Sample], &[(f64, f64)])| {
+        let w = wave(fit.0, fit.1);
         let (mut left, mut whole) = (0.0, 0.0);
-        for s in test {
-            left += (s.r - w.at(order * s.q)).powi(2);
+        for (s, &turned) in test.0.iter().zip(test.1) {
+            left += (s.r - w.at(turned)).powi(2);
             whole += s.r * s.r;
         }
         (left, whole)

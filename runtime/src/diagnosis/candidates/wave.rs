@@ -17,8 +17,8 @@ impl Wave {
         self.c.hypot(self.s)
     }
 
-    pub fn at(&self, angle: f64) -> f64 {
-        let (sine, cosine) = angle.sin_cos();
+    /// Its value where kq has this sine and cosine.
+    pub fn at(&self, (sine, cosine): (f64, f64)) -> f64 {
         self.c * cosine + self.s * sine
     }
 }
@@ -53,11 +53,16 @@ impl Products {
     }
 }
 
-/// The wave of one order.
-pub(super) fn wave(samples: &[Sample], order: f64) -> Wave {
+/// Sine and cosine of kq at samples.
+pub(super) fn turned(samples: &[Sample], order: f64) -> Vec<(f64, f64)> {
+    samples.iter().map(|x| (order * x.q).sin_cos()).collect()
+}
+
+/// The wave of one order, from sine and cosine of kq at the samples.
+pub(super) fn wave(samples: &[Sample], turned: &[(f64, f64)]) -> Wave {
     let mut products = Products::default();
-    for x in samples {
-        products.add(x.r, (order * x.q).sin_cos());
+    for (x, &turned) in samples.iter().zip(turned) {
+        products.add(x.r, turned);
     }
     products.wave()
 }
