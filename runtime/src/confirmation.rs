@@ -91,7 +91,8 @@ fn failing(
         }
         let [before, after] = [0, 1].map(|which| evaluation.predictions[which].errors.per_joint.clone());
         // Each joint in units of its own error, so that a joint with small torques counts as much as any.
-        let rise = after.iter().zip(&before).filter(|(_, b)| **b > 0.0).map(|(a, b)| (a / b).powi(2) - 1.0);
+        let known = after.iter().zip(&before).filter_map(|(a, b)| Some(((*a)?, b.filter(|b| *b > 0.0)?)));
+        let rise = known.map(|(a, b)| (a / b).powi(2) - 1.0);
         if rise.sum::<f64>() > 0.0 {
             let [test_before, test_after] = [0, 1].map(|which| error_on(model, finding, &evaluation, which));
             let (effect, joints) = (finding.effect.clone(), finding.joints.clone());

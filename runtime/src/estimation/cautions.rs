@@ -22,10 +22,11 @@ pub(super) fn few_rows(observation: &Observation) -> Vec<Warning> {
 }
 
 /// The equations of which the model explains less than no model at all.
-pub(super) fn not_explained(observation: &Observation, per_equation: &[f64]) -> Vec<Warning> {
-    let worse = per_equation.iter().enumerate().filter(|(_, error)| **error > 1.0);
+pub(super) fn not_explained(observation: &Observation, per_equation: &[Option<f64>]) -> Vec<Warning> {
+    let known = per_equation.iter().enumerate().filter_map(|(equation, error)| Some((equation, (*error)?)));
+    let worse = known.filter(|(_, error)| *error > 1.0);
     worse
-        .map(|(equation, &relative_error)| Warning::NotExplained {
+        .map(|(equation, relative_error)| Warning::NotExplained {
             joint: joint_of(observation, equation),
             relative_error,
         })

@@ -180,11 +180,12 @@ fn choose_weights(
     let before = per_equation(observation, &solve_active(observation, active, &own.sigma));
     let after = per_equation(observation, &solve_active(observation, active, &iterated.sigma));
     let mut collapsed = false;
-    for (equation, (&before, &after)) in before.iter().zip(&after).enumerate() {
-        if after > 1.0 && before < after {
+    for (equation, errors) in before.iter().zip(&after).enumerate() {
+        let (Some(before), Some(after)) = errors else { continue };
+        if *after > 1.0 && before < after {
             collapsed = true;
             let joint = joint_of(observation, equation);
-            warnings.push(Warning::WeightCollapsed { joint, relative_error: after });
+            warnings.push(Warning::WeightCollapsed { joint, relative_error: *after });
         }
     }
     if collapsed {

@@ -77,7 +77,7 @@ pub use recorded::{
     ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording,
     observe_trajectories,
 };
-pub use residuals::{errors_against, per_equation, relative_error};
+pub use residuals::{per_equation, relative_error};
 pub use settings::EstimateSettings;
 pub use solve::{RANK_TOLERANCE, Solution};
 pub use warning::Warning;

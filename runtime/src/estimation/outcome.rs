@@ -63,8 +63,8 @@ pub struct Essential {
     pub parameters: Vec<ParameterEstimate>,
     /// Parameters that were cancelled, in the order of cancelling.
     pub cancelled: Vec<String>,
-    /// ||Y - W chi|| / ||Y|| with the kept parameters.
-    pub relative_error: f64,
+    /// ||Y - W chi|| / ||Y|| with the kept parameters; `None` where Y is zero.
+    pub relative_error: Option<f64>,
 }
 
 /// An identified set of parameters.
@@ -76,10 +76,10 @@ pub struct Estimate {
     pub parameters: Vec<ParameterEstimate>,
     /// Errors per trajectory and equation.
     pub errors: Vec<EquationError>,
-    /// ||Y - W chi|| / ||Y|| over all rows that were used.
-    pub relative_error: f64,
+    /// ||Y - W chi|| / ||Y|| over all rows that were used; `None` where Y is zero.
+    pub relative_error: Option<f64>,
     /// The same per equation.
-    pub per_equation: Vec<f64>,
+    pub per_equation: Vec<Option<f64>>,
     /// Rows that were used, all equations.
     pub rows: usize,
     /// Rows minus parameters.

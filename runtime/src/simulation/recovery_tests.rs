@@ -62,7 +62,7 @@ fn simulated_states_take_away_what_noise_in_the_states_does() {
         let torques = |motions: &[Motion]| {
             observe(&model, motions, Equations::Torque, None, &ObserveSettings::default(), None).unwrap()
         };
-        crate::estimation::relative_error(&torques(std::slice::from_ref(&clean)), found)
+        crate::estimation::relative_error(&torques(std::slice::from_ref(&clean)), found).unwrap()
     };
     let prepared = prepare(&recorded, &Preparation::default()).unwrap();
     let observed =
