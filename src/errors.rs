@@ -42,12 +42,14 @@ pub fn band_words(evaluation: &Evaluation, prepared: &Prepared, asked: Option<f6
 /// What noise may make of the errors, and what of them is above it, where noise matters for one of the models.
 pub fn noise_words(evaluation: &Evaluation) -> Option<String> {
     evaluation.predictions.iter().find_map(Prediction::noise_matters)?;
-    let each = |value: fn(&Prediction) -> Option<f64>| -> String {
-        evaluation.predictions.iter().map(|p| percent(value(p))).collect::<Vec<_>>().join(" -> ")
+    let each = |value: fn(&Prediction) -> Option<f64>| -> Vec<String> {
+        evaluation.predictions.iter().map(|p| percent(value(p))).collect()
     };
+    let mut noise = each(|p| p.noise.as_ref()?.relative_error);
+    noise.dedup();
     Some(format!(
         "noise of the torques in this band {}; error above the noise {}",
-        each(|p| p.noise.as_ref()?.relative_error),
-        each(|p| p.above_noise()?.relative_error)
+        noise.join(" -> "),
+        each(|p| p.above_noise()?.relative_error).join(" -> ")
     ))
 }

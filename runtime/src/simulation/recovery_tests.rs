@@ -20,7 +20,7 @@ fn run(model: &RecursiveModel, chi: &[f64], motion: &dyn Reference, seed: u64) -
     (simulate(&mut plant, motion, &settings, &mut |_| {}).unwrap(), settings)
 }
 
-/// The honest Monte Carlo: 50 seeds of noise on the same motion, 60 parameters each.
+/// The honest Monte Carlo: 30 seeds of noise on the same motion, 60 parameters each.
 #[test]
 fn parameters_come_back_within_three_sigma() {
     let (model, standard) = tx40();
@@ -28,7 +28,7 @@ fn parameters_come_back_within_three_sigma() {
     let motion = motion(&model, &chi, 1);
     let (clean, mut settings) = run(&model, &chi, &motion, 0);
     let (mut within, mut all) = (0, 0);
-    for seed in 0..50 {
+    for seed in 0..30 {
         // The noise of a seed on the recording of a clean run: the loop itself hardly feels the encoders' noise.
         settings.sensors.seed = seed;
         let recorded = super::sensors::measured(&settings.sensors, &clean.truth, &clean.recorded);
