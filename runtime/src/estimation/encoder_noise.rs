@@ -2,6 +2,7 @@
 
 use crate::recording::Trajectory;
 use crate::signal::{Decimator, Preparation, SignalError, UniformGrid, prepare, welch};
+use realfft::RealFftPlanner;
 
 /// Length of a segment of the spectrum, s.
 const SEGMENT: f64 = 2.0;
@@ -100,15 +101,29 @@ impl EncoderNoise {
         let lives = |x: &f64| x.abs() > DIED_OUT * largest;
         let first = response.iter().position(lives).unwrap_or(0);
         let last = response.iter().rposition(lives).map_or(0, |last| last + 1);
-        let (response, taps) = (&response[first..last.max(first)], rows.taps());
-        let at = |k: usize| -> f64 {
-            let from = (k + 1).saturating_sub(taps.len());
-            let to = (k + 1).min(response.len());
-            (from..to).map(|i| response[i] * taps[k - i]).sum()
-        };
-        let gain: f64 = (0..response.len() + taps.len() - 1).map(|k| at(k).powi(2)).sum();
+        let gain = squares_of_convolution(&response[first..last.max(first)], rows.taps());
         Ok(self.density.iter().map(|d| d * 0.5 * rate * gain).collect())
     }
+}
+
+/// Sum of the squares of a convolution, by its spectrum (Parseval): narrow bands have filters of many thousand taps.
+fn squares_of_convolution(a: &[f64], b: &[f64]) -> f64 {
+    let n = (a.len() + b.len()).max(2).next_power_of_two();
+    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let spectrum_of = |signal: &[f64]| -> Vec<f64> {
+        let (mut input, mut output) = (fft.make_input_vec(), fft.make_output_vec());
+        input[..signal.len()].copy_from_slice(signal);
+        // The lengths are those of the plan.
+        if fft.process(&mut input, &mut output).is_err() {
+            return Vec::new();
+        }
+        output.iter().map(|x| x.norm_sqr()).collect()
+    };
+    let (a, b) = (spectrum_of(a), spectrum_of(b));
+    let both: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a * b).collect();
+    // All but the first and the last line stand for a negative frequency, too.
+    let ends = both.first().unwrap_or(&0.0) + both.last().unwrap_or(&0.0);
+    (2.0 * both.iter().sum::<f64>() - ends) / n as f64
 }
 
 /// Part of its largest value below which a response counts as over.
@@ -198,6 +213,18 @@ mod tests {
         let count = decimator.decimate_run(&ddq[0][edge_samples..30_000 - edge_samples], &mut rows);
         let variance = rows[..count].iter().map(|x| x * x).sum::<f64>() / count as f64;
         assert!((variance / expected - 1.0).abs() < 0.15, "{variance} {expected}");
+    }
+
+    #[test]
+    fn the_squares_of_a_convolution_are_those_of_its_samples() {
+        let a: Vec<f64> = (0..37).map(|k| (0.7 * f64::from(k)).sin()).collect();
+        let b: Vec<f64> = (0..12).map(|k| (0.3 * f64::from(k)).cos()).collect();
+        let at = |k: usize| -> f64 {
+            (0..a.len()).filter(|i| (*i..*i + b.len()).contains(&k)).map(|i| a[i] * b[k - i]).sum()
+        };
+        let direct: f64 = (0..a.len() + b.len()).map(|k| at(k).powi(2)).sum();
+        assert!((squares_of_convolution(&a, &b) / direct - 1.0).abs() < 1e-12);
+        assert_eq!(squares_of_convolution(&[], &b), 0.0);
     }
 
     #[test]
