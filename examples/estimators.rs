@@ -128,7 +128,7 @@ fn one_seed(
     let clean = observe(model, &[quiet.truth], Equations::Torque, None, &rows, None)?;
     let mut outcomes = Vec::new();
     let mut add = |name, chi: Vec<f64>, sigma: Vec<f64>| {
-        let torque_error = relative_error(&clean, &chi);
+        let torque_error = relative_error(&clean, &chi).unwrap_or(f64::NAN);
         outcomes.push(Outcome { name, chi, sigma, torque_error });
     };
     add("the true parameters", chi.to_vec(), vec![0.0; chi.len()]);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dynid_runtime::estimation::observe::ObserveError;
-use dynid_runtime::prediction::{Comparison, Evaluation, PredictionError, Prepared, above_noise};
+use dynid_runtime::prediction::{Comparison, Evaluation, Prediction, PredictionError, Prepared};
 use dynid_runtime::report::{percent, significant};
 
 use crate::failure::Failure;
@@ -39,17 +39,17 @@ pub fn band_words(evaluation: &Evaluation, prepared: &Prepared, asked: Option<f6
     text
 }
 
-/// What noise alone makes of the errors, and what of them is above it, where noise matters.
+/// What noise may make of the errors, and what of them is above it, where noise matters for one of the models.
 pub fn noise_words(evaluation: &Evaluation) -> Option<String> {
-    let noise = evaluation.noise_matters()?;
-    let above: Vec<String> = evaluation
-        .predictions
-        .iter()
-        .map(|p| percent(above_noise(&p.errors, noise).relative_error))
-        .collect();
+    evaluation.predictions.iter().find_map(Prediction::noise_matters)?;
+    let each = |value: fn(&Prediction) -> Option<f64>| -> Vec<String> {
+        evaluation.predictions.iter().map(|p| percent(value(p))).collect()
+    };
+    let mut noise = each(|p| p.noise.as_ref()?.relative_error);
+    noise.dedup();
     Some(format!(
         "noise of the torques in this band {}; error above the noise {}",
-        percent(noise.relative_error),
-        above.join(" -> ")
+        noise.join(" -> "),
+        each(|p| p.above_noise()?.relative_error).join(" -> ")
     ))
 }

@@ -26,6 +26,21 @@ pub struct Frame {
     pub r: f64,
 }
 
+impl Frame {
+    /// A row whose numbers are all zero: the base frame itself, turned about or shifted along its z by the joint.
+    ///
+    /// ```
+    /// use dynid_description::{Frame, JointKind};
+    ///
+    /// let shoulder = Frame::on_base(JointKind::Revolute);
+    /// let elbow = Frame { parent: Some(0), d: 0.4, ..shoulder };
+    /// assert_eq!((elbow.alpha, shoulder.parent), (0.0, None));
+    /// ```
+    pub const fn on_base(kind: JointKind) -> Self {
+        Self { parent: None, kind, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 }
+    }
+}
+
 /// `sigma` of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -3,7 +3,7 @@
 //! ```
 //! use dynid_description::{Drive, Frame, JointKind, Limits, Robot};
 //!
-//! let frame = Frame { parent: None, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 };
+//! let frame = Frame::on_base(JointKind::Revolute);
 //! let drive = Drive { gear: vec![100.0].into(), coupled_friction: vec![].into() };
 //! let robot = Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![frame], drive, Limits::default());
 //!

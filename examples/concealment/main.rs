@@ -11,6 +11,7 @@ mod dump;
 mod failure;
 mod hide;
 mod hiding;
+mod hiding_table;
 mod journal;
 mod motions;
 mod options;

@@ -55,7 +55,7 @@ fn residuals(observation: &Observation, chi: &[f64]) -> Vec<f64> {
             let own = observation.groups.iter().filter(|g| g.equation == joint);
             let (y, rows) =
                 own.fold((0.0, 0), |(y, rows), g| (y + g.factor.norm_y().powi(2), rows + g.factor.rows()));
-            relative * (y / rows.max(1) as f64).sqrt()
+            relative.unwrap_or_default() * (y / rows.max(1) as f64).sqrt()
         })
         .collect()
 }

@@ -125,17 +125,16 @@ fn part(model: &dyn Model, path: &Path, span: (f64, f64)) -> Result<Part, Failur
         .filter(|(from, to)| to - from > SHORTEST_REST)
         .filter_map(|(from, to)| motion.within([from, to]))
         .collect();
-    let errors = if rest.is_empty() {
-        None
-    } else {
-        let standard = identified(model, &fitted)?;
-        let compared = tested::compared(model, &standard, &found, &rest)?;
-        compared
-            .predictions
-            .first()
-            .zip(compared.predictions.last())
-            .map(|(before, after)| [before.errors.relative_error, after.errors.relative_error])
-    };
+    let errors =
+        if rest.is_empty() {
+            None
+        } else {
+            let standard = identified(model, &fitted)?;
+            let compared = tested::compared(model, &standard, &found, &rest)?;
+            compared.predictions.first().zip(compared.predictions.last()).and_then(|(before, after)| {
+                Some([before.errors.relative_error?, after.errors.relative_error?])
+            })
+        };
     let named = found.findings.iter().map(|f| {
         let on: Vec<String> = f.joints.iter().map(ToString::to_string).collect();
         format!("{}@{}", f.effect, on.join("+"))

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use dynid_runtime::diagnosis::{Diagnosis, Finding};
 use dynid_runtime::effects::EffectKind;
-use dynid_runtime::prediction::{Evaluation, above_noise};
+use dynid_runtime::prediction::Evaluation;
 use dynid_runtime::report::{percent, significant};
 
 use crate::figures::joint_number;
@@ -84,7 +84,7 @@ fn located(text: &mut String, told: &Told<'_>) {
     );
     text.push_str("| joint | error of the standard model | share of what is unexplained | where it lives |\n|---|---|---|---|\n");
     for m in &found.mismatch {
-        let error = found.before.per_joint.get(m.joint - 1).copied().unwrap_or(0.0);
+        let error = found.before.per_joint.get(m.joint - 1).copied().flatten();
         let _ = writeln!(text, "| {} | {} | {} | {} |", m.joint, percent(error), percent(m.share), m.where_);
     }
     text.push('\n');
@@ -174,10 +174,10 @@ fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Optio
         compared.standing()
     );
     text.push_str("| model | error | above the noise | ratio |\n|---|---|---|---|\n");
-    let whole = |k: usize| compared.predictions.get(k).map_or(f64::NAN, |p| p.errors.relative_error);
+    let whole =
+        |k: usize| compared.predictions.get(k).and_then(|p| p.errors.relative_error).unwrap_or(f64::NAN);
     for (k, (name, prediction)) in MODELS.iter().zip(&compared.predictions).enumerate() {
-        let above =
-            compared.noise.as_ref().map(|noise| above_noise(&prediction.errors, noise).relative_error);
+        let above = prediction.above_noise().map(|above| above.relative_error);
         let _ = writeln!(
             text,
             "| {name} | {} | {} | {:.2} |",
@@ -186,15 +186,19 @@ fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Optio
             whole(k) / whole(0)
         );
     }
-    if let Some(noise) = &compared.noise {
-        let _ = writeln!(text, "\nNoise of the torques in this band: {}.", percent(noise.relative_error));
+    if let Some(noise) = compared.predictions.last().and_then(|p| p.noise.as_ref()) {
+        let _ = writeln!(
+            text,
+            "\nNoise of the torques in this band, as the last model has it: {}.",
+            percent(noise.relative_error)
+        );
     }
     text.push_str("\n| joint | standard model | with what was found | noise |\n|---|---|---|---|\n");
     let (Some(first), Some(last)) = (compared.predictions.first(), compared.predictions.last()) else {
         return;
     };
     for (j, (before, after)) in first.errors.per_joint.iter().zip(&last.errors.per_joint).enumerate() {
-        let noise = compared.noise.as_ref().and_then(|n| n.per_joint.get(j));
+        let noise = last.noise.as_ref().and_then(|n| n.per_joint.get(j));
         let noise = noise.map_or_else(|| "-".to_owned(), |n| percent(*n));
         let _ = writeln!(
             text,
@@ -207,7 +211,7 @@ fn proof(text: &mut String, story: &Story, compared: &Evaluation, picture: Optio
     if let Some(file) = picture {
         let _ = writeln!(text, "\n![what is left of the torques]({file})");
     }
-    goal(text, story, first.errors.relative_error, last.errors.relative_error);
+    goal(text, story, whole(0), whole(compared.predictions.len() - 1));
 }
 
 /// Whether the goal was reached, in the figures of the table.

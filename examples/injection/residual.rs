@@ -34,7 +34,7 @@ pub fn fit(model: &dyn Model, motions: &[Trajectory], known: Option<&[f64]>) -> 
             let own = observation.groups.iter().filter(|g| g.equation == joint);
             let (y, rows) =
                 own.fold((0.0, 0), |(y, rows), g| (y + g.factor.norm_y().powi(2), rows + g.factor.rows()));
-            relative * (y / rows.max(1) as f64).sqrt()
+            relative.unwrap_or_default() * (y / rows.max(1) as f64).sqrt()
         })
         .collect();
     Ok(Fitted { motions, chi, residual })

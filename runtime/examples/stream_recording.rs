@@ -115,16 +115,7 @@ fn write_rows(path: &Path, rows: usize, binary: bool) -> std::io::Result<u64> {
 }
 
 fn six_axes() -> Robot {
-    let revolute = Frame {
-        parent: None,
-        kind: JointKind::Revolute,
-        gamma: 0.0,
-        b: 0.0,
-        alpha: 0.0,
-        d: 0.0,
-        theta: 0.0,
-        r: 0.0,
-    };
+    let revolute = Frame::on_base(JointKind::Revolute);
     let gear: Vec<f64> = (0..36).map(|k| if k % 7 == 0 { 1.0 } else { 0.0 }).collect();
     Robot {
         name: "arm6".into(),

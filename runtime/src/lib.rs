@@ -23,3 +23,5 @@ pub mod signal;
 pub mod simulation;
 
 mod parallel;
+#[cfg(test)]
+mod testing;

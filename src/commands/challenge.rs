@@ -213,7 +213,7 @@ impl Case {
         }
         let evaluation = evaluate(model, &models, &test.motions, &test.settings, &[])
             .map_err(|error| prediction_failure(&file, &error))?;
-        let error = |k: usize| evaluation.predictions.get(k).map(|p| p.errors.relative_error);
+        let error = |k: usize| evaluation.predictions.get(k).and_then(|p| p.errors.relative_error);
         Ok(TestErrors {
             before: error(0).unwrap_or_default(),
             after: error(1).unwrap_or_default(),

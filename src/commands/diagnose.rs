@@ -224,7 +224,8 @@ fn for_programs(diagnosis: &Diagnosis, extras: &Extras) -> Result<serde_json::Va
             "recording": test.name,
             "band": test.evaluation.band,
             "rows": test.evaluation.used(),
-            "noise": test.evaluation.noise.as_ref().map(|noise| noise.relative_error),
+            "noise": after.noise.as_ref().map(|noise| noise.relative_error),
+            "noise_before": before.noise.as_ref().map(|noise| noise.relative_error),
             "before": before.errors.relative_error, "after": after.errors.relative_error,
             "per_joint_before": before.errors.per_joint, "per_joint_after": after.errors.per_joint,
         });

@@ -1,18 +1,16 @@
 //! `dynid simulate MODEL|ROBOT`: a closed loop, written as a recording.
 
 mod elastic;
+mod robot;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dynid_runtime::effects::EffectTerm;
-use dynid_runtime::model::{Model, Robot};
-use dynid_runtime::model_file::{Identified, to_yaml};
+use dynid_runtime::model::Model;
+use dynid_runtime::model_file::to_yaml;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
-use dynid_runtime::simulation::{
-    LoopSettings, Plant, Reference, Residue, Simulation, SimulationError, World, check_standard, simulate,
-};
+use dynid_runtime::simulation::{LoopSettings, Reference, Simulation, SimulationError, World, simulate};
 
 use crate::failure::Failure;
 use crate::motions::{MotionOptions, read as read_motions};
@@ -20,8 +18,8 @@ use crate::output::{Bar, make_folder, print, table};
 use crate::ranges;
 use crate::recording_files::{RobotReference, write_recording};
 use crate::robots::{Dynamics, read_yaml, resolve};
-use crate::saved::{known_parameters, own_dynamics, read_model};
-use elastic::elastic_joint;
+use crate::saved::own_dynamics;
+use robot::{Parameters, missing, parameters, plant, saved_model};
 
 /// What to simulate, and where to put it.
 #[derive(Debug, Args)]
@@ -111,14 +109,6 @@ pub(super) struct Arguments {
     no_feed_forward: bool,
 }
 
-/// The robot that is simulated.
-enum Parameters {
-    /// Standard parameters.
-    Standard(Vec<f64>),
-    /// Base parameters of an identified model, and the effects that were found with them.
-    Base(Vec<f64>, Vec<EffectTerm>),
-}
-
 /// Simulates and writes.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let saved = saved_model(&arguments.robot)?;
@@ -170,51 +160,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Everything that a robot's YAML lacks for a simulation, at once.
-fn missing(robot: &Robot, saved: bool, followed: bool) -> Option<String> {
-    let mut needed = Vec::new();
-    if robot.nominal.is_none() && !saved {
-        needed.push(
-            "`nominal:` with the standard parameters (a model saved by `identify` needs none)".to_owned(),
-        );
-    }
-    if !followed {
-        let limits = &robot.limits;
-        let empty = [
-            ("position", limits.position.is_empty()),
-            ("velocity", limits.velocity.is_empty()),
-            ("acceleration", limits.acceleration.is_empty()),
-        ];
-        let names: Vec<&str> = empty.iter().filter(|(_, empty)| *empty).map(|(name, _)| *name).collect();
-        if !names.is_empty() {
-            needed.push(format!("`limits:` with {} (--follow needs none)", names.join(", ")));
-        }
-    }
-    (!needed.is_empty())
-        .then(|| format!("{} cannot be simulated: its YAML lacks {}", robot.name, needed.join(" and ")))
-}
-
-fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
-    let path = Path::new(name);
-    if path.extension().is_none_or(|extension| extension != "json") {
-        return Ok(None);
-    }
-    read_model(path).map(Some)
-}
-
-fn parameters(robot: &Robot, saved: Option<&Identified>, name: &str) -> Result<Parameters, Failure> {
-    if let Some(identified) = saved {
-        let chi = known_parameters(identified, robot, Path::new(name))?;
-        return Ok(Parameters::Base(chi, identified.effects.clone()));
-    }
-    let Some(nominal) = &robot.nominal else {
-        return Err(Failure::Input(SimulationError::NoNominal { robot: robot.name.to_string() }.to_string()));
-    };
-    check_standard(robot, &nominal.standard)
-        .map_err(|error| Failure::Input(format!("{}: nominal parameters: {error}", robot.name)))?;
-    Ok(Parameters::Standard(nominal.standard.to_vec()))
-}
-
 fn planned(
     model: &dyn Model,
     chi: &[f64],
@@ -237,36 +182,6 @@ fn planned(
         motions.extend(plan.motions.into_iter().map(|motion| Box::new(motion) as Box<dyn Reference>));
     }
     Ok(motions)
-}
-
-/// The robot; `world` is what base parameters and effects make of it.
-fn plant<'m>(
-    world: &'m World<'_>,
-    model: &'m dyn Model,
-    parameters: &Parameters,
-    arguments: &Arguments,
-) -> Result<Plant<'m>, Failure> {
-    let robot = model.robot();
-    let failed = |error: SimulationError| Failure::Input(error.to_string());
-    let elastic =
-        arguments.elastic.iter().map(|text| elastic_joint(robot, text)).collect::<Result<Vec<_>, _>>()?;
-    let more = arguments.residue != 0.0 || arguments.ripple != 0.0 || !elastic.is_empty();
-    match parameters {
-        Parameters::Base(..) if !more => world.plant("").map_err(failed),
-        Parameters::Base(..) => Err(Failure::Input(
-            "--residue, --ripple and --elastic need standard parameters: simulate a robot with nominal values".to_owned(),
-        )),
-        Parameters::Standard(standard) => {
-            let mut residue = Residue::typical(robot, standard, arguments.residue);
-            let whole = Residue::typical(robot, standard, 1.0);
-            for (ripple, full) in residue.ripple.iter_mut().zip(&whole.ripple) {
-                *ripple += arguments.ripple * full / Residue::TYPICAL_RIPPLE;
-            }
-            let beyond = arguments.residue != 0.0 || arguments.ripple != 0.0;
-            let effects = if beyond { vec![residue.boxed()] } else { Vec::new() };
-            Plant::with_effects(model, standard, &elastic, effects).map_err(failed)
-        }
-    }
 }
 
 fn loop_settings(

@@ -67,14 +67,9 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
 }
 
 fn verdict(robot: &Robot, identified: &Identified) -> String {
-    let worst = (0..identified.per_joint.len())
-        .max_by(|&a, &b| identified.per_joint[a].total_cmp(&identified.per_joint[b]));
-    let worst = worst.map_or_else(String::new, |joint| {
-        format!(
-            " The worst joint is {} with {}.",
-            joint_number(robot, joint),
-            percent(identified.per_joint[joint])
-        )
+    let known = identified.per_joint.iter().enumerate().filter_map(|(joint, error)| Some((joint, (*error)?)));
+    let worst = known.max_by(|a, b| a.1.total_cmp(&b.1)).map_or_else(String::new, |(joint, error)| {
+        format!(" The worst joint is {} with {}.", joint_number(robot, joint), percent(error))
     });
     format!(
         "{} parameters identified with {}: the torques are reproduced with a relative error of {}.{worst}",

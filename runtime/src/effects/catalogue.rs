@@ -13,6 +13,7 @@ macro_rules! catalogue {
         /// An effect of the catalogue.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
         pub enum EffectKind {
             $(
                 #[doc = concat!("`", stringify!($module), "`")]

@@ -82,29 +82,15 @@ mod tests {
     use crate::estimation::observe::{Equations, ObserveSettings, Standstill, observe};
     use crate::estimation::weights::equal;
     use crate::estimation::weights::stack;
-    use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
     use crate::signal::Motion;
+    use crate::testing::vertical_axis;
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
     /// One vertical axis with an inertia of 2 and viscous friction 0.7, whose acceleration is measured with noise of
     /// standard deviation `noise` in its rows.
     fn observed(noise: f64, known: f64) -> Observation {
-        let frame = Frame {
-            parent: None,
-            kind: JointKind::Revolute,
-            gamma: 0.0,
-            b: 0.0,
-            alpha: 0.0,
-            d: 0.0,
-            theta: 0.0,
-            r: 0.0,
-        };
-        let drive = Drive { gear: vec![1.0].into(), coupled_friction: vec![].into() };
-        let mut robot =
-            Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![frame], drive, Limits::default());
-        robot.base = robot.base.iter().filter(|p| ["ZZ1", "Fv1"].contains(&&*p.name)).cloned().collect();
-        let model = RecursiveModel::new(robot).expect("a valid table");
+        let model = vertical_axis(&["ZZ1", "Fv1"]);
         let rate = 100.0;
         let mut random = rand_pcg::Pcg64::seed_from_u64(9);
         let time: Vec<f64> = (0..20_000).map(|k| f64::from(k) / rate).collect();

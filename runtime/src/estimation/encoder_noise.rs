@@ -1,8 +1,8 @@
 //! How much of the accelerations that a model is evaluated on is noise of the encoders.
 
-use super::observe::ObserveSettings;
 use crate::recording::Trajectory;
 use crate::signal::{Decimator, Preparation, SignalError, UniformGrid, prepare, welch};
+use realfft::RealFftPlanner;
 
 /// Length of a segment of the spectrum, s.
 const SEGMENT: f64 = 2.0;
@@ -54,22 +54,19 @@ impl EncoderNoise {
     }
 
     /// Variance that this noise has in the accelerations of a row, (rad/s²)² or (m/s²)²: what the position filter, two
-    /// differences and the decimation leave of it, at the rate of a trajectory.
+    /// differences and the filter of the rows leave of it, for a trajectory of `rate`, Hz.
     ///
     /// # Errors
-    /// Filters that the rate does not allow.
+    /// A position filter that the rate does not allow.
     pub fn in_accelerations(
         &self,
         rate: f64,
         preparation: &Preparation,
-        settings: &ObserveSettings,
+        rows: &Decimator,
     ) -> Result<Vec<f64>, SignalError> {
         if self.density.iter().all(|&d| d == 0.0) {
             return Ok(Vec::new());
         }
-        let factor = Decimator::factor_for(rate, settings.rate.unwrap_or(2.0 * settings.band));
-        let nyquist = 0.5 * rate / factor as f64;
-        let decimator = Decimator::with_band(factor, (settings.band / nyquist).min(1.0))?;
         // The response to a single wrong sample in the middle.
         let reach = |samples: usize| -> Trajectory {
             let mut position = vec![0.0; samples];
@@ -104,15 +101,29 @@ impl EncoderNoise {
         let lives = |x: &f64| x.abs() > DIED_OUT * largest;
         let first = response.iter().position(lives).unwrap_or(0);
         let last = response.iter().rposition(lives).map_or(0, |last| last + 1);
-        let (response, taps) = (&response[first..last.max(first)], decimator.taps());
-        let at = |k: usize| -> f64 {
-            let from = (k + 1).saturating_sub(taps.len());
-            let to = (k + 1).min(response.len());
-            (from..to).map(|i| response[i] * taps[k - i]).sum()
-        };
-        let gain: f64 = (0..response.len() + taps.len() - 1).map(|k| at(k).powi(2)).sum();
+        let gain = squares_of_convolution(&response[first..last.max(first)], rows.taps());
         Ok(self.density.iter().map(|d| d * 0.5 * rate * gain).collect())
     }
+}
+
+/// Sum of the squares of a convolution, by its spectrum (Parseval): narrow bands have filters of many thousand taps.
+fn squares_of_convolution(a: &[f64], b: &[f64]) -> f64 {
+    let n = (a.len() + b.len()).max(2).next_power_of_two();
+    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let spectrum_of = |signal: &[f64]| -> Vec<f64> {
+        let (mut input, mut output) = (fft.make_input_vec(), fft.make_output_vec());
+        input[..signal.len()].copy_from_slice(signal);
+        // The lengths are those of the plan.
+        if fft.process(&mut input, &mut output).is_err() {
+            return Vec::new();
+        }
+        output.iter().map(|x| x.norm_sqr()).collect()
+    };
+    let (a, b) = (spectrum_of(a), spectrum_of(b));
+    let both: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a * b).collect();
+    // All but the first and the last line stand for a negative frequency, too.
+    let ends = both.first().unwrap_or(&0.0) + both.last().unwrap_or(&0.0);
+    (2.0 * both.iter().sum::<f64>() - ends) / n as f64
 }
 
 /// Part of its largest value below which a response counts as over.
@@ -194,15 +205,26 @@ mod tests {
     #[test]
     fn its_part_of_the_accelerations_is_what_the_filters_leave() {
         let noise = EncoderNoise { density: vec![2.0 * 1e-8 / RATE] };
-        let settings = ObserveSettings { band: 25.0, ..ObserveSettings::default() };
+        let decimator = Decimator::for_rows(RATE, 25.0, None).expect("valid");
         let preparation = Preparation { cutoff: Some(50.0), ..Preparation::default() };
-        let expected = noise.in_accelerations(RATE, &preparation, &settings).expect("filters")[0];
+        let expected = noise.in_accelerations(RATE, &preparation, &decimator).expect("filters")[0];
         let Motion { ddq, edge_samples, .. } = prepare(&joint(0.0, 1e-4), &preparation).expect("long enough");
-        let decimator = Decimator::with_band(20, 1.0).expect("valid");
         let mut rows = vec![0.0; 2000];
         let count = decimator.decimate_run(&ddq[0][edge_samples..30_000 - edge_samples], &mut rows);
         let variance = rows[..count].iter().map(|x| x * x).sum::<f64>() / count as f64;
         assert!((variance / expected - 1.0).abs() < 0.15, "{variance} {expected}");
+    }
+
+    #[test]
+    fn the_squares_of_a_convolution_are_those_of_its_samples() {
+        let a: Vec<f64> = (0..37).map(|k| (0.7 * f64::from(k)).sin()).collect();
+        let b: Vec<f64> = (0..12).map(|k| (0.3 * f64::from(k)).cos()).collect();
+        let at = |k: usize| -> f64 {
+            (0..a.len()).filter(|i| (*i..*i + b.len()).contains(&k)).map(|i| a[i] * b[k - i]).sum()
+        };
+        let direct: f64 = (0..a.len() + b.len()).map(|k| at(k).powi(2)).sum();
+        assert!((squares_of_convolution(&a, &b) / direct - 1.0).abs() < 1e-12);
+        assert_eq!(squares_of_convolution(&[], &b), 0.0);
     }
 
     #[test]

@@ -1,7 +1,14 @@
-//! Essential parameters: the paper's elimination of what the data hardly determine.
+//! Essential parameters: the paper's elimination of what the data hardly determine, and the model of what is left.
+//! Equation numbers are those of Gautier and Briot.
 
 use super::Factor;
+use super::attenuation::corrected;
+use super::deviations::{Deviations, described};
+use super::observe::Observation;
+use super::outcome::Essential;
+use super::residuals::relative_error;
 use super::solve::back_substitute;
+use super::weights::{Weights, iterate, spread, stack};
 
 /// The unknowns that are left, and those that were cancelled in their order.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,4 +50,44 @@ pub(super) fn eliminate(factor: &Factor, active: &[usize], r_sigma: f64, inflati
         reduced = reduced.select(&columns);
     }
     Elimination { kept, cancelled }
+}
+
+/// The simplified model; `inflation` is by how much the standard deviation of each active parameter is larger than (18)
+/// has it.
+pub(super) fn simplified(
+    observation: &Observation,
+    active: &[usize],
+    weights: &Weights,
+    r_sigma: f64,
+    weighted: bool,
+    inflation: &[f64],
+) -> Essential {
+    let stacked = stack(observation, &weights.sigma).select(active);
+    let elimination = eliminate(&stacked, active, r_sigma, inflation);
+    let kept = &elimination.kept;
+    let weights = if weighted { iterate(observation, kept, weights) } else { weights.clone() };
+    let reduced = stack(observation, &weights.sigma).select(kept);
+    let (mut values, variance) = back_substitute(&reduced);
+    let freedom = reduced.rows().saturating_sub(values.len()).max(1) as f64;
+    let noise = reduced.residual_norm(&values).powi(2) / freedom;
+    let attenuation = corrected(observation, kept, &weights.sigma, &reduced, &values).ok().flatten();
+    if let Some(attenuation) = &attenuation {
+        values.clone_from(&attenuation.chi);
+    }
+    let chi = spread(&values, kept, observation.unknowns.len());
+    let white: Vec<f64> = variance.iter().map(|v| (noise * v).sqrt()).collect();
+    let inflation_of = |l: &usize| active.binary_search(l).map_or(1.0, |p| inflation[p]);
+    let deviations = Deviations {
+        known: inflation.iter().all(|i| i.is_finite()),
+        lasting: Some(kept.iter().zip(&white).map(|(l, s)| s * inflation_of(l)).collect()),
+        white,
+        blocks: None,
+        corrections: attenuation.map(|a| a.missing),
+    };
+    let all = described(observation, kept, &values, &deviations);
+    Essential {
+        parameters: kept.iter().map(|&l| all[l].clone()).collect(),
+        cancelled: elimination.cancelled.iter().map(|&l| observation.unknowns[l].clone()).collect(),
+        relative_error: relative_error(observation, &chi),
+    }
 }

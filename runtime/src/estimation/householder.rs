@@ -21,7 +21,8 @@ pub(super) fn reduce(columns: usize, r: &mut [f64], rows: usize, a: &mut [f64]) 
         let panel = &mut head[j * rows..];
         let t = reduce_panel(columns, r, rows, panel, j, width);
         if width == PANEL {
-            apply_panel(columns, r, rows, panel, tail, j, &t);
+            let v = std::array::from_fn(|i| &panel[i * rows..(i + 1) * rows]);
+            apply_panel(columns, r, rows, &Panel { first: j, v, t: &t }, tail);
         }
         j += width;
     }
@@ -72,20 +73,20 @@ fn reduce_panel(
     t
 }
 
+/// Columns that were reduced together: Q = I - V T VT.
+struct Panel<'a> {
+    /// Its first column.
+    first: usize,
+    /// V below R.
+    v: [&'a [f64]; PANEL],
+    t: &'a [[f64; PANEL]; PANEL],
+}
+
 /// Applies QT of the panel to every column to its right, two at a time.
-fn apply_panel(
-    columns: usize,
-    r: &mut [f64],
-    rows: usize,
-    panel: &[f64],
-    tail: &mut [f64],
-    j: usize,
-    t: &[[f64; PANEL]; PANEL],
-) {
-    let v: [&[f64]; PANEL] = std::array::from_fn(|i| &panel[i * rows..(i + 1) * rows]);
-    let first = j + PANEL;
+fn apply_panel(columns: usize, r: &mut [f64], rows: usize, panel: &Panel<'_>, tail: &mut [f64]) {
+    let &Panel { first: j, v, t } = panel;
     let mut pairs = tail.chunks_exact_mut(2 * rows);
-    let mut l = first;
+    let mut l = j + PANEL;
     for pair in pairs.by_ref() {
         let (x, y) = pair.split_at_mut(rows);
         let mut sums = [[f64x4::ZERO; 2]; PANEL];

@@ -168,31 +168,16 @@ mod tests {
     use super::*;
     use crate::estimation::observe::{ObserveSettings, Standstill, observe};
     use crate::estimation::{EstimateSettings, estimate};
-    use crate::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
+    use crate::model::RecursiveModel;
+    use crate::testing::vertical_axis;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
-    use std::borrow::Cow;
 
     const TRUE: [f64; 3] = [2.0, 0.7, 1.5];
 
     /// One vertical axis: an inertia, viscous and Coulomb friction.
     fn model() -> RecursiveModel {
-        let frame = Frame {
-            parent: None,
-            kind: JointKind::Revolute,
-            gamma: 0.0,
-            b: 0.0,
-            alpha: 0.0,
-            d: 0.0,
-            theta: 0.0,
-            r: 0.0,
-        };
-        let drive = Drive { gear: Cow::Owned(vec![1.0]), coupled_friction: Cow::Owned(vec![]) };
-        let mut robot =
-            Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![frame], drive, Limits::default());
-        let kept = ["ZZ1", "Fv1", "Fc1"];
-        robot.base = robot.base.iter().filter(|p| kept.contains(&p.name.as_ref())).cloned().collect();
-        RecursiveModel::new(robot).expect("a valid table")
+        vertical_axis(&["ZZ1", "Fv1", "Fc1"])
     }
 
     #[test]

@@ -10,9 +10,7 @@
 //! use dynid_runtime::recording::Trajectory;
 //! use dynid_runtime::signal::{Preparation, prepare};
 //! # use dynid_runtime::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
-//! # let row = Frame {
-//! #     parent: None, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0,
-//! # };
+//! # let row = Frame::on_base(JointKind::Revolute);
 //! # let drive = Drive { gear: vec![1.0].into(), coupled_friction: vec![].into() };
 //! # let mut robot = Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![row], drive, Limits::default());
 //! # robot.base = robot.base.iter().filter(|p| ["ZZ1", "Fv1", "Fc1"].contains(&&*p.name)).cloned().collect();
@@ -43,12 +41,15 @@
 mod attenuation;
 mod bandwidth;
 mod blocks;
+mod cautions;
+mod deviations;
 mod encoder_noise;
 mod essential;
 mod estimate;
 mod factor;
 mod householder;
 mod instrumental;
+mod method;
 pub mod observe;
 mod outcome;
 mod physical;
@@ -56,24 +57,27 @@ mod piecewise;
 mod recorded;
 mod residuals;
 mod robust;
+mod settings;
 mod solve;
 mod total;
 mod uncertainty;
+mod warning;
 mod weights;
 
 pub use bandwidth::{Bandwidth, choose_bandwidth};
 pub use encoder_noise::EncoderNoise;
-pub use estimate::{EstimateSettings, estimate};
+pub use estimate::estimate;
 pub use factor::{BLOCK_ROWS, Factor};
 pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
-pub use outcome::{
-    BlockWeight, EquationError, Essential, Estimate, Method, ParameterEstimate, Solver, Warning,
-};
+pub use method::{Method, Solver};
+pub use outcome::{BlockWeight, EquationError, Essential, Estimate, ParameterEstimate};
 pub use physical::{PhysicalFit, physical_fit};
 pub use piecewise::Piecewise;
 pub use recorded::{
     ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording,
     observe_trajectories,
 };
-pub use residuals::{errors_against, per_equation, relative_error};
+pub use residuals::{per_equation, relative_error};
+pub use settings::EstimateSettings;
 pub use solve::{RANK_TOLERANCE, Solution};
+pub use warning::Warning;

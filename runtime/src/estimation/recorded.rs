@@ -5,7 +5,7 @@ use super::observe::{Equations, Observation, ObserveError, ObserveSettings, Prog
 use super::{Bandwidth, EncoderNoise, EstimateSettings, Piecewise, choose_bandwidth, estimate};
 use crate::model::Model;
 use crate::recording::{Loader, Manifest, RecordingError, RowReport, Trajectory};
-use crate::signal::{Motion, Preparation, SignalError, prepare_all};
+use crate::signal::{Decimator, Motion, Preparation, SignalError, prepare_all};
 
 /// Rows of a piece of a long recording: what is in memory at once is a few times as much.
 pub const PIECE: usize = 100_000;
@@ -37,8 +37,9 @@ impl RecordedSettings {
         let preparation = Preparation { cutoff: self.cutoff.or(cutoff), ..Preparation::default() };
         let mut rows = ObserveSettings { band, ..self.rows.clone() };
         if let Some(rate) = Bandwidth::rate_of(trajectories) {
+            let filter = Decimator::for_rows(rate, rows.band, rows.rate)?;
             rows.acceleration_noise =
-                EncoderNoise::of(trajectories)?.in_accelerations(rate, &preparation, &rows)?;
+                EncoderNoise::of(trajectories)?.in_accelerations(rate, &preparation, &filter)?;
         }
         Ok((preparation, rows))
     }

@@ -24,15 +24,15 @@ pub(super) fn errors_of(
                 trajectory: g.trajectory,
                 equation: g.equation,
                 sigma: (residual > 0.0 || norm_y > 0.0).then_some(sigma),
-                relative_error: (norm_y > 0.0).then(|| residual / norm_y),
+                relative_error: ratio(residual, norm_y),
                 rows,
             }
         })
         .collect()
 }
 
-/// ||Y - W chi|| / ||Y|| of each equation over all trajectories, for any parameters.
-pub fn per_equation(observation: &Observation, chi: &[f64]) -> Vec<f64> {
+/// ||Y - W chi|| / ||Y|| of each equation over all trajectories, for any parameters; `None` where Y is zero.
+pub fn per_equation(observation: &Observation, chi: &[f64]) -> Vec<Option<f64>> {
     let equations = observation.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
     (0..equations)
         .map(|equation| {
@@ -45,8 +45,8 @@ pub fn per_equation(observation: &Observation, chi: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// ||Y - W chi|| / ||Y|| over all equations and trajectories, for any parameters.
-pub fn relative_error(observation: &Observation, chi: &[f64]) -> f64 {
+/// ||Y - W chi|| / ||Y|| over all equations and trajectories, for any parameters; `None` where Y is zero.
+pub fn relative_error(observation: &Observation, chi: &[f64]) -> Option<f64> {
     let (e, y) = observation
         .groups
         .iter()
@@ -54,24 +54,6 @@ pub fn relative_error(observation: &Observation, chi: &[f64]) -> f64 {
     ratio(e.sqrt(), y.sqrt())
 }
 
-/// Relative errors, overall and per equation, of a model whose effects have been taken from the torques of
-/// `unexplained`: what W chi leaves of them, against the torques of `measured`, the same rows before that.
-pub fn errors_against(unexplained: &Observation, measured: &Observation, chi: &[f64]) -> (f64, Vec<f64>) {
-    let equations = measured.groups.iter().map(|g| g.equation + 1).max().unwrap_or(0);
-    let mut left = vec![0.0; equations];
-    let mut whole = vec![0.0; equations];
-    for group in &unexplained.groups {
-        if let Some(left) = left.get_mut(group.equation) {
-            *left += residual_norm(group, chi).powi(2);
-        }
-    }
-    for group in &measured.groups {
-        whole[group.equation] += group.factor.norm_y().powi(2);
-    }
-    let overall = ratio(left.iter().sum::<f64>().sqrt(), whole.iter().sum::<f64>().sqrt());
-    (overall, left.iter().zip(&whole).map(|(e, y)| ratio(e.sqrt(), y.sqrt())).collect())
-}
-
-fn ratio(e: f64, y: f64) -> f64 {
-    if y > 0.0 { e / y } else { 0.0 }
+fn ratio(e: f64, y: f64) -> Option<f64> {
+    (y > 0.0).then(|| e / y)
 }

@@ -187,6 +187,7 @@ fn settle(observation: &Observation, own: &[usize], squares: &[Squares], weights
         weights.freedom[g] = squares.freedom;
     }
 }
+
 /// Columns that do not depend on those before them, ascending.
 fn independent_columns(factor: &Factor) -> Vec<usize> {
     let norms = factor.column_norms();
@@ -206,4 +207,13 @@ fn independent_columns(factor: &Factor) -> Vec<usize> {
         }
     }
     kept
+}
+
+/// Values of some unknowns among all of them; the others are zero.
+pub(super) fn spread(values: &[f64], active: &[usize], unknowns: usize) -> Vec<f64> {
+    let mut chi = vec![0.0; unknowns];
+    for (&l, &x) in active.iter().zip(values) {
+        chi[l] = x;
+    }
+    chi
 }

@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::fingerprint::fingerprint;
+use super::rows::{EquationRows, EvaluatedRows};
 use crate::effects::EffectTerm;
-use crate::estimation::observe::{LeftOut, Observation};
-use crate::estimation::{EquationError, Estimate, ParameterEstimate, Warning};
+use crate::estimation::{Estimate, ParameterEstimate, Warning};
 use crate::model::{ParameterKind, Robot};
-use crate::prediction::{Errors, Evaluation};
+use crate::prediction::Errors;
 
 /// Version of the fields of [`Identified`]: raised when a reader of the version before would misread a file.
 pub const SCHEMA: u32 = 1;
@@ -29,10 +29,10 @@ pub struct Identified {
     pub method: String,
     /// Samples of the recording that were read, all joints counted once.
     pub samples: usize,
-    /// ||Y - W chi|| / ||Y|| of the joint torques over the rows used.
-    pub relative_error: f64,
+    /// ||Y - W chi|| / ||Y|| of the joint torques over the rows used; `None` where Y is zero.
+    pub relative_error: Option<f64>,
     /// The same per joint.
-    pub per_joint: Vec<f64>,
+    pub per_joint: Vec<Option<f64>>,
     /// The same of the power, where the power model was identified.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub power_relative_error: Option<f64>,
@@ -107,30 +107,7 @@ pub struct EssentialParameters {
     pub parameters: Vec<NamedParameter>,
     /// What was cancelled, first first.
     pub cancelled: Vec<String>,
-    /// Relative error with what is kept.
-    pub relative_error: f64,
-}
-
-/// The rows of one equation in one trajectory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct EquationRows {
-    /// Name of the trajectory.
-    pub trajectory: String,
-    /// Number of the joint in the table; 0 for the power model.
-    pub joint: usize,
-    /// Equations used.
-    pub used: usize,
-    /// Left out because the joint hardly moves.
-    pub standstill: usize,
-    /// Left out because the joint is fixed.
-    pub fixed: usize,
-    /// Left out by time windows.
-    pub windows: usize,
-    /// Left out within reach of the filters from an end.
-    pub edges: usize,
-    /// Standard deviation of the errors, N.m, N or W: its inverse was the weight.
-    pub sigma: Option<f64>,
-    /// Relative error of this equation in this trajectory; `None` where no row was used or all torques are zero.
+    /// Relative error with what is kept; `None` where Y is zero.
     pub relative_error: Option<f64>,
 }
 
@@ -160,7 +137,7 @@ impl Identified {
             relative_error: e.relative_error,
         });
         Identified {
-            power_relative_error: power.then_some(estimate.relative_error),
+            power_relative_error: estimate.relative_error.filter(|_| power),
             essential_parameters: essential,
             condition_number: Some(estimate.condition),
             warnings: estimate.warnings.iter().map(Warning::to_string).collect(),
@@ -254,64 +231,4 @@ fn doubt(robot: &Robot, p: &ParameterEstimate) -> Option<String> {
         Some(sigma) if p.value > -2.0 * sigma => "below zero, but not more than its uncertainty".to_owned(),
         _ => "below zero: no robot can have it".to_owned(),
     })
-}
-
-/// What the rows of a recording say about a model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EvaluatedRows {
-    /// Samples read.
-    pub samples: usize,
-    /// Rows of the files that could not be right, where they were looked at.
-    pub rows_left_out: Option<u64>,
-    /// Rows used and left out.
-    pub equations: Vec<EquationRows>,
-    /// Band of the rows, Hz.
-    pub band: f64,
-    /// Errors of the torques.
-    pub errors: Errors,
-    /// What noise makes of them, where it matters.
-    pub noise: Option<Errors>,
-}
-
-impl EvaluatedRows {
-    /// From the observation that an estimate was made from; `errors` are those of the torques.
-    pub fn observed(observation: &Observation, band: f64, estimate: &Estimate, errors: Errors) -> Self {
-        let rows = |l| equation_rows(l, &observation.trajectories, &estimate.errors);
-        Self {
-            samples: observation.samples,
-            rows_left_out: None,
-            equations: observation.left_out.iter().map(rows).collect(),
-            band,
-            errors,
-            noise: None,
-        }
-    }
-
-    /// From an evaluation, for the model at `place` in it.
-    pub fn evaluated(evaluation: &Evaluation, place: usize) -> Option<Self> {
-        let rows = |l| equation_rows(l, &evaluation.trajectories, &[]);
-        Some(Self {
-            samples: evaluation.samples,
-            rows_left_out: None,
-            equations: evaluation.left_out.iter().map(rows).collect(),
-            band: evaluation.band,
-            errors: evaluation.predictions.get(place)?.errors.clone(),
-            noise: evaluation.noise_matters().cloned(),
-        })
-    }
-}
-
-fn equation_rows(rows: &LeftOut, trajectories: &[String], errors: &[EquationError]) -> EquationRows {
-    let error = errors.iter().find(|e| e.trajectory == rows.trajectory && e.equation == rows.equation);
-    EquationRows {
-        trajectory: trajectories.get(rows.trajectory).cloned().unwrap_or_default(),
-        joint: rows.joint.map_or(0, |number| number.0),
-        used: rows.used,
-        standstill: rows.standstill,
-        fixed: rows.fixed,
-        windows: rows.windows,
-        edges: rows.edges,
-        sigma: error.and_then(|e| e.sigma),
-        relative_error: error.and_then(|e| e.relative_error),
-    }
 }

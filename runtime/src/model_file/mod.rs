@@ -24,13 +24,15 @@ mod error;
 mod fingerprint;
 mod identified;
 mod robot_yaml;
+mod rows;
 mod table;
 
 pub use check::{check, read};
 pub use error::FileError;
 pub use fingerprint::{difference, fingerprint};
-pub use identified::{EquationRows, EssentialParameters, EvaluatedRows, Identified, NamedParameter, SCHEMA};
+pub use identified::{EssentialParameters, Identified, NamedParameter, SCHEMA};
 pub use robot_yaml::to_yaml;
+pub use rows::{EquationRows, EvaluatedRows};
 
 #[cfg(test)]
 mod tests;

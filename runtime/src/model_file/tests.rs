@@ -49,7 +49,7 @@ fn model() -> Identified {
         rows_left_out: None,
         equations: Vec::new(),
         band: 25.0,
-        errors: Errors { relative_error: 0.1, per_joint: vec![0.1, 0.2] },
+        errors: Errors { relative_error: Some(0.1), per_joint: vec![Some(0.1), None] },
         noise: None,
     };
     let parameters = robot.base.iter().map(|b| named(&b.name)).collect();

@@ -170,8 +170,8 @@ fn one_case(case: Case, observation: &Observation, torques: &Observation, r_sigm
         survived: kept.len(),
         equal_weights,
         identification_error: weighted_error(observation, &estimate, &chi),
-        reconstruction_error: relative_error(torques, &chi),
-        per_joint: per_equation(torques, &chi),
+        reconstruction_error: relative_error(torques, &chi).unwrap_or(f64::NAN),
+        per_joint: per_equation(torques, &chi).into_iter().map(|error| error.unwrap_or(f64::NAN)).collect(),
         chi,
         estimate,
     }

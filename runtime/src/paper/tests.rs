@@ -15,7 +15,7 @@ fn of(results: &[CaseResult], case: Case) -> &CaseResult {
 #[test]
 fn the_findings_of_the_paper_hold_in_simulation() {
     let (model, standard) = tx40();
-    let campaign = Campaign { rate: 2000.0, ..Campaign::default() };
+    let campaign = Campaign { rate: 500.0, evaluations: 100, ..Campaign::default() };
     let all: Vec<Vec<CaseResult>> = crate::parallel::map(0, SEEDS.len(), |k| {
         let settings = PaperSettings::default();
         let run = campaign.run(&model, &standard, &Preparation::default(), &settings, SEEDS[k], &|_| {});

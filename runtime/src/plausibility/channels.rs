@@ -117,16 +117,7 @@ mod tests {
     use crate::model::{Drive, Frame, JointKind, Limits};
 
     fn robot() -> Robot {
-        let frame = Frame {
-            parent: None,
-            kind: JointKind::Revolute,
-            gamma: 0.0,
-            b: 0.0,
-            alpha: 0.0,
-            d: 0.0,
-            theta: 0.0,
-            r: 0.0,
-        };
+        let frame = Frame::on_base(JointKind::Revolute);
         let second = Frame { parent: Some(0), d: 0.5, ..frame };
         let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
         let limits = Limits {

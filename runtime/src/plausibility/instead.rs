@@ -67,7 +67,7 @@ pub enum AngleUnit {
 pub(super) fn mistakes(robot: &Robot, own: &PhysicalFit) -> Vec<Instead> {
     let kinds = robot.joint_kinds();
     let n = kinds.len();
-    let poor: Vec<bool> = own.per_equation.iter().map(|&e| e > POOR).collect();
+    let poor: Vec<bool> = own.per_equation.iter().map(|e| e.is_some_and(|e| e > POOR)).collect();
     let mut all = Vec::new();
     for joint in (0..n).filter(|&j| poor[j]) {
         let index = JointIndex(joint);

@@ -72,10 +72,13 @@ pub fn judge(
 ) -> Verdict {
     let robot = judged.model.robot();
     let Some(own) = physical_fit(robot, torques, estimated) else { return Verdict::Plausible };
-    let Some(worst) = largest(own.per_equation.len(), |j| own.per_equation[j]) else {
+    // Without any torque there is nothing to judge.
+    let (Some(overall), Some(free)) = (own.relative_error, estimated.relative_error) else {
         return Verdict::Plausible;
     };
-    let error = own.per_equation[worst];
+    let errors = errors_of(&own.per_equation);
+    let Some(worst) = largest(errors.len(), |j| errors[j]) else { return Verdict::Plausible };
+    let error = errors[worst];
     let mut candidates = Vec::new();
     if own.strain > STRAINED || error > POOR {
         let kinds = robot.joint_kinds();
@@ -89,13 +92,13 @@ pub fn judge(
     let instead = better(judged, others, candidates, &own);
     if !instead.is_empty() {
         let worst = (JointIndex(worst), error);
-        return Verdict::Better { own: own.relative_error, worst, instead };
+        return Verdict::Better { own: overall, worst, instead };
     }
     if let Some(joint) = impossible(&own, estimated) {
-        return Verdict::Impossible { joint: JointIndex(joint), error: own.per_equation[joint] };
+        return Verdict::Impossible { joint: JointIndex(joint), error: errors[joint] };
     }
     if own.strain > STRAINED {
-        return Verdict::Strained { possible: own.relative_error, free: estimated.relative_error };
+        return Verdict::Strained { possible: overall, free };
     }
     Verdict::Plausible
 }
@@ -103,9 +106,15 @@ pub fn judge(
 /// The joint of which physics takes most away, where that is more than a quarter of its squared torque and leaves less
 /// than half of it explained.
 fn impossible(own: &PhysicalFit, free: &Estimate) -> Option<usize> {
-    let taken = |j: usize| own.per_equation[j].powi(2) - free.per_equation[j].powi(2);
-    let joint = largest(own.per_equation.len(), taken)?;
-    (own.per_equation[joint] > HALF && taken(joint) > 0.25).then_some(joint)
+    let [own, free] = [&own.per_equation, &free.per_equation].map(|errors| errors_of(errors));
+    let taken = |j: usize| own[j].powi(2) - free[j].powi(2);
+    let joint = largest(own.len(), taken)?;
+    (own[joint] > HALF && taken(joint) > 0.25).then_some(joint)
+}
+
+/// Relative errors, 0 for a joint without torque: nothing of it is left unexplained.
+fn errors_of(per_equation: &[Option<f64>]) -> Vec<f64> {
+    per_equation.iter().map(|error| error.unwrap_or_default()).collect()
 }
 
 /// The joint with the largest value.
@@ -125,7 +134,7 @@ fn better(
         .filter_map(|candidate| {
             let fit = candidate.fit(judged, others)?;
             let better = ratio(&own.per_equation, &fit.per_equation);
-            (better >= FAR_BETTER).then_some((better, candidate, fit.relative_error))
+            (better >= FAR_BETTER).then_some((better, candidate, fit.relative_error?))
         })
         .collect();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -142,8 +151,8 @@ fn better(
 }
 
 /// Geometric mean of the joints' errors over those of another fit.
-fn ratio(own: &[f64], other: &[f64]) -> f64 {
-    let pairs: Vec<f64> =
-        own.iter().zip(other).filter(|(a, b)| **a > 0.0 && **b > 0.0).map(|(a, b)| (a / b).ln()).collect();
+fn ratio(own: &[Option<f64>], other: &[Option<f64>]) -> f64 {
+    let pairs = own.iter().zip(other).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
+    let pairs: Vec<f64> = pairs.filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b).ln()).collect();
     (pairs.iter().sum::<f64>() / pairs.len().max(1) as f64).exp()
 }

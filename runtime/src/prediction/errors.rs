@@ -11,9 +11,10 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// Never below zero: 0 says that the error is not known to be anything but noise.
 pub fn above_noise(errors: &Errors, noise: &Errors) -> Errors {
-    let above = |error: f64, noise: f64| {
-        let left = error.powi(2) - noise.powi(2);
-        if left > ROUNDING * error.powi(2) { left.sqrt() } else { 0.0 }
+    let above = |error: Option<f64>, noise: Option<f64>| {
+        let error = error?;
+        let left = error.powi(2) - noise?.powi(2);
+        Some(if left > ROUNDING * error.powi(2) { left.sqrt() } else { 0.0 })
     };
     Errors {
         relative_error: above(errors.relative_error, noise.relative_error),

@@ -1,5 +1,6 @@
 //! Models on the rows of a recording.
 
+use super::errors::above_noise;
 use super::noise::variance;
 use super::predictor::{PredictionError, Predictor};
 use crate::diagnosis::Errors;
@@ -12,6 +13,28 @@ use crate::signal::Motion;
 pub struct Prediction {
     /// Relative errors.
     pub errors: Errors,
+    /// What of them white noise makes, of the level that what the model leaves has above the band; joint by joint no
+    /// more than the error. `None` where that level cannot be read.
+    ///
+    /// It depends on nothing but the model and the recording, so that it is the same in every comparison. It is an upper
+    /// bound: where a controller answers to the noise of its encoders, torques are rougher above the band than in it, and
+    /// what a model does not know reaches above the band, too. Noise that equals an error says that nothing of this error
+    /// is known to be more than noise.
+    pub noise: Option<Errors>,
+}
+
+impl Prediction {
+    /// The noise, where it makes up a tenth or more of the squared error.
+    pub fn noise_matters(&self) -> Option<&Errors> {
+        let noise = self.noise.as_ref()?;
+        let (part, whole) = (noise.relative_error?, self.errors.relative_error?);
+        (part.powi(2) >= NOISE_MATTERS * whole.powi(2)).then_some(noise)
+    }
+
+    /// What is left of the errors without the noise, where it can be told.
+    pub fn above_noise(&self) -> Option<Errors> {
+        Some(above_noise(&self.errors, self.noise.as_ref()?))
+    }
 }
 
 /// The rows of one joint in one motion, measured and as every model predicts them.
@@ -36,12 +59,6 @@ pub struct JointRows {
 pub struct Evaluation {
     /// One for each model, in the order in which they were given.
     pub predictions: Vec<Prediction>,
-    /// Relative error that white noise of the level found above the band makes, joint by joint no more than what the
-    /// best of the models leaves; `None` where it cannot be estimated.
-    ///
-    /// It is an upper bound: where a controller answers to the noise of its encoders, torques are rougher above the
-    /// band than in it. Noise that equals an error says that nothing of this error is known to be more than noise.
-    pub noise: Option<Errors>,
     /// Band of the rows, Hz.
     pub band: f64,
     /// Names of the motions.
@@ -68,14 +85,6 @@ impl Evaluation {
     /// Rows left out where a joint hardly moves.
     pub fn standing(&self) -> usize {
         self.left_out.iter().map(|l| l.standstill).sum()
-    }
-
-    /// The noise, where it makes up a tenth or more of any model's squared error.
-    pub fn noise_matters(&self) -> Option<&Errors> {
-        let noise = self.noise.as_ref()?;
-        let matters =
-            |p: &Prediction| noise.relative_error.powi(2) >= NOISE_MATTERS * p.errors.relative_error.powi(2);
-        self.predictions.iter().any(matters).then_some(noise)
     }
 }
 
@@ -115,12 +124,7 @@ pub fn evaluate(
         return Err(ObserveError::NoRows { reason: why_nothing(&plans, motions, settings) }.into());
     }
     Ok(Evaluation {
-        predictions: sums
-            .left
-            .iter()
-            .map(|left| Prediction { errors: Errors::of_squares(left, &sums.whole) })
-            .collect(),
-        noise: sums.noise(),
+        predictions: sums.predictions(),
         band: settings.band,
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),
         left_out,
@@ -177,8 +181,8 @@ struct Sums {
     whole: Vec<f64>,
     /// For each model.
     left: Vec<Vec<f64>>,
-    /// What noise makes of it; `None` once it could not be estimated.
-    noise: Option<Vec<f64>>,
+    /// What noise makes of it; `None` once it could not be read.
+    noise: Vec<Option<Vec<f64>>>,
 }
 
 impl Sums {
@@ -186,7 +190,7 @@ impl Sums {
         Self {
             whole: vec![0.0; joints],
             left: vec![vec![0.0; joints]; models],
-            noise: Some(vec![0.0; joints]),
+            noise: vec![Some(vec![0.0; joints]); models],
         }
     }
 
@@ -204,24 +208,26 @@ impl Sums {
         if count == 0 {
             return;
         }
-        // Every model has the same noise: what the best of them leaves shows it most clearly.
-        let levels = predicted.iter().map(|predicted| {
+        for (noise, predicted) in self.noise.iter_mut().zip(predicted) {
             let residual: Vec<f64> = motion.torque[j].iter().zip(*predicted).map(|(y, p)| y - p).collect();
             let end = residual.len().saturating_sub(motion.edge_samples);
-            variance(&residual[motion.edge_samples.min(end)..end], motion.rate, plan.band)
-        });
-        let least = levels.flatten().min_by(f64::total_cmp);
-        match (&mut self.noise, least) {
-            (Some(noise), Some(variance)) => noise[j] += variance * count as f64,
-            (noise, _) => *noise = None,
+            let level = variance(&residual[motion.edge_samples.min(end)..end], motion.rate, plan.band);
+            match (noise.as_mut(), level) {
+                (Some(noise), Some(variance)) => noise[j] += variance * count as f64,
+                _ => *noise = None,
+            }
         }
     }
 
-    /// Capped at the smallest residual: noise that a model has explained is none.
-    fn noise(&self) -> Option<Errors> {
-        let capped =
-            |(j, noise): (usize, &f64)| self.left.iter().fold(*noise, |least, left| least.min(left[j]));
-        let noise: Vec<f64> = self.noise.as_ref()?.iter().enumerate().map(capped).collect();
-        Some(Errors::of_squares(&noise, &self.whole))
+    fn predictions(&self) -> Vec<Prediction> {
+        let of_model = |(left, noise): (&Vec<f64>, &Option<Vec<f64>>)| {
+            // Noise that a model has explained is none.
+            let capped = |noise: &Vec<f64>| -> Vec<f64> {
+                noise.iter().zip(left).map(|(noise, left)| noise.min(*left)).collect()
+            };
+            let of = |squares: &[f64]| Errors::of_squares(squares, &self.whole);
+            Prediction { errors: of(left), noise: noise.as_ref().map(|noise| of(&capped(noise))) }
+        };
+        self.left.iter().zip(&self.noise).map(of_model).collect()
     }
 }

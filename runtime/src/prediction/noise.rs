@@ -17,7 +17,7 @@ const FEWEST: usize = 4;
 /// the band, as white noise does. The median passes over lines such as those of a ripple. Noise that the positions
 /// bring into the prediction falls off above the band and is not counted; where a controller answers to the noise of
 /// its encoders, torques are rougher above the band than in it, and the level is too high: what is reported of it is
-/// capped at what the models leave. `None` where the signal is too short or its rate too low.
+/// capped at what the model leaves. `None` where the signal is too short or its rate too low.
 pub(super) fn variance(residual: &[f64], rate: f64, band: f64) -> Option<f64> {
     let spectrum = welch(residual, rate, ((SEGMENT * rate) as usize).max(16)).ok()?;
     let [from, to] = [READ[0] * band, (READ[1] * band).min(HIGHEST * rate)];

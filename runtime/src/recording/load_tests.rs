@@ -7,16 +7,7 @@ use crate::recording::folder::Folder;
 use crate::recording::{Manifest, Reason, RecordingError};
 
 fn robot(kinds: &[JointKind], gear: Vec<f64>) -> Robot {
-    let frame = |&kind: &JointKind| Frame {
-        parent: None,
-        kind,
-        gamma: 0.0,
-        b: 0.0,
-        alpha: 0.0,
-        d: 0.0,
-        theta: 0.0,
-        r: 0.0,
-    };
+    let frame = |&kind: &JointKind| Frame::on_base(kind);
     Robot {
         name: "test_arm".into(),
         description: "".into(),

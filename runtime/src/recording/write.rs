@@ -86,9 +86,8 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_back_exactly() {
-        let frame =
-            |kind| Frame { parent: None, kind, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 };
-        let frames = vec![frame(JointKind::Fixed), frame(JointKind::Revolute), frame(JointKind::Prismatic)];
+        let frames =
+            [JointKind::Fixed, JointKind::Revolute, JointKind::Prismatic].map(Frame::on_base).to_vec();
         let drive = Drive { gear: vec![50.0, 0.0, 0.0, 400.0].into(), coupled_friction: vec![].into() };
         let robot = Robot::with_standard_as_base("test_arm", [0.0; 3], frames, drive, Limits::default());
         let trajectory = |seed: f64, fixed: Vec<usize>| {

@@ -27,9 +27,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A ratio as a percentage with three significant digits: 0.0678 is `6.78 %`.
-pub fn percent(ratio: f64) -> String {
-    format!("{} %", significant(100.0 * ratio, 3))
+/// A ratio as a percentage with three significant digits: 0.0678 is `6.78 %`. A ratio to nothing, `None`, is
+/// `undefined`.
+pub fn percent(ratio: impl Into<Option<f64>>) -> String {
+    let words = |ratio: f64| format!("{} %", significant(100.0 * ratio, 3));
+    ratio.into().map_or_else(|| "undefined".to_owned(), words)
 }
 
 /// What an error does from `before` to `after`: a sentence must not say that it falls where it does not.

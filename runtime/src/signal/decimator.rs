@@ -84,6 +84,17 @@ impl Decimator {
         if ratio.is_finite() && ratio > 1.0 { ratio.round().min(1e9) as usize } else { 1 }
     }
 
+    /// The filter that brings a signal of `rate` to rows that hold the frequencies up to `band`, about `rows_per_second`
+    /// of them (all Hz); `None`: twice the band. A band that the rows cannot hold is made narrower.
+    ///
+    /// # Errors
+    /// As of [`Decimator::with_band`].
+    pub fn for_rows(rate: f64, band: f64, rows_per_second: Option<f64>) -> Result<Self, SignalError> {
+        let factor = Self::factor_for(rate, rows_per_second.unwrap_or(2.0 * band));
+        let nyquist = 0.5 * rate / factor as f64;
+        Self::with_band(factor, (band / nyquist).min(1.0))
+    }
+
     /// Samples in per sample out.
     pub fn factor(&self) -> usize {
         self.factor

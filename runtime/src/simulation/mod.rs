@@ -6,9 +6,7 @@
 //! ```
 //! use dynid_runtime::simulation::Plant;
 //! # use dynid_runtime::model::{Drive, Frame, JointKind, Limits, RecursiveModel, Robot};
-//! # let row = Frame {
-//! #     parent: None, kind: JointKind::Revolute, gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0,
-//! # };
+//! # let row = Frame::on_base(JointKind::Revolute);
 //! # let drive = Drive { gear: vec![1.0].into(), coupled_friction: vec![].into() };
 //! # let mut robot = Robot::with_standard_as_base("axis", [0.0, 0.0, -9.81], vec![row], drive, Limits::default());
 //! # robot.base = robot.base.iter().filter(|p| ["ZZ1", "Fv1", "Fc1"].contains(&&*p.name)).cloned().collect();

@@ -193,13 +193,17 @@ fn every_joint_of_a_random_arm_comes_to_rest_under_friction() {
         let q: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
         let dq: Vec<f64> = (0..n).map(|_| random.random_range(-3.0..3.0)).collect();
         let mut state = plant.state(&q, &dq);
+        let free = vec![0.0; n];
         for _ in 0..20_000 {
-            plant.advance(&mut state, &vec![0.0; n], 5e-4).unwrap();
+            plant.advance(&mut state, &free, 5e-4).unwrap();
+            if state.dq.iter().all(|&v| v == 0.0) {
+                break;
+            }
         }
         assert!(state.dq.iter().all(|&v| v == 0.0), "{:?}", state.dq);
         let stands = state.q.clone();
         for _ in 0..2000 {
-            plant.advance(&mut state, &vec![0.0; n], 5e-4).unwrap();
+            plant.advance(&mut state, &free, 5e-4).unwrap();
         }
         assert_eq!(state.q, stands);
     }

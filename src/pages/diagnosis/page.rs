@@ -94,20 +94,20 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
     if let Some(words) = extras.tested.as_ref().and_then(|t| noise_words(&t.evaluation)) {
         page.note(&format!("Test recording: {words}."));
     }
-    let at = |errors: &[f64], j: usize| errors.get(j).map_or_else(|| "-".to_owned(), |e| percent(*e));
-    let per_joint = |columns: &[&[f64]]| -> Vec<Vec<String>> {
+    let at = |errors: &[Option<f64>], j: usize| errors.get(j).map_or_else(|| "-".to_owned(), |e| percent(*e));
+    let per_joint = |columns: &[&[Option<f64>]]| -> Vec<Vec<String>> {
         let row = |j: usize| std::iter::once(extras.joint(j)).chain(columns.iter().map(move |c| at(c, j)));
         (0..held.per_joint_before.len()).map(|j| row(j).collect()).collect()
     };
-    let own: [&[f64]; 2] = [&held.per_joint_before, &held.per_joint_after];
+    let own: [&[Option<f64>]; 2] = [&held.per_joint_before, &held.per_joint_after];
     let header = format!("held out, {}, before", own_band(diagnosis));
     page.table(&["", &header, "after"], &per_joint(&own));
-    let columns = |predictions: &[Prediction]| -> Vec<Vec<f64>> {
+    let columns = |predictions: &[Prediction]| -> Vec<Vec<Option<f64>>> {
         predictions.iter().map(|p| p.errors.per_joint.clone()).collect()
     };
     let evaluated = |page: &mut Page, what: &str, evaluation: &Evaluation| {
         let columns = columns(&evaluation.predictions);
-        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let columns: Vec<&[Option<f64>]> = columns.iter().map(Vec::as_slice).collect();
         page.table(&["", &format!("{what}, {}, before", band(evaluation)), "after"], &per_joint(&columns));
     };
     if let Some(test) = &extras.tested {

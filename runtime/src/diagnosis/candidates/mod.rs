@@ -6,3 +6,4 @@ pub(in crate::diagnosis) mod nuisances;
 pub(in crate::diagnosis) mod order_line;
 pub(in crate::diagnosis) mod spectrum;
 pub(in crate::diagnosis) mod trial;
+mod wave;

@@ -6,6 +6,7 @@
 //! reaches far. Both are asked for, motion by motion, at the full rate, of the residual without what is slower than a few
 //! waves.
 
+use super::wave::{Orders, Sample, turned, wave};
 use crate::diagnosis::rules::{
     LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
     LINE_PICKED_ABOVE, LINE_SLOWER,
@@ -40,6 +41,13 @@ pub(in crate::diagnosis) struct Line {
     pub share: f64,
 }
 
+impl Line {
+    /// Of the wave, N.m or N.
+    pub fn amplitude(&self) -> f64 {
+        self.cosine.hypot(self.sine)
+    }
+}
+
 /// The lines of a joint among `known` orders and those that were `picked` from a spectrum, strongest first.
 ///
 /// `slowest` is the speed below which the joint stands. A line must show in more than half of the motions that could
@@ -67,7 +75,7 @@ pub(in crate::diagnosis) fn lines(
         };
         let order = median(|l| l.order);
         let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
-        let wave = wave(&all, order);
+        let wave = wave(&all, &turned(&all, order));
         found.push(Line {
             order,
             cosine: wave.c,
@@ -98,12 +106,6 @@ pub(in crate::diagnosis) fn resolution(strokes: &[Stroke<'_>]) -> f64 {
 fn travel(q: &[f64]) -> f64 {
     let (low, high) = q.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
     (high - low).max(0.0)
-}
-
-/// A sample that can hold a line: its angle and the residual without what is slower.
-struct Sample {
-    q: f64,
-    r: f64,
 }
 
 /// What one motion says of an order.
@@ -143,11 +145,13 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
     let near = Orders { first: order - 0.5 * step, step: 0.125 * step, count: 9 };
     let highest = near.all().zip(near.waves(&samples)).max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
     let Some((order, fitted)) = highest else { return Look::Blind };
-    let predicted = |fit: &[Sample], test: &[Sample]| {
-        let w = wave(fit, order);
+    let turned = turned(&samples, order);
+    let (first, second) = ((first, &turned[..half]), (second, &turned[half..]));
+    let predicted = |fit: (&[Sample], &[(f64, f64)]), test: (&[Sample], &[(f64, f64)])| {
+        let w = wave(fit.0, fit.1);
         let (mut left, mut whole) = (0.0, 0.0);
-        for s in test {
-            left += (s.r - w.at(order * s.q)).powi(2);
+        for (s, &turned) in test.0.iter().zip(test.1) {
+            left += (s.r - w.at(turned)).powi(2);
             whole += s.r * s.r;
         }
         (left, whole)
@@ -222,99 +226,6 @@ fn samples(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Vec<Sample> {
         t = end;
     }
     out
-}
-
-/// c cos kq + s sin kq.
-struct Wave {
-    c: f64,
-    s: f64,
-}
-
-impl Line {
-    /// Of the wave, N.m or N.
-    pub fn amplitude(&self) -> f64 {
-        self.cosine.hypot(self.sine)
-    }
-}
-
-impl Wave {
-    fn norm(&self) -> f64 {
-        self.c.hypot(self.s)
-    }
-
-    fn at(&self, angle: f64) -> f64 {
-        let (sine, cosine) = angle.sin_cos();
-        self.c * cosine + self.s * sine
-    }
-}
-
-/// Inner products of cosine, sine and residual.
-#[derive(Clone, Copy, Default)]
-struct Products {
-    cc: f64,
-    cs: f64,
-    ss: f64,
-    rc: f64,
-    rs: f64,
-}
-
-impl Products {
-    fn add(&mut self, r: f64, (sine, cosine): (f64, f64)) {
-        self.cc += cosine * cosine;
-        self.cs += cosine * sine;
-        self.ss += sine * sine;
-        self.rc += r * cosine;
-        self.rs += r * sine;
-    }
-
-    /// The wave by least squares.
-    fn wave(&self) -> Wave {
-        let Products { cc, cs, ss, rc, rs } = *self;
-        let determinant = cc * ss - cs * cs;
-        if determinant <= 1e-9 * cc * ss {
-            return Wave { c: 0.0, s: 0.0 };
-        }
-        Wave { c: (rc * ss - rs * cs) / determinant, s: (rs * cc - rc * cs) / determinant }
-    }
-}
-
-/// The wave of one order.
-fn wave(samples: &[Sample], order: f64) -> Wave {
-    let mut products = Products::default();
-    for x in samples {
-        products.add(x.r, (order * x.q).sin_cos());
-    }
-    products.wave()
-}
-
-/// Orders at equal steps.
-struct Orders {
-    first: f64,
-    step: f64,
-    count: usize,
-}
-
-impl Orders {
-    fn all(&self) -> impl Iterator<Item = f64> + use<> {
-        let (first, step) = (self.first, self.step);
-        (0..self.count).map(move |k| first + step * k as f64)
-    }
-
-    /// The wave of each order. The angle of a sample grows by the same from order to order, so that it is turned on
-    /// instead of being evaluated again.
-    fn waves(&self, samples: &[Sample]) -> impl Iterator<Item = Wave> + use<> {
-        let mut products = vec![Products::default(); self.count];
-        for x in samples {
-            let (mut sine, mut cosine) = (self.first * x.q).sin_cos();
-            let (turn_sine, turn_cosine) = (self.step * x.q).sin_cos();
-            for at in &mut products {
-                at.add(x.r, (sine, cosine));
-                (sine, cosine) =
-                    (sine * turn_cosine + cosine * turn_sine, cosine * turn_cosine - sine * turn_sine);
-            }
-        }
-        products.into_iter().map(|p| p.wave())
-    }
 }
 
 #[cfg(test)]

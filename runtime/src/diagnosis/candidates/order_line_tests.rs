@@ -1,5 +1,6 @@
 use super::*;
 use crate::diagnosis::rules::LINE_MULTIPLES;
+use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -12,10 +13,6 @@ struct Motion {
     q: Vec<f64>,
     dq: Vec<f64>,
     residual: Vec<f64>,
-}
-
-fn normal(rng: &mut Pcg64) -> f64 {
-    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
 }
 
 /// 12 s over 2 rad at up to `speed` rad/s, with unit noise of which a part is slow, a friction that was not fitted

@@ -2,8 +2,9 @@
 
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::Signals;
-use crate::diagnosis::rules::{FORCE_RIDGE, FORCE_RIDGE_ABSOLUTE};
-use crate::effects::unit_force_torques;
+use crate::diagnosis::rules::{FORCE_RIDGE, FORCE_RIDGE_ABSOLUTE, INNER_LINK_BETTER};
+use crate::effects::{ContactForce, JointTorque, unit_force_torques};
+use crate::model::Robot;
 use nalgebra::{Matrix3, Vector3};
 
 /// One joint's row at an instant.
@@ -54,5 +55,64 @@ impl UnitForces {
                 (left / row.sigma).powi(2)
             })
             .sum()
+    }
+}
+
+/// A link with the force on it that explains a push.
+pub(in crate::diagnosis) struct PushedLink {
+    /// Squares that the forces leave, in units of the noise.
+    pub left: f64,
+    /// Its frame, counted from 0.
+    pub frame: usize,
+    /// At each instant, N, in frame 0.
+    pub forces: Vec<Vector3<f64>>,
+}
+
+/// The link whose forces leave least of the residual at these instants of a motion.
+pub(in crate::diagnosis) fn best_link<'r>(
+    context: &Context<'_>,
+    s: &Signals,
+    instants: impl Iterator<Item = (usize, &'r [JointRow])> + Clone,
+) -> Option<PushedLink> {
+    let joint_of_frame = context.model.robot().joint_of_frame();
+    let mut best: Option<PushedLink> = None;
+    for frame in (0..joint_of_frame.len()).rev().filter(|&f| joint_of_frame[f].is_some()) {
+        let mut link = PushedLink { left: 0.0, frame, forces: Vec::new() };
+        for (t, rows) in instants.clone() {
+            let unit = UnitForces::at(context, frame, s, t);
+            let force = unit.force(rows);
+            link.left += unit.left(rows, &force);
+            link.forces.push(force);
+        }
+        // A link further in must be clearly better: the same force seen from the next link is nearly as good.
+        if best.as_ref().is_none_or(|best| link.left < INNER_LINK_BETTER * best.left) {
+            best = Some(link);
+        }
+    }
+    best
+}
+
+/// A push as the torques that its joints (counted from 0) feel, on the innermost of their links, without a force.
+pub(in crate::diagnosis) fn as_torques(
+    robot: &Robot,
+    motion: &str,
+    window: [f64; 2],
+    edges: [f64; 2],
+    felt: Vec<JointTorque>,
+) -> ContactForce {
+    let joint_of_frame = robot.joint_of_frame();
+    let number = |joint: usize| joint_of_frame.iter().position(|f| *f == Some(joint)).unwrap_or(joint) + 1;
+    let innermost = felt.iter().map(|torque| torque.joint).min().unwrap_or(0);
+    ContactForce {
+        motion: motion.to_owned(),
+        window,
+        link: number(innermost),
+        force: [0.0; 3],
+        mean_force: [0.0; 3],
+        edges: Some(edges),
+        joint_torques: felt
+            .into_iter()
+            .map(|torque| JointTorque { joint: number(torque.joint), ..torque })
+            .collect(),
     }
 }

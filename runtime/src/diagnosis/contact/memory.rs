@@ -140,12 +140,9 @@ fn continued(coefficients: &[f64], longest: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
+    use crate::testing::normal;
+    use rand::SeedableRng;
     use rand_pcg::Pcg64;
-
-    fn normal(rng: &mut Pcg64) -> f64 {
-        (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
-    }
 
     #[test]
     fn means_of_a_series_that_remembers_spread_as_said() {

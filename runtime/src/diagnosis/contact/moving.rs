@@ -1,12 +1,12 @@
 //! Pushes against a robot that moves, seen joint by joint: from the rows of a model's residual to forces and windows.
 
-use crate::diagnosis::contact::force::{JointRow, UnitForces};
+use crate::diagnosis::contact::force::{JointRow, as_torques, best_link};
 use crate::diagnosis::contact::scan::{Pushed, Track, scan, together};
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS, INNER_LINK_BETTER};
+use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS};
 use crate::effects::{ContactForce, JointTorque};
 
 /// Looks for pushes in what a model leaves of the torques on the rows of a design; `sigma` is the residual's level on
@@ -86,7 +86,6 @@ pub(in crate::diagnosis) fn still_there(found: Contacts, again: Option<&Contacts
 
 /// A push as a force on a link where at least two joints feel it and one force explains them; else as joint torques.
 fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pushed]) -> ContactForce {
-    let robot = context.model.robot();
     let motion = group[0].motion;
     let s = &context.signals[motion];
     let spacing = design.spacing(motion);
@@ -94,75 +93,29 @@ fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pus
     let last = group.iter().max_by_key(|p| p.places[1]).unwrap_or(&group[0]);
     let time = |place: usize| s.time(place * spacing);
     let step = spacing as f64 / s.rate;
-    let joint_of_frame = robot.joint_of_frame();
-    let frame_of = |joint: usize| joint_of_frame.iter().position(|f| *f == Some(joint)).unwrap_or(joint);
-    let innermost = group.iter().map(|p| p.joint).min().unwrap_or(0);
-    let largest = |p: &Pushed| {
-        let rows = &tracks[p.joint].motions[motion].1;
-        let inside: Vec<f64> = rows
-            .iter()
-            .filter(|(place, _)| (p.places[0]..=p.places[1]).contains(place))
-            .map(|(_, r)| *r)
-            .collect();
-        let means = inside.chunks(5).map(|c| c.iter().sum::<f64>() / c.len() as f64);
-        means.fold(p.mean, |a, b| if b.abs() > a.abs() { b } else { a })
-    };
-    let mut wrench = ContactForce {
-        motion: s.name.clone(),
-        window: [time(first.places[0]), time(last.places[1])],
-        link: frame_of(innermost) + 1,
-        force: [0.0; 3],
-        mean_force: [0.0; 3],
-        edges: Some([first.edges[0] * step, last.edges[1] * step]),
-        joint_torques: group
-            .iter()
-            .map(|p| JointTorque {
-                joint: frame_of(p.joint) + 1,
-                mean: p.mean,
-                largest: largest(p),
-                sigma: p.sigma,
-            })
-            .collect(),
-    };
+    let felt = group.iter().map(|p| {
+        let largest = largest_mean(&tracks[p.joint].inside(motion, p.places), p.mean);
+        JointTorque { joint: p.joint, mean: p.mean, largest, sigma: p.sigma }
+    });
+    let mut wrench = as_torques(
+        context.model.robot(),
+        &s.name,
+        [time(first.places[0]), time(last.places[1])],
+        [first.edges[0] * step, last.edges[1] * step],
+        felt.collect(),
+    );
     if group.len() < 2 {
         return wrench;
     }
-    // Where the robot is in the middle of the push; joints that feel nothing say so.
-    let middle = (first.places[0] + last.places[1]) / 2 * spacing;
-    let mut rows = Vec::new();
-    for track in tracks {
-        let felt = group.iter().find(|p| p.joint == track.joint);
-        let inside: Vec<f64> = track.motions[motion]
-            .1
-            .iter()
-            .filter(|(place, _)| (first.places[0]..=last.places[1]).contains(place))
-            .map(|(_, r)| *r)
-            .collect();
-        if inside.is_empty() && felt.is_none() {
-            continue;
-        }
-        let mean = felt.map_or_else(|| inside.iter().sum::<f64>() / inside.len() as f64, |p| p.mean);
-        let spread = || {
-            let squares: f64 = track.motions.iter().flat_map(|m| &m.1).map(|(_, r)| r * r).sum();
-            let count: usize = track.motions.iter().map(|m| m.1.len()).sum();
-            // Of a mean of as many rows, half of them independent.
-            (squares / count.max(1) as f64 * 2.0 / inside.len() as f64).sqrt()
-        };
-        let sigma = felt.map_or_else(spread, |p| p.sigma).max(1e-12);
-        rows.push(JointRow { joint: track.joint, residual: mean, y: 0.0, sigma });
-    }
+    let places = [first.places[0], last.places[1]];
+    let rows: Vec<JointRow> =
+        tracks.iter().filter_map(|track| felt_by(track, motion, places, group)).collect();
     let whole: f64 = rows.iter().map(|row| (row.residual / row.sigma).powi(2)).sum();
-    let mut best: Option<(f64, usize, [f64; 3])> = None;
-    for frame in (0..robot.frames.len()).filter(|&f| joint_of_frame[f].is_some()).rev() {
-        let unit = UnitForces::at(context, frame, s, middle.min(s.len().saturating_sub(1)));
-        let f = unit.force(&rows);
-        let left = unit.left(&rows, &f);
-        // A link further in must be clearly better: the same force seen from the next link is nearly as good.
-        if best.as_ref().is_none_or(|b| left < INNER_LINK_BETTER * b.0) {
-            best = Some((left, frame, [f[0], f[1], f[2]]));
-        }
-    }
-    if let Some((_, frame, mean)) = best.filter(|b| 1.0 - b.0 / whole >= FORCE_EXPLAINS) {
+    // Where the robot is in the middle of the push.
+    let middle = ((places[0] + places[1]) / 2 * spacing).min(s.len().saturating_sub(1));
+    let best = best_link(context, s, std::iter::once((middle, rows.as_slice())));
+    if let Some(link) = best.filter(|link| 1.0 - link.left / whole >= FORCE_EXPLAINS) {
+        let mean = link.forces.first().map_or([0.0; 3], |f| [f[0], f[1], f[2]]);
         // The largest torques against the means tell how much more the push was at its height.
         let ratio = wrench
             .joint_torques
@@ -170,9 +123,33 @@ fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pus
             .map(|t| t.largest / t.mean)
             .filter(|r| r.is_finite())
             .fold(1.0, f64::max);
-        wrench.link = frame + 1;
+        wrench.link = link.frame + 1;
         wrench.mean_force = mean;
         wrench.force = mean.map(|f| f * ratio);
     }
     wrench
+}
+
+/// The largest mean of five rows of a push, at least its whole mean.
+fn largest_mean(inside: &[f64], mean: f64) -> f64 {
+    let means = inside.chunks(5).map(|c| c.iter().sum::<f64>() / c.len() as f64);
+    means.fold(mean, |a, b| if b.abs() > a.abs() { b } else { a })
+}
+
+/// What a joint feels while others are pushed: joints that feel nothing say so. `None` where it has no rows.
+fn felt_by(track: &Track, motion: usize, places: [usize; 2], group: &[Pushed]) -> Option<JointRow> {
+    let felt = group.iter().find(|p| p.joint == track.joint);
+    let inside = track.inside(motion, places);
+    if inside.is_empty() && felt.is_none() {
+        return None;
+    }
+    let mean = felt.map_or_else(|| inside.iter().sum::<f64>() / inside.len() as f64, |p| p.mean);
+    let spread = || {
+        let squares: f64 = track.motions.iter().flat_map(|m| &m.1).map(|(_, r)| r * r).sum();
+        let count: usize = track.motions.iter().map(|m| m.1.len()).sum();
+        // Of a mean of as many rows, half of them independent.
+        (squares / count.max(1) as f64 * 2.0 / inside.len() as f64).sqrt()
+    };
+    let sigma = felt.map_or_else(spread, |p| p.sigma).max(1e-12);
+    Some(JointRow { joint: track.joint, residual: mean, y: 0.0, sigma })
 }

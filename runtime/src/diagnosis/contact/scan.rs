@@ -19,6 +19,14 @@ pub(in crate::diagnosis) struct Track {
     pub motions: Vec<(bool, Vec<(usize, f64)>)>,
 }
 
+impl Track {
+    /// The residual of a motion from the first of two places to the last.
+    pub fn inside(&self, motion: usize, places: [usize; 2]) -> Vec<f64> {
+        let rows = self.motions[motion].1.iter();
+        rows.filter(|(place, _)| (places[0]..=places[1]).contains(place)).map(|(_, r)| *r).collect()
+    }
+}
+
 /// A window in which one joint is pushed.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::diagnosis) struct Pushed {

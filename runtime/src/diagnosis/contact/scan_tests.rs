@@ -1,4 +1,5 @@
 use super::*;
+use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -7,10 +8,6 @@ const STEP: f64 = 0.02;
 /// Rows of 24 s.
 const ROWS: usize = 1200;
 const JOINTS: usize = 4;
-
-fn normal(rng: &mut Pcg64) -> f64 {
-    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
-}
 
 /// 24 s of noise of unit variance, 30 % of it remembered for 0.1 s; every joint reverses every 2 to 4 s.
 fn noise(rng: &mut Pcg64) -> Vec<Track> {

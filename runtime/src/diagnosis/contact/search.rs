@@ -1,14 +1,14 @@
 //! Which windows of time one force on one link explains.
 
-use crate::diagnosis::contact::force::{JointRow, UnitForces};
+use crate::diagnosis::contact::force::{JointRow, PushedLink, UnitForces, best_link};
 use crate::diagnosis::contact::residual::{Energies, RobustResidual, energies};
 use crate::diagnosis::contact::windows::{duration, windows};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{
-    CONTACT_MARGIN, FORCE_EXPLAINS, FORCE_PREDICTS, HIGHEST_CONFIDENCE, INNER_LINK_BETTER,
-    LARGEST_PUSHED_FRACTION, LEAST_INSTANTS, PUSHED, PUSHED_TOGETHER, REMAINING_FRACTION,
+    CONTACT_MARGIN, FORCE_EXPLAINS, FORCE_PREDICTS, HIGHEST_CONFIDENCE, LARGEST_PUSHED_FRACTION,
+    LEAST_INSTANTS, PUSHED, PUSHED_TOGETHER, REMAINING_FRACTION,
 };
 use crate::effects::ContactForce;
 use nalgebra::Vector3;
@@ -153,7 +153,8 @@ fn explain(
     for rows in instants.values() {
         before += rows.iter().map(|row| (row.residual / row.sigma).powi(2)).sum::<f64>();
     }
-    let (left, frame, forces) = best_link(context, s, &instants)?;
+    let at_instants = instants.iter().map(|(&t, rows)| (t, rows.as_slice()));
+    let PushedLink { left, frame, forces } = best_link(context, s, at_instants)?;
     if 1.0 - left / before < FORCE_EXPLAINS || forces.len() < LEAST_INSTANTS {
         return None;
     }
@@ -203,32 +204,6 @@ fn instants(
         }
     }
     instants
-}
-
-/// The link whose forces leave least of the residual: the squares left, its frame (0-based), the force per instant.
-fn best_link(
-    context: &Context<'_>,
-    s: &Signals,
-    instants: &Instants,
-) -> Option<(f64, usize, Vec<Vector3<f64>>)> {
-    let robot = context.model.robot();
-    let joint_of_frame = robot.joint_of_frame();
-    let mut best: Option<(f64, usize, Vec<Vector3<f64>>)> = None;
-    for frame in (0..robot.frames.len()).rev().filter(|&f| joint_of_frame[f].is_some()) {
-        let mut left = 0.0;
-        let mut forces = Vec::new();
-        for (&t, rows) in instants {
-            let unit = UnitForces::at(context, frame, s, t);
-            let force = unit.force(rows);
-            left += unit.left(rows, &force);
-            forces.push(force);
-        }
-        // A link further in must be clearly better: the same force seen from the next link is nearly as good.
-        if best.as_ref().is_none_or(|b| left < INNER_LINK_BETTER * b.0) {
-            best = Some((left, frame, forces));
-        }
-    }
-    best
 }
 
 #[cfg(test)]

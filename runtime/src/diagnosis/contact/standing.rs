@@ -1,11 +1,11 @@
 //! Pushes against a robot that holds still, from a model that its motion has told.
 
-use crate::diagnosis::contact::force::{JointRow, UnitForces};
+use crate::diagnosis::contact::force::{JointRow, as_torques, best_link};
 use crate::diagnosis::contact::rest::{Load, Push, Seen, Standing, look, stretches};
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
-use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, INNER_LINK_BETTER, STICTION};
+use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, STICTION};
 use crate::effects::{ContactForce, JointTorque};
 use nalgebra::Vector3;
 
@@ -153,7 +153,6 @@ fn wrench(
     push: &Push,
     squares: &mut [f64; 3],
 ) -> ContactForce {
-    let robot = context.model.robot();
     let sample = |time: f64| (((time - standing.start) * standing.rate).round().max(0.0)) as usize;
     let last = standing.still.len().saturating_sub(1);
     let (from, to) = (sample(push.window[0]).min(last), sample(push.window[1]).min(last));
@@ -185,50 +184,21 @@ fn wrench(
             }
         }
     }
-    let joint_of_frame = robot.joint_of_frame();
-    let innermost = push.joints.iter().map(|p| p.joint).min().unwrap_or(0);
-    let frame_of = |joint: usize| joint_of_frame.iter().position(|f| *f == Some(joint)).unwrap_or(joint);
-    let mut wrench = ContactForce {
-        motion: s.name.clone(),
-        window: push.window,
-        link: frame_of(innermost) + 1,
-        force: [0.0; 3],
-        mean_force: [0.0; 3],
-        edges: Some(push.edges),
-        joint_torques: push
-            .joints
-            .iter()
-            .map(|p| JointTorque {
-                joint: frame_of(p.joint) + 1,
-                mean: p.mean,
-                largest: p.largest,
-                sigma: p.sigma,
-            })
-            .collect(),
-    };
+    let felt = push.joints.iter();
+    let felt = felt.map(|p| JointTorque { joint: p.joint, mean: p.mean, largest: p.largest, sigma: p.sigma });
+    let mut wrench = as_torques(context.model.robot(), &s.name, push.window, push.edges, felt.collect());
     if push.joints.len() < 2 {
         return wrench;
     }
+    let all: Vec<(usize, Vec<JointRow>)> = instants.iter().map(|&t| (t + offset, rows(t))).collect();
     let whole: f64 =
-        instants.iter().flat_map(|&t| rows(t)).map(|row| (row.residual / row.sigma).powi(2)).sum();
-    let mut best: Option<(f64, usize, Vec<Vector3<f64>>)> = None;
-    for frame in (0..robot.frames.len()).filter(|&f| joint_of_frame[f].is_some()).rev() {
-        let (mut left, mut forces) = (0.0, Vec::new());
-        for &t in &instants {
-            let (unit, rows) = (UnitForces::at(context, frame, s, t + offset), rows(t));
-            let f = unit.force(&rows);
-            left += unit.left(&rows, &f);
-            forces.push(f);
-        }
-        // A link further in must be clearly better: the same force seen from the next link is nearly as good.
-        if best.as_ref().is_none_or(|b| left < INNER_LINK_BETTER * b.0) {
-            best = Some((left, frame, forces));
-        }
-    }
-    if let Some((_, frame, forces)) = best.filter(|b| 1.0 - b.0 / whole >= FORCE_EXPLAINS) {
-        let mean = forces.iter().sum::<Vector3<f64>>() / forces.len().max(1) as f64;
-        let largest = forces.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied().unwrap_or(mean);
-        wrench.link = frame + 1;
+        all.iter().flat_map(|(_, rows)| rows).map(|row| (row.residual / row.sigma).powi(2)).sum();
+    let best = best_link(context, s, all.iter().map(|(t, rows)| (*t, rows.as_slice())));
+    if let Some(link) = best.filter(|link| 1.0 - link.left / whole >= FORCE_EXPLAINS) {
+        let mean = link.forces.iter().sum::<Vector3<f64>>() / link.forces.len().max(1) as f64;
+        let largest =
+            link.forces.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied().unwrap_or(mean);
+        wrench.link = link.frame + 1;
         wrench.force = [largest[0], largest[1], largest[2]];
         wrench.mean_force = [mean[0], mean[1], mean[2]];
     }

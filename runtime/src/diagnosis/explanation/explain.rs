@@ -150,8 +150,8 @@ fn held_out(
     let after = held.errors();
     HeldOut {
         how: how(model),
-        before: before.relative_error,
-        after: after.relative_error,
+        before: before.relative_error.unwrap_or_default(),
+        after: after.relative_error.unwrap_or_default(),
         per_joint_before: before.per_joint,
         per_joint_after: after.per_joint,
         by_motion: by_motion(model, &standard.held, held),

@@ -9,6 +9,7 @@ use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue, WithoutIt};
 use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
 use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::term::Accepted;
 use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::{JointIndex, Robot};
 
@@ -37,7 +38,6 @@ pub(in crate::diagnosis) fn named_on(robot: &Robot, effect: EffectKind, place: P
 /// # Errors
 /// [`DiagnosisError`] where the model without the term has no fit.
 pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Result<Finding, DiagnosisError> {
-    let robot = model.context.model.robot();
     let accepted = &model.terms[k];
     let window = accepted.effect.properties().window;
     let regression = model.regression(window);
@@ -46,7 +46,6 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     let mut deviations = uncertainty(model, k, &amplitude)?;
     deviations.0.iter_mut().chain(&mut deviations.1).for_each(|s| *s *= accepted.inflation);
     let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
-    let scale = accepted.place.joint().map(|j| model.context.scales[j].into());
     let reduced = model.without(k)?;
     let after = regression.held_out(false)?.error_on(&accepted.shows_on);
     let before = reduced.regression(window).held_out(false)?.error_on(&accepted.shows_on);
@@ -63,15 +62,9 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
             chi: estimated(&reduced.slow).chi,
             effects: (0..reduced.terms.len()).map(|i| bare_term(&reduced, i)).collect(),
         }),
-        ..Finding::of(EffectTerm {
-            joints: named_on(robot, accepted.effect, accepted.place),
-            amplitude,
-            sigma,
-            scale,
-            ..unit_term(accepted.effect, accepted.place, accepted.shape.clone())
-        })
+        ..Finding::of(with_amplitude(model, accepted, amplitude, sigma))
     };
-    finding.sentence = words::sentence(robot, accepted.effect, &finding);
+    finding.sentence = words::sentence(model.context.model.robot(), accepted.effect, &finding);
     Ok(finding)
 }
 
@@ -82,6 +75,16 @@ fn bare_term(model: &ExtendedModel<'_>, k: usize) -> EffectTerm {
     let amplitude: Vec<f64> = regression.term_columns[k].clone().map(|c| regression.fit.chi[c]).collect();
     let deviations = (vec![0.0; amplitude.len()], vec![0.0; accepted.shape.len()]);
     let Quantified { amplitude, sigma, .. } = quantified(model, accepted, amplitude, deviations);
+    with_amplitude(model, accepted, amplitude, sigma)
+}
+
+/// A term as a model keeps it.
+fn with_amplitude(
+    model: &ExtendedModel<'_>,
+    accepted: &Accepted,
+    amplitude: Vec<f64>,
+    sigma: Vec<f64>,
+) -> EffectTerm {
     EffectTerm {
         joints: named_on(model.context.model.robot(), accepted.effect, accepted.place),
         amplitude,

@@ -42,8 +42,8 @@ pub(in crate::diagnosis) fn explain(
         after: after.clone(),
         held_out: HeldOut {
             how: "gravity and static friction, as the baseline has them, while the robot holds still".into(),
-            before: before.relative_error,
-            after: after.relative_error,
+            before: before.relative_error.unwrap_or_default(),
+            after: after.relative_error.unwrap_or_default(),
             per_joint_before: before.per_joint,
             per_joint_after: after.per_joint,
             by_motion: Vec::new(),

@@ -90,12 +90,9 @@ impl Autoregression {
 mod tests {
     use super::*;
     use crate::diagnosis::rules::HIGHEST_AR_ORDER as HIGHEST_ORDER;
-    use rand::{RngExt, SeedableRng};
+    use crate::testing::normal;
+    use rand::SeedableRng;
     use rand_pcg::Pcg64;
-
-    fn normal(rng: &mut Pcg64) -> f64 {
-        (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
-    }
 
     fn second_order(rng: &mut Pcg64, rows: usize) -> Vec<f64> {
         let (mut a, mut b) = (0.0, 0.0);

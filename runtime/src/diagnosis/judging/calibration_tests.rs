@@ -1,13 +1,10 @@
 use super::*;
 use crate::diagnosis::judging::units::{Unit, Units};
+use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 const ROWS: usize = 150;
-
-fn normal(rng: &mut Pcg64) -> f64 {
-    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
-}
 
 /// One joint, `files` motions of one unit each of which the last is the target where there is a baseline.
 fn units(files: usize, baseline: bool) -> Units {
@@ -32,9 +29,19 @@ fn alone(
 }
 
 fn wave(rng: &mut Pcg64, rows: usize) -> Vec<f64> {
-    let waves: Vec<[f64; 3]> =
-        (0..4).map(|k| [normal(rng), rng.random_range(0.0..6.3), 0.03 * f64::from(k + 1)]).collect();
-    (0..rows).map(|t| waves.iter().map(|[a, phase, w]| a * (w * t as f64 + phase).sin()).sum()).collect()
+    let mut out = vec![0.0; rows];
+    for k in 1..=4 {
+        let (amplitude, phase) = (normal(rng), rng.random_range(0.0..6.3_f64));
+        // Turned on from row to row instead of evaluated again.
+        let (mut sine, mut cosine) = phase.sin_cos();
+        let (turn_sine, turn_cosine) = (0.03 * f64::from(k)).sin_cos();
+        for x in &mut out {
+            *x += amplitude * sine;
+            (sine, cosine) =
+                (sine * turn_cosine + cosine * turn_sine, cosine * turn_cosine - sine * turn_sine);
+        }
+    }
+    out
 }
 
 /// Noise that remembers, quantised, twice as loud in every other stretch of time.

@@ -140,7 +140,7 @@ mod tests {
         let mut segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
         segments.sort_unstable();
         assert_eq!(segments, [0, 1, 2]);
-        assert!(held.errors().relative_error < 0.02);
+        assert!(held.errors().relative_error.is_some_and(|error| error < 0.02));
     }
 
     #[test]

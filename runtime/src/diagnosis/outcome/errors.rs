@@ -3,19 +3,19 @@
 use super::drawn::Curve;
 use serde::{Deserialize, Serialize};
 
-/// Relative errors |Y - W chi| / |Y|.
+/// Relative errors |Y - W chi| / |Y|; `None` where every torque Y is zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Errors {
     /// All joints together.
-    pub relative_error: f64,
+    pub relative_error: Option<f64>,
     /// Joint by joint.
-    pub per_joint: Vec<f64>,
+    pub per_joint: Vec<Option<f64>>,
 }
 
 impl Errors {
     /// From the squares of residual and torque, per joint.
     pub(crate) fn of_squares(left: &[f64], whole: &[f64]) -> Self {
-        let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
+        let ratio = |a: f64, b: f64| (b > 0.0).then(|| (a / b).sqrt());
         Self {
             relative_error: ratio(left.iter().sum(), whole.iter().sum()),
             per_joint: left.iter().zip(whole).map(|(a, b)| ratio(*a, *b)).collect(),
@@ -32,10 +32,10 @@ pub struct HeldOut {
     pub before: f64,
     /// With the findings.
     pub after: f64,
-    /// Standard model, joint by joint.
-    pub per_joint_before: Vec<f64>,
+    /// Standard model, joint by joint; `None` where a joint has no torque.
+    pub per_joint_before: Vec<Option<f64>>,
     /// With the findings, joint by joint.
-    pub per_joint_after: Vec<f64>,
+    pub per_joint_after: Vec<Option<f64>>,
     /// The same for each motion or stretch that was held out: its name, before, after.
     pub by_motion: Vec<(String, f64, f64)>,
 }

@@ -6,7 +6,7 @@ mod merge;
 mod noise_of_columns;
 mod observation;
 mod prepared;
-// Its plans of rows are for the evaluator, which needs the feature.
+// Its plans are for the evaluator, which needs the feature.
 #[cfg_attr(not(feature = "diagnosis"), allow(dead_code))]
 mod row_plan;
 mod rows;
@@ -28,9 +28,10 @@ pub use select::LeftOut;
 pub use settings::{Equations, ExtraColumns, ObserveSettings, Progress};
 pub use standstill::Standstill;
 
-use crate::model::{JointIndex, Model, ParameterKind};
+use crate::model::{JointIndex, Model, ParameterKind, Robot};
 use crate::signal::Motion;
 use prepared::Prepared;
+use row_plan::{MotionRows, motion_rows};
 
 /// Observes motions: evaluates the model at the full rate in blocks, decimates Y and every column of W with one
 /// linear-phase filter, leaves out the rows that say nothing, and reduces the rest to orthogonal factors.
@@ -48,52 +49,26 @@ pub fn observe(
     settings: &ObserveSettings,
     progress: Option<Progress<'_>>,
 ) -> Result<Observation, ObserveError> {
-    for (what, value) in [("band", settings.band), ("rate", settings.rate.unwrap_or(1.0))] {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(ObserveError::Frequency { what, value });
-        }
-    }
-    let detected = crate::signal::StandstillSpeeds::of(motions);
-    let mut prepared = Vec::with_capacity(motions.len());
-    for (trajectory, motion) in motions.iter().enumerate() {
-        let source = source::source(equations, model, trajectory, motion, extra)?;
-        let decimator = row_plan::decimator(motion.rate, settings)?;
-        let samples = motion.q.first().map_or(0, Vec::len);
-        let valid = motion.edge_samples..samples.saturating_sub(motion.edge_samples).max(motion.edge_samples);
-        let grid = decimator.kept_rows(valid);
-        let candidates = select::Candidates {
-            trajectory,
-            drive: &model.robot().drive,
-            motion,
-            decimator: &decimator,
-            grid,
-            detected: &detected,
-            settings,
-        };
-        let selection = select::select(&candidates, equations)?;
-        let columns = source.equations();
-        prepared.push(Prepared { source, motion, decimator, grid, equations: columns, selection });
-    }
+    let source = |(trajectory, motion)| source::source(equations, model, trajectory, motion, extra);
+    let sources = motions.iter().enumerate().map(source).collect::<Result<Vec<_>, _>>()?;
+    let rows = motion_rows(&model.robot().drive, motions, settings, equations)?;
+    let prepared: Vec<Prepared<'_>> = sources
+        .into_iter()
+        .zip(rows)
+        .zip(motions)
+        .map(|((source, MotionRows { decimator, grid, selection }), motion)| {
+            let equations = source.equations();
+            Prepared { source, motion, decimator, grid, equations, selection }
+        })
+        .collect();
     if prepared.iter().all(|p| p.selection.iter().all(|s| s.left_out.used == 0)) {
         let left_out = prepared.iter().flat_map(|p| &p.selection).map(|s| &s.left_out);
-        let duration = |m: &Motion| m.q.first().map_or(0, Vec::len) as f64 / m.rate;
-        let longest = motions.iter().map(duration).fold(0.0, f64::max);
-        let reason = select::why_nothing(left_out, motions.is_empty(), longest, settings.band);
-        return Err(ObserveError::NoRows { reason });
+        return Err(ObserveError::NoRows { reason: select::why_nothing(left_out, motions, settings.band) });
     }
     let (blocks, rows) = work::run(&prepared, settings, progress);
     let groups = work::merge(&prepared, &blocks, settings.threads);
     let robot = model.robot();
-    let mut unknowns: Vec<String> = robot.base.iter().map(|p| p.name.to_string()).collect();
-    if let (Some(extra), Equations::Torque) = (extra, equations) {
-        unknowns.extend(extra.names().iter().cloned());
-    }
-    let exact = |kind| {
-        matches!(kind, ParameterKind::Off | ParameterKind::Fc | ParameterKind::Fcm)
-            && equations == Equations::Torque
-    };
-    let mut exact: Vec<bool> = robot.base.iter().map(|p| exact(robot.standard[p.standard].kind)).collect();
-    exact.resize(unknowns.len(), false);
+    let (unknowns, exact) = unknowns(robot, equations, extra);
     let joint = |rows: &LeftOut| match equations {
         Equations::Torque => Some(robot.joint_number(JointIndex(rows.equation))),
         Equations::Power { .. } => None,
@@ -119,4 +94,23 @@ pub fn observe(
         samples: motions.iter().map(|m| m.q.first().map_or(0, Vec::len)).sum(),
         rows,
     })
+}
+
+/// Names of the unknowns, and whether their columns have no measuring errors.
+fn unknowns(
+    robot: &Robot,
+    equations: Equations,
+    extra: Option<&dyn ExtraColumns>,
+) -> (Vec<String>, Vec<bool>) {
+    let mut unknowns: Vec<String> = robot.base.iter().map(|p| p.name.to_string()).collect();
+    if let (Some(extra), Equations::Torque) = (extra, equations) {
+        unknowns.extend(extra.names().iter().cloned());
+    }
+    let exact = |kind| {
+        matches!(kind, ParameterKind::Off | ParameterKind::Fc | ParameterKind::Fcm)
+            && equations == Equations::Torque
+    };
+    let mut exact: Vec<bool> = robot.base.iter().map(|p| exact(robot.standard[p.standard].kind)).collect();
+    exact.resize(unknowns.len(), false);
+    (unknowns, exact)
 }

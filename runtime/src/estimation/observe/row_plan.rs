@@ -4,7 +4,7 @@ use super::error::ObserveError;
 use super::select::{self, Candidates, LeftOut, Selection, select};
 use super::settings::{Equations, ObserveSettings};
 use super::source::check_shape;
-use crate::model::{JointIndex, Robot};
+use crate::model::{Drive, JointIndex, Robot};
 use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// The rows of the torque equations of one motion.
@@ -30,44 +30,63 @@ pub(crate) fn row_plans(
     motions: &[Motion],
     settings: &ObserveSettings,
 ) -> Result<Vec<RowPlan>, ObserveError> {
+    motions.iter().try_for_each(|motion| check_shape(robot, motion))?;
+    let rows = motion_rows(&robot.drive, motions, settings, Equations::Torque)?;
+    let plan = |(MotionRows { decimator, grid, selection }, motion): (MotionRows, &Motion)| {
+        let number = |Selection { used, left_out }| {
+            let joint = Some(robot.joint_number(JointIndex(left_out.equation)));
+            (used, LeftOut { joint, ..left_out })
+        };
+        let (used, left_out) = selection.into_iter().map(number).unzip();
+        let band = band_of(&decimator, motion.rate);
+        RowPlan { decimator, grid, used, left_out, band }
+    };
+    Ok(rows.into_iter().zip(motions).map(plan).collect())
+}
+
+/// Where the rows of one motion lie, and which are used.
+pub(super) struct MotionRows {
+    /// What brings a signal at the full rate to the rows.
+    pub decimator: Decimator,
+    /// Where the rows lie.
+    pub grid: KeptRows,
+    /// For each equation, what is used and what is not.
+    pub selection: Vec<Selection>,
+}
+
+/// The rows of motions of the right shape.
+///
+/// # Errors
+/// A band or rate that is not positive, or speeds of standstill of another number of joints.
+pub(super) fn motion_rows(
+    drive: &Drive,
+    motions: &[Motion],
+    settings: &ObserveSettings,
+    equations: Equations,
+) -> Result<Vec<MotionRows>, ObserveError> {
     check_frequencies(settings)?;
     let detected = StandstillSpeeds::of(motions);
-    motions
-        .iter()
-        .enumerate()
-        .map(|(trajectory, motion)| {
-            check_shape(robot, motion)?;
-            let decimator = decimator(motion.rate, settings)?;
-            let grid = decimator.kept_rows(valid_samples(motion));
-            let candidates = Candidates {
-                trajectory,
-                drive: &robot.drive,
-                motion,
-                decimator: &decimator,
-                grid,
-                detected: &detected,
-                settings,
-            };
-            let selection = select(&candidates, Equations::Torque)?;
-            let (used, left_out) = selection
-                .into_iter()
-                .map(|Selection { used, left_out }| {
-                    let joint = Some(robot.joint_number(JointIndex(left_out.equation)));
-                    (used, LeftOut { joint, ..left_out })
-                })
-                .unzip();
-            let band = band_of(&decimator, motion.rate);
-            Ok(RowPlan { decimator, grid, used, left_out, band })
-        })
-        .collect()
+    let of_motion = |(trajectory, motion): (usize, &Motion)| {
+        let decimator = Decimator::for_rows(motion.rate, settings.band, settings.rate)?;
+        let grid = decimator.kept_rows(valid_samples(motion));
+        let candidates = Candidates {
+            trajectory,
+            drive,
+            motion,
+            decimator: &decimator,
+            grid,
+            detected: &detected,
+            settings,
+        };
+        let selection = select(&candidates, equations)?;
+        Ok(MotionRows { decimator, grid, selection })
+    };
+    motions.iter().enumerate().map(of_motion).collect()
 }
 
 /// What is to blame when no row of the plans is used.
 pub(crate) fn why_nothing(plans: &[RowPlan], motions: &[Motion], settings: &ObserveSettings) -> String {
-    let left_out = plans.iter().flat_map(|p| &p.left_out);
-    let duration = |m: &Motion| m.q.first().map_or(0, Vec::len) as f64 / m.rate;
-    let longest = motions.iter().map(duration).fold(0.0, f64::max);
-    select::why_nothing(left_out, motions.is_empty(), longest, settings.band)
+    select::why_nothing(plans.iter().flat_map(|p| &p.left_out), motions, settings.band)
 }
 
 /// The samples between the edge effects of the filters.
@@ -83,13 +102,6 @@ fn check_frequencies(settings: &ObserveSettings) -> Result<(), ObserveError> {
         }
     }
     Ok(())
-}
-
-/// The filter for a recording's rate.
-pub(super) fn decimator(rate: f64, settings: &ObserveSettings) -> Result<Decimator, ObserveError> {
-    let factor = Decimator::factor_for(rate, settings.rate.unwrap_or(2.0 * settings.band));
-    let nyquist = 0.5 * rate / factor as f64;
-    Ok(Decimator::with_band(factor, (settings.band / nyquist).min(1.0))?)
 }
 
 /// The band that a filter lets through, Hz.

@@ -168,11 +168,10 @@ fn leave_out_turning_motors(
     }
 }
 
-/// What is to blame when no row is left of motions of which the longest lasts `longest` seconds.
+/// What is to blame when no row is left of motions.
 pub(super) fn why_nothing<'a>(
     left_out: impl Iterator<Item = &'a LeftOut>,
-    no_motion: bool,
-    longest: f64,
+    motions: &[Motion],
     band: f64,
 ) -> String {
     let mut total = LeftOut::default();
@@ -182,7 +181,7 @@ pub(super) fn why_nothing<'a>(
         total.windows += equation.windows;
         total.edges += equation.edges;
     }
-    if no_motion {
+    if motions.is_empty() {
         return "there is no motion".to_owned();
     }
     if total.windows > 0 {
@@ -191,6 +190,8 @@ pub(super) fn why_nothing<'a>(
     if total.standstill + total.fixed > 0 {
         return "no joint moves".to_owned();
     }
+    let duration = |m: &Motion| m.q.first().map_or(0, Vec::len) as f64 / m.rate;
+    let longest = motions.iter().map(duration).fold(0.0, f64::max);
     format!(
         "the longest motion lasts {longest:.3} s, which is less than the filters need for rows of {band} Hz"
     )

@@ -20,9 +20,9 @@ pub struct PhysicalFit {
     /// Base parameters.
     pub chi: Vec<f64>,
     /// ||Y - W chi|| / ||Y|| over all equations.
-    pub relative_error: f64,
+    pub relative_error: Option<f64>,
     /// The same per joint.
-    pub per_equation: Vec<f64>,
+    pub per_equation: Vec<Option<f64>>,
     /// Mean square of its weighted errors over that of the free fit, each freedom counted: 1 where physics costs
     /// nothing.
     pub strain: f64,

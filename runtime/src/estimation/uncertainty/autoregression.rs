@@ -64,11 +64,21 @@ impl Autoregression {
         self.deviations[self.order()]
     }
 
-    /// The value at `t` of a stretch that begins at 0 less what its past predicts, in units of what that leaves.
-    pub fn innovation(&self, values: &[f64], t: usize) -> f64 {
-        let order = t.min(self.order());
-        let past: f64 = self.predictors[order].iter().zip(values[..t].iter().rev()).map(|(a, x)| a * x).sum();
-        (values[t] - past) / self.deviations[order]
+    /// The values of a stretch less what the past of each predicts, in units of what that leaves.
+    pub fn innovations(&self, values: &[f64]) -> Vec<f64> {
+        let order = self.order();
+        let mut past = vec![0.0; values.len()];
+        for t in 0..order.min(values.len()) {
+            let known = values[..t].iter().rev();
+            past[t] = self.predictors[t].iter().zip(known).map(|(a, x)| a * x).sum();
+        }
+        // Lag by lag, so that each is one run through memory.
+        for (lag, a) in self.predictors[order].iter().enumerate() {
+            let later = past.iter_mut().skip(order);
+            later.zip(values.iter().skip(order - 1 - lag)).for_each(|(past, x)| *past += a * x);
+        }
+        let deviation = |t: usize| self.deviations[t.min(order)];
+        values.iter().zip(&past).enumerate().map(|(t, (x, past))| (x - past) / deviation(t)).collect()
     }
 
     /// For each innovation the weight that it has in the sum of `weights[t] * noise[t]`: the impulse response run
@@ -145,9 +155,20 @@ mod tests {
     }
 
     #[test]
+    fn an_innovation_is_what_the_past_that_there_is_does_not_predict() {
+        let found = Autoregression::of(&second_order(), 1000.0);
+        let values = [1.0, -0.5, 2.0, 0.3];
+        let first = second_order()[1] / second_order()[0];
+        let left = [1.0, -0.5 - first, 2.0 + 0.6 * 0.5 - 0.2, 0.3 - 0.6 * 2.0 + 0.2 * 0.5];
+        for (t, (found_at, left)) in found.innovations(&values).iter().zip(left).enumerate() {
+            assert!((found_at - left / found.deviations[t.min(2)]).abs() < 1e-12, "{t}");
+        }
+    }
+
+    #[test]
     fn white_noise_has_no_memory() {
         let found = Autoregression::of(&[4.0, 0.01, -0.02, 0.01], 500.0);
         assert_eq!((found.order(), found.memory(400)), (0, 0));
-        assert_eq!(found.innovation(&[3.0, 5.0], 1), 2.5);
+        assert_eq!(found.innovations(&[3.0, 5.0]), [1.5, 2.5]);
     }
 }

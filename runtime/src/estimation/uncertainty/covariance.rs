@@ -50,7 +50,7 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
         let mut innovations: Vec<(usize, &[usize], DMatrix<f64>)> = Vec::new();
         for (w, z) in series.iter().zip(scores).filter(|(s, _)| s.trajectory == trajectory) {
             let weight = (solved.errors[w.group] / solved.weights[w.group]).powi(2);
-            add(&mut information, &z.places, &w.places, &(weight * z.w.tr_mul(&w.w)));
+            add(&mut information, &z.places, &w.places, &(weight * (z.w.transpose() * &w.w)));
             let model = &noise.equations[w.equation];
             let before = model.memory(LONGEST_MEMORY);
             let rows = z.w.nrows() + before;
@@ -66,14 +66,18 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
             }
             innovations.push((w.equation, &z.places, own));
         }
-        for (a, places_a, x) in &innovations {
-            for (b, places_b, y) in &innovations {
+        for (k, (a, places_a, x)) in innovations.iter().enumerate() {
+            for (l, (b, places_b, y)) in innovations[..=k].iter().enumerate() {
                 let correlation = noise.correlation[(*a, *b)];
                 if correlation != 0.0 {
                     // They end at the same time.
                     let rows = x.nrows().min(y.nrows());
                     let (x, y) = (x.rows(x.nrows() - rows, rows), y.rows(y.nrows() - rows, rows));
-                    add(&mut spread, places_a, places_b, &(correlation * x.tr_mul(&y)));
+                    let product = correlation * (x.transpose() * y);
+                    add(&mut spread, places_a, places_b, &product);
+                    if l != k {
+                        add(&mut spread, places_b, places_a, &product.transpose());
+                    }
                 }
             }
         }

@@ -130,9 +130,8 @@ fn whitened(series: &Series, noise: &Autoregression) -> DMatrix<f64> {
             series.w.as_slice().get(c * series.y.len()..(c + 1) * series.y.len()).unwrap_or(&series.y);
         let mut row = 0;
         for segment in &series.segments {
-            let values = &column[segment.clone()];
-            for t in 0..values.len() {
-                white[(row, c)] = noise.innovation(values, t);
+            for value in noise.innovations(&column[segment.clone()]) {
+                white[(row, c)] = value;
                 row += 1;
             }
         }
@@ -180,10 +179,8 @@ fn innovations_in_common(all: &[Series], noise: &[Autoregression], fit: &Fit) ->
             let residual = series.residual(&fit.chi);
             let mut white = vec![0.0; residual.len()];
             for segment in &series.segments {
-                let values = &residual[segment.clone()];
-                for t in 0..values.len() {
-                    white[segment.start + t] = noise[series.equation].innovation(values, t);
-                }
+                let innovations = noise[series.equation].innovations(&residual[segment.clone()]);
+                white[segment.clone()].copy_from_slice(&innovations);
             }
             white
         })

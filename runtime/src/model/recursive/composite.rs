@@ -62,25 +62,33 @@ impl Inertia {
     }
 }
 
+/// Links with their bodies.
+pub(super) struct RigidBodies<'a> {
+    pub links: &'a [Link<f64>],
+    /// m/s².
+    pub gravity: [f64; 3],
+    /// Of each link by itself.
+    pub inertia: &'a [Inertia; MAX_FRAMES],
+}
+
 /// Adds the rigid bodies' mass matrix to `mass` (n x n, row-major) and their bias to `bias` (n).
 pub(super) fn add_mass_and_bias(
-    links: &[Link<f64>],
-    gravity: [f64; 3],
-    bodies_of: &[Inertia; MAX_FRAMES],
+    bodies: &RigidBodies<'_>,
     q: &[f64],
     dq: &[f64],
     mass: &mut [f64],
     bias: &mut [f64],
 ) {
+    let &RigidBodies { links, gravity, inertia } = bodies;
     let n = q.len();
     let at_rest = [0.0; MAX_FRAMES];
     let motion = propagate(links, gravity, q, dq, &at_rest[..n]);
-    let mut composite = *bodies_of;
+    let mut composite = *inertia;
     let mut wrenches = [([0.0; 3], [0.0; 3]); MAX_FRAMES];
     let mut transforms = [([[0.0; 3]; 3], [0.0; 3]); MAX_FRAMES];
     for k in 0..links.len() {
         let body = &motion[k];
-        wrenches[k] = bodies_of[k].wrench(body.w, body.dw, body.dv);
+        wrenches[k] = inertia[k].wrench(body.w, body.dw, body.dv);
         let position = if body.kind == JointKind::Fixed { 0.0 } else { q[body.joint] };
         transforms[k] = links[k].transform(position);
     }

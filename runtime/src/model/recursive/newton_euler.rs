@@ -1,7 +1,7 @@
 //! The model: base columns from the columns of the bodies and of the drive.
 
 use super::columns::{standard_energy, standard_idm, standard_power};
-use super::composite::{self, Inertia};
+use super::composite::{self, Inertia, RigidBodies};
 use super::drive::{self, DriveEntry};
 use super::error::{MAX_FRAMES, RecursiveModelError};
 use super::group::{clear, each_group};
@@ -202,7 +202,8 @@ impl Model for RecursiveModel {
                 body.add_parameter(kind, chi[column]);
             }
         }
-        composite::add_mass_and_bias(&self.links, self.robot.gravity, &bodies, q, dq, mass, bias);
+        let bodies = RigidBodies { links: &self.links, gravity: self.robot.gravity, inertia: &bodies };
+        composite::add_mass_and_bias(&bodies, q, dq, mass, bias);
         for entry in &self.drive {
             for (s, inertia) in entry.inertia() {
                 mass[entry.row * n + s] += chi[entry.column] * inertia;

@@ -18,9 +18,9 @@ pub struct ClosedLoop {
     /// The same with the findings.
     pub after: f64,
     /// Joint by joint.
-    pub per_joint_before: Vec<f64>,
+    pub per_joint_before: Vec<Option<f64>>,
     /// Joint by joint, with the findings.
-    pub per_joint_after: Vec<f64>,
+    pub per_joint_after: Vec<Option<f64>>,
     /// Largest distance of each joint from the recorded motion, standard model, rad or m.
     pub tracking_before: Vec<f64>,
     /// The same with the findings.
@@ -105,7 +105,9 @@ impl Comparison {
     pub(super) fn finish(self) -> ClosedLoop {
         let ratio = |a: f64, b: f64| if b > 0.0 { (a / b).sqrt() } else { 0.0 };
         let overall = |left: &[f64]| ratio(left.iter().sum(), self.whole.iter().sum());
-        let per_joint = |left: &[f64]| left.iter().zip(&self.whole).map(|(a, b)| ratio(*a, *b)).collect();
+        let per_joint = |left: &[f64]| {
+            left.iter().zip(&self.whole).map(|(a, b)| (*b > 0.0).then(|| (a / b).sqrt())).collect()
+        };
         let [before, after] = &self.squares;
         let [tracking_before, tracking_after] = self.tracking;
         ClosedLoop {

@@ -1,0 +1,108 @@
+use super::*;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const RATE: f64 = 100.0;
+
+/// Two joints with a Coulomb friction of 10 and 4 that stand for 12 s somewhere within 0.9 of it, with noise.
+fn standing(rng: &mut Pcg64) -> Vec<Vec<f64>> {
+    [10.0, 4.0]
+        .iter()
+        .map(|coulomb| {
+            let level = 0.9 * coulomb * rng.random_range(-1.0..1.0);
+            (0..1200).map(|_| level + 0.1 * coulomb * rng.random_range(-1.0..1.0)).collect()
+        })
+        .collect()
+}
+
+fn seen(beyond: &[Vec<f64>]) -> Seen {
+    let still = vec![true; beyond[0].len()];
+    let coulomb = [Some(10.0), Some(4.0)];
+    look(&Standing { rate: RATE, start: 0.0, beyond, still: &still, coulomb: &coulomb })
+}
+
+/// Half a sine wave from `from` on for `lasts` seconds.
+fn pushed(series: &mut [f64], from: f64, lasts: f64, height: f64) {
+    for (t, x) in series.iter_mut().enumerate() {
+        let at = (t as f64 / RATE - from) / lasts;
+        if (0.0..1.0).contains(&at) {
+            *x += height * (std::f64::consts::PI * at).sin();
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_stands_within_its_friction_is_not_pushed() {
+    let mut rng = Pcg64::seed_from_u64(1);
+    for _ in 0..300 {
+        let seen = seen(&standing(&mut rng));
+        assert_eq!((seen.pushes, seen.loads), (vec![], vec![]));
+        assert!((seen.time - 12.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn pushes_of_three_times_the_friction_are_found_where_they_are() {
+    let mut rng = Pcg64::seed_from_u64(2);
+    for k in 0..200 {
+        let mut beyond = standing(&mut rng);
+        let (from, sign) = (rng.random_range(1.0..5.0), if k % 2 == 0 { 1.0 } else { -1.0 });
+        pushed(&mut beyond[0], from, 1.0, 30.0 * sign);
+        pushed(&mut beyond[1], from + 5.0, 0.8, 12.0 * sign);
+        let seen = seen(&beyond);
+        assert_eq!(seen.pushes.len(), 2, "run {k}: {seen:?}");
+        for (push, (joint, window)) in
+            seen.pushes.iter().zip([(0, [from, from + 1.0]), (1, [from + 5.0, from + 5.8])])
+        {
+            assert_eq!(push.joints.iter().map(|p| p.joint).collect::<Vec<_>>(), vec![joint]);
+            for (edge, truth, sigma) in [(0, window[0], push.edges[0]), (1, window[1], push.edges[1])] {
+                assert!((push.window[edge] - truth).abs() < 0.05 + 4.0 * sigma, "{push:?} {window:?}");
+            }
+            let height = [30.0, 12.0][joint] * sign;
+            assert!((push.joints[0].largest - height).abs() < 3.0 * push.joints[0].sigma);
+            assert!(push.doubt < 0.01);
+        }
+    }
+}
+
+#[test]
+fn joints_that_are_pushed_together_are_one_push() {
+    let mut beyond = standing(&mut Pcg64::seed_from_u64(3));
+    pushed(&mut beyond[0], 4.0, 1.0, 40.0);
+    pushed(&mut beyond[1], 4.1, 1.0, -16.0);
+    let seen = seen(&beyond);
+    assert_eq!(seen.pushes.len(), 1);
+    assert_eq!(seen.pushes[0].joints.iter().map(|p| p.joint).collect::<Vec<_>>(), vec![0, 1]);
+}
+
+#[test]
+fn a_torque_without_beginning_and_end_is_a_load_and_no_push() {
+    let mut beyond = standing(&mut Pcg64::seed_from_u64(4));
+    beyond[0].iter_mut().for_each(|x| *x += 25.0);
+    let seen = seen(&beyond);
+    assert!(seen.pushes.is_empty());
+    assert_eq!(seen.loads.len(), 1);
+    assert_eq!(seen.loads[0].joint, 0);
+}
+
+#[test]
+fn an_impact_and_motion_are_no_push_at_rest() {
+    let mut beyond = standing(&mut Pcg64::seed_from_u64(5));
+    pushed(&mut beyond[0], 4.0, 0.15, 60.0);
+    assert!(seen(&beyond).pushes.is_empty());
+    pushed(&mut beyond[0], 8.0, 1.0, 60.0);
+    let still: Vec<bool> = (0..1200).map(|t| !(750..950).contains(&t)).collect();
+    let coulomb = [Some(10.0), Some(4.0)];
+    let standing = Standing { rate: RATE, start: 0.0, beyond: &beyond, still: &still, coulomb: &coulomb };
+    assert!(look(&standing).pushes.is_empty());
+}
+
+#[test]
+fn a_joint_without_known_friction_is_not_judged() {
+    let mut beyond = standing(&mut Pcg64::seed_from_u64(6));
+    pushed(&mut beyond[0], 4.0, 1.0, 60.0);
+    let still = vec![true; 1200];
+    let coulomb = [None, Some(4.0)];
+    let standing = Standing { rate: RATE, start: 0.0, beyond: &beyond, still: &still, coulomb: &coulomb };
+    assert_eq!(look(&standing).pushes, vec![]);
+}

@@ -1,0 +1,95 @@
+//! The standard deviations of an estimate, and its parameters with them. Equation numbers are those of Gautier and Briot.
+
+use super::attenuation::{Attenuation, UNCERTAINTY};
+use super::observe::Observation;
+use super::outcome::ParameterEstimate;
+use super::uncertainty::{Solved, variances};
+use super::weights::{Weights, from_own_fits, iterate};
+
+/// Standard deviations of the parameters that were solved for.
+pub(super) struct Deviations {
+    /// Whether they mean anything.
+    pub known: bool,
+    /// For noise that is independent from row to row.
+    pub white: Vec<f64>,
+    /// By leaving out blocks of time.
+    pub blocks: Option<Vec<f64>>,
+    /// For noise that lasts as the residuals show it.
+    pub lasting: Option<Vec<f64>>,
+    /// What was added for noise in the columns.
+    pub corrections: Option<Vec<f64>>,
+}
+
+impl Deviations {
+    /// The one that claims least about the noise: that of noise that lasts, by blocks where the rows were not kept; with
+    /// that of the correction.
+    fn headline(&self, place: usize) -> f64 {
+        let of = |all: &Option<Vec<f64>>| all.as_ref().map(|all| all[place]);
+        let noise = of(&self.lasting).or(of(&self.blocks)).unwrap_or(self.white[place]);
+        noise.hypot(UNCERTAINTY * of(&self.corrections).unwrap_or(0.0))
+    }
+
+    /// By how much that is more than for noise that is independent from row to row.
+    pub fn inflation(&self, place: usize) -> f64 {
+        let ratio = self.headline(place) / self.white[place];
+        if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 }
+    }
+}
+
+/// All unknowns of an observation; those that are not `active` are zero and without deviations.
+pub(super) fn described(
+    observation: &Observation,
+    active: &[usize],
+    chi: &[f64],
+    deviations: &Deviations,
+) -> Vec<ParameterEstimate> {
+    let mut parameters: Vec<ParameterEstimate> = observation
+        .unknowns
+        .iter()
+        .map(|name| ParameterEstimate {
+            name: name.clone(),
+            value: 0.0,
+            sigma: None,
+            sigma_white: None,
+            sigma_blocks: None,
+            correction: None,
+            relative_sigma_percent: None,
+        })
+        .collect();
+    for (place, &l) in active.iter().enumerate() {
+        let parameter = &mut parameters[l];
+        parameter.value = chi[place];
+        parameter.correction = deviations.corrections.as_ref().map(|c| c[place]);
+        if !deviations.known {
+            continue;
+        }
+        let sigma = deviations.headline(place);
+        parameter.sigma = Some(sigma);
+        parameter.sigma_white = Some(deviations.white[place]);
+        parameter.sigma_blocks = deviations.blocks.as_ref().map(|s| s[place]);
+        parameter.relative_sigma_percent = Some(100.0 * sigma / chi[place].abs()).filter(|r| r.is_finite());
+    }
+    parameters
+}
+
+/// Standard deviations for noise that lasts as the residuals show it; `None` where the rows were not kept.
+pub(super) fn lasting_deviations(
+    counted: &Observation,
+    active: &[usize],
+    weights: &Weights,
+    weighted: bool,
+    attenuation: Option<&Attenuation>,
+) -> Option<Vec<f64>> {
+    counted.rows.as_ref()?;
+    // Equal weights are not those of the noise.
+    let own = (!weighted).then(|| iterate(counted, active, &from_own_fits(counted)));
+    let solved = Solved {
+        observation: counted,
+        unknowns: active,
+        instruments: active,
+        noise_of_columns: attenuation.map(|a| &a.of_information),
+        weights: &weights.sigma,
+        errors: own.as_ref().map_or(&weights.sigma, |own| &own.sigma),
+    };
+    variances(&solved).map(|all| all.iter().map(|v| v.sqrt()).collect())
+}
