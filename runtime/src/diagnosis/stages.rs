@@ -40,30 +40,20 @@ pub(super) fn run(
     progress.at(0.0, "signals");
     let prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
     let change = !recordings.baseline.is_empty();
-
     if !prepared.moving.judged.contains(&true) {
         return at_rest(model, &prepared);
     }
 
     // 2. Windows in which something outside pushed the robot.
     progress.at(0.05, "contacts");
-    let signals = &prepared.motions.signals;
-    let mut contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
-
-    // Pushes that single joints see, looked for in what is left when the search is done.
-    let mut pushed: Option<Contacts> = None;
-    let mut scanned = false;
-    // A body that is carried all the time pushes like a hand: against a baseline, laws are tried first on all of the
-    // motion, and only what still stands out then is set aside.
-    let mut set_aside = !change;
+    let mut pushes = Pushes::found(model, &prepared, change)?;
 
     let mut settings = prepared.motions.settings().clone();
     'rows: loop {
         // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
-        let known_contacts = Contacts::joined(contacts.clone().filter(|_| set_aside), pushed.clone());
         let Begun { mut search, standard, sampling } =
-            begin(model, &prepared, known_contacts.as_ref(), change, (&settings, progress))?;
+            begin(model, &prepared, pushes.set_aside().as_ref(), change, (&settings, progress))?;
         let without_effects = search.model.copy()?;
         loop {
             let report = match known {
@@ -72,38 +62,16 @@ pub(super) fn run(
             };
 
             // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
-            if let Some(found) = &contacts {
-                let remain = remain(found, &prepared, &search);
-                if !remain {
-                    contacts = None;
-                }
-                if remain != set_aside {
-                    set_aside = true;
-                    continue 'rows;
-                }
-            }
-            if settings.single_joint_contacts && (!scanned || pushed.is_some()) {
-                let found = pushed_in_motion(model, &prepared, contacts.as_ref(), &search);
-                if scanned {
-                    pushed = pushed.and_then(|p| moving::still_there(p, found.as_ref()));
-                } else if found.is_some() {
-                    // What was found with the pushes among the rows is looked for again without them.
-                    (pushed, scanned) = (found, true);
-                    continue 'rows;
-                }
+            if pushes.differ_beside(model, &prepared, &search, &settings) {
+                continue 'rows;
             }
 
             // 5. Numbers, errors, curves, sentences.
             progress.at(0.92, "explanations");
-            let rest =
-                standing::at_rest(&search.model.context, &prepared.moving.fitted, &prepared.motions.slowest);
-            let all_contacts = Contacts::joined(
-                Contacts::joined(contacts.clone(), pushed.clone()),
-                rest.contacts(prepared.motions.signals.len()),
-            );
+            let contacts = pushes.with_those_at_rest(&prepared, &search);
             let ended = Ended {
                 standard: &standard,
-                contacts: all_contacts.as_ref(),
+                contacts: contacts.as_ref(),
                 report,
                 delay: prepared.delay,
                 sampling: sampling.clone(),
@@ -122,6 +90,75 @@ pub(super) fn run(
             search.go_on_without(&objected, without_effects.copy()?)?;
             settings.excluded.extend(objected);
         }
+    }
+}
+
+/// Windows in which something outside seems to have pushed the robot.
+struct Pushes {
+    /// Seen by several joints.
+    contacts: Option<Contacts>,
+    /// Whether their rows are set aside. A body that is carried all the time pushes like a hand: against a baseline, laws
+    /// are tried first on all of the motion, and only what still stands out then is set aside.
+    set_aside: bool,
+    /// Seen by single joints, in what is left when the search is done.
+    of_single_joints: Option<Contacts>,
+    /// Whether those have been looked for.
+    scanned: bool,
+}
+
+impl Pushes {
+    /// What the standard model alone leaves.
+    fn found(model: &dyn Model, prepared: &Prepared, change: bool) -> Result<Self, DiagnosisError> {
+        let signals = &prepared.motions.signals;
+        let contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
+        Ok(Self { contacts, set_aside: !change, of_single_joints: None, scanned: false })
+    }
+
+    /// Those whose rows are not used.
+    fn set_aside(&self) -> Option<Contacts> {
+        Contacts::joined(self.contacts.clone().filter(|_| self.set_aside), self.of_single_joints.clone())
+    }
+
+    /// Looks at what a model with effects leaves; whether other rows are to be set aside than were.
+    fn differ_beside(
+        &mut self,
+        model: &dyn Model,
+        prepared: &Prepared,
+        search: &Search<'_>,
+        settings: &Settings,
+    ) -> bool {
+        if let Some(found) = &self.contacts {
+            let remain = remain(found, prepared, search);
+            if !remain {
+                self.contacts = None;
+            }
+            if remain != self.set_aside {
+                self.set_aside = true;
+                return true;
+            }
+        }
+        if settings.single_joint_contacts && (!self.scanned || self.of_single_joints.is_some()) {
+            let found = pushed_in_motion(model, prepared, self.contacts.as_ref(), search);
+            if self.scanned {
+                let before = self.of_single_joints.take();
+                self.of_single_joints = before.and_then(|p| moving::still_there(p, found.as_ref()));
+            } else if found.is_some() {
+                // What was found with the pushes among the rows is looked for again without them.
+                (self.of_single_joints, self.scanned) = (found, true);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// All of them, and those at rest.
+    fn with_those_at_rest(&self, prepared: &Prepared, search: &Search<'_>) -> Option<Contacts> {
+        let motions = &prepared.motions;
+        let rest = standing::at_rest(&search.model.context, &prepared.moving.fitted, &motions.slowest);
+        Contacts::joined(
+            Contacts::joined(self.contacts.clone(), self.of_single_joints.clone()),
+            rest.contacts(motions.signals.len()),
+        )
     }
 }
 
