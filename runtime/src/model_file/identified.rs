@@ -52,6 +52,9 @@ pub struct Identified {
     pub equations: Vec<EquationRows>,
     /// Band of the equations, Hz.
     pub band: f64,
+    /// What the states were simulated with, where the method simulates them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simulated: Option<SimulatedStates>,
     /// What to know before believing it.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -98,6 +101,21 @@ pub struct NamedParameter {
     pub sigma_blocks: Option<f64>,
     /// SI unit.
     pub unit: String,
+}
+
+/// How a method that simulates the planned motions came to its values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulatedStates {
+    /// The method whose values it began with and is compared with, as `idim-wls`.
+    pub compared_with: String,
+    /// These values, in the order of the base parameters.
+    pub values: Vec<f64>,
+    /// For each joint the root mean square of measured less simulated positions over that of the measured ones about
+    /// their mean.
+    pub apart: Vec<f64>,
+    /// Relative change of the parameters in each iteration, where there are any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<f64>,
 }
 
 /// The simplified model of the paper.
@@ -197,6 +215,7 @@ impl Identified {
             rows_left_out: rows.rows_left_out,
             equations: rows.equations,
             band: rows.band,
+            simulated: None,
             warnings: Vec::new(),
             effects: Vec::new(),
             delay: 0.0,
@@ -217,6 +236,7 @@ impl Identified {
             equations: rows.equations,
             band: rows.band,
             noise: rows.noise,
+            simulated: None,
             ..self.clone()
         }
     }

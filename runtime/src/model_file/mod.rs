@@ -29,7 +29,9 @@ mod table;
 pub use check::{check, read};
 pub use error::FileError;
 pub use fingerprint::{difference, fingerprint};
-pub use identified::{EquationRows, EssentialParameters, EvaluatedRows, Identified, NamedParameter, SCHEMA};
+pub use identified::{
+    EquationRows, EssentialParameters, EvaluatedRows, Identified, NamedParameter, SCHEMA, SimulatedStates,
+};
 pub use robot_yaml::to_yaml;
 
 #[cfg(test)]
