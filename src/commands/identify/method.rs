@@ -37,7 +37,7 @@ impl Identification {
     pub fn simulates(self) -> Option<&'static str> {
         match self {
             Identification::Solved(_) => None,
-            Identification::InstrumentalVariables => Some("instrumental variables"),
+            Identification::InstrumentalVariables => Some("the method of instrumental variables"),
             Identification::Didim => Some("DIDIM"),
         }
     }

@@ -39,7 +39,7 @@ pub(super) struct Outcome {
 pub(super) fn check(method: Identification, planned: Option<&Path>) -> Result<(), Failure> {
     match (method.simulates(), planned) {
         (Some(what), None) => Err(Failure::Input(format!(
-            "--method {}: {what} simulate the planned motions, which a recording does not hold: give them with --planned, a \
+            "--method {}: {what} needs the planned motions, which a recording does not hold: give them with --planned, a \
              CSV or a folder as `dynid excite` writes it, one motion for each of the recording, both beginning at time 0",
             method.name(),
         ))),
