@@ -91,7 +91,7 @@ fn with_table(robot: &Robot, gravity: [f64; 3], change: impl Fn(usize, &mut f64)
     let mut frames = robot.frames.to_vec();
     frames.iter_mut().enumerate().for_each(|(k, f)| change(k, &mut f.alpha));
     let (drive, limits) = (robot.drive.clone(), robot.limits.clone());
-    RecursiveModel::new(Robot::with_standard_as_base("mistaken", gravity, frames, drive, limits)).unwrap()
+    RecursiveModel::new(Robot::with_standard_as_base(&robot.name, gravity, frames, drive, limits)).unwrap()
 }
 
 /// How many of the mistakes were named; every one that is named must be the one that was made.

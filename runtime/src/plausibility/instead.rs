@@ -78,24 +78,17 @@ pub enum AngleUnit {
     Degrees,
 }
 
-/// What may have been mistaken about the table, and about signs and units of single joints: those that are explained
-/// worse than `doubtful`, or where none is, all of them.
-pub(super) fn single_mistakes(robot: &Robot, own: &PhysicalFit, doubtful: f64) -> Vec<Instead> {
-    let n = robot.joints();
-    let doubted = |j: &usize| own.per_equation.get(*j).is_some_and(|&e| e > doubtful);
-    let none = !(0..n).any(|j| doubted(&j));
+/// What may have been mistaken about the table, and about signs and units of single joints. The joint that was mistaken
+/// need not be the one that is explained worst: what it is coupled to is as wrong.
+pub(super) fn single_mistakes(robot: &Robot) -> Vec<Instead> {
     let mut all: Vec<Instead> = table::other_gravities(robot).map(Instead::Gravity).collect();
     if table::beyond_a_turn(robot) {
         all.push(Instead::TableAngles);
     }
-    for joint in (0..n).filter(|j| none || doubted(j)).map(JointIndex) {
+    for joint in (0..robot.joints()).map(JointIndex) {
         all.extend([Signal::Position, Signal::Torque, Signal::Both].map(|of| Instead::Sign { of, joint }));
+        all.extend([THOUSAND, 1.0 / THOUSAND].map(|factor| Instead::Scale { joint, factor }));
     }
-    // A unit shows where the joint meets others, whose errors then grow as well.
-    let factors = [THOUSAND, 1.0 / THOUSAND];
-    all.extend(
-        (0..n).map(JointIndex).flat_map(|joint| factors.map(|factor| Instead::Scale { joint, factor })),
-    );
     all
 }
 

@@ -31,8 +31,10 @@ const ROBOT: f64 = 1.25;
 /// halved. What a recording does not say anything about, as the sign of an axis that nothing is coupled to, changes
 /// no error.
 const MISTAKE: f64 = 2.0;
-/// What is tried counts as equally good where it lowers the errors within this share of the best.
+/// Robots count as equally good where they lower the errors within this share of the best.
 const AS_GOOD: f64 = 0.95;
+/// So do mistakes of one kind, of the logarithm of the best: two signs that nearly undo each other are both named.
+const NEARLY: f64 = 0.75;
 /// What parameters that no robot can have do not explain this nearly, those of a robot do not either.
 const PROMISING: f64 = 0.9;
 /// A joint's error where half of its squared torque is explained.
@@ -97,7 +99,7 @@ pub fn judge(
         candidates.extend(others.iter().filter(alike).map(|m| Instead::Robot(m.robot().name.to_string())));
     }
     if own.strain > TENSE || error > DOUBTFUL || table::beyond_a_turn(robot) {
-        candidates.extend(single_mistakes(robot, &own, DOUBTFUL));
+        candidates.extend(single_mistakes(robot));
     }
     if own.strain > OVERSTRAINED || error > BAD {
         candidates.extend(mistakes(robot, &own));
@@ -152,7 +154,11 @@ fn better(
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     let best = all.first().map_or(0.0, |first| first.0);
     let Some(first) = all.first().map(|(_, instead, _)| instead.clone()) else { return Vec::new() };
-    all.retain(|(better, instead, _)| instead.same_family(&first) && *better > AS_GOOD * best);
+    let least = match first {
+        Instead::Robot(_) => AS_GOOD * best,
+        _ => best.powf(NEARLY),
+    };
+    all.retain(|(better, instead, _)| instead.same_family(&first) && *better > least);
     all.into_iter().map(|(_, instead, error)| (instead, error)).collect()
 }
 
