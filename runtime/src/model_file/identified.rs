@@ -163,7 +163,7 @@ impl Identified {
             relative_sigma_percent: p.relative_sigma_percent,
             sigma_white: p.sigma_white,
             correction: p.correction,
-            doubt: doubt(robot, p),
+            doubt: doubt(robot, &p.name, p.value, p.sigma),
             sigma_blocks: p.sigma_blocks,
             unit: robot
                 .base
@@ -260,18 +260,18 @@ impl Identified {
     }
 }
 
-/// Why a value is none that a robot can have: a mass, a moment of inertia or a friction below zero, where nothing else is
-/// regrouped into it.
-fn doubt(robot: &Robot, p: &ParameterEstimate) -> Option<String> {
+/// Why the value of a base parameter is none that a robot can have: a mass, a moment of inertia or a friction below zero,
+/// where nothing else is regrouped into it. `None` where a robot can have it.
+pub fn doubt(robot: &Robot, name: &str, value: f64, sigma: Option<f64>) -> Option<String> {
     use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M, XX, YY, ZZ};
-    let base = robot.base.iter().find(|b| b.name == p.name)?;
+    let base = robot.base.iter().find(|b| b.name == name)?;
     let standard = robot.standard.get(base.standard)?;
     let positive = matches!(standard.kind, M | XX | YY | ZZ | Ia | Fv | Fc | Fvm | Fcm);
-    if !positive || base.name != standard.name || p.value >= 0.0 {
+    if !positive || base.name != standard.name || value >= 0.0 {
         return None;
     }
-    Some(match p.sigma {
-        Some(sigma) if p.value > -2.0 * sigma => "below zero, but not more than its uncertainty".to_owned(),
+    Some(match sigma {
+        Some(sigma) if value > -2.0 * sigma => "below zero, but not more than its uncertainty".to_owned(),
         _ => "below zero: no robot can have it".to_owned(),
     })
 }

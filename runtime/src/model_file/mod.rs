@@ -31,6 +31,7 @@ pub use error::FileError;
 pub use fingerprint::{difference, fingerprint};
 pub use identified::{
     EquationRows, EssentialParameters, EvaluatedRows, Identified, NamedParameter, SCHEMA, SimulatedStates,
+    doubt,
 };
 pub use robot_yaml::to_yaml;
 

@@ -5,6 +5,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Fewer motions do not tell how much they differ.
 const FEWEST: usize = 3;
+/// The normal deviate that one of a hundred exceeds.
+const ONE_OF_A_HUNDRED: f64 = 2.326;
 
 /// The part of one motion in the equations ZT V W chi = ZT V Y.
 #[derive(Debug, Clone)]
@@ -24,7 +26,8 @@ pub(super) struct MotionPart {
 /// (E - A_m A^-1)T + A_m A^-1 (B - B_m) A^-T A_mT] A^-T, B_m that of ZT V e. The sum of their squares over what that
 /// makes expected is 1 on average where nothing but noise differs, and else what a parameter's own change from motion to
 /// motion adds (DerSimonian and Laird 1986, as a factor: Birge 1932). Few motions give few degrees of freedom: the
-/// unknowns lend each other theirs ([`Prior`]), all of them where they do not differ.
+/// unknowns lend each other theirs ([`Prior`]), all of them where they do not differ. One that stands out by more than
+/// noise makes of a hundred is not made smaller by the others.
 ///
 /// Ones for fewer than three motions.
 pub(super) fn factors(parts: &[MotionPart], unknowns: usize) -> Vec<f64> {
@@ -68,7 +71,18 @@ pub(super) fn factors(parts: &[MotionPart], unknowns: usize) -> Vec<f64> {
         return ones;
     }
     let Some(prior) = Prior::of(&all) else { return ones };
-    all.into_iter().map(|own| prior.moderate(own).max(1.0)).collect()
+    let factor = |own: Squares| {
+        let mean = own.sum / own.freedom;
+        let stands_out = mean > rare_mean_square(own.freedom);
+        prior.moderate(own).max(if stands_out { mean } else { 1.0 })
+    };
+    all.into_iter().map(factor).collect()
+}
+
+/// What the mean square of so many normal deviates exceeds in one of a hundred (Wilson and Hilferty 1931).
+fn rare_mean_square(freedom: f64) -> f64 {
+    let spread = 2.0 / (9.0 * freedom);
+    (1.0 - spread + ONE_OF_A_HUNDRED * spread.sqrt()).powi(3)
 }
 
 #[cfg(test)]
