@@ -37,7 +37,7 @@ pub(super) fn other_gravities(robot: &Robot) -> impl Iterator<Item = [f64; 3]> {
     let size = if size > 0.0 { size } else { EARTH };
     let along = move |k: usize| {
         let mut gravity = [0.0; 3];
-        gravity[k / 2] = if k % 2 == 0 { size } else { -size };
+        gravity[k / 2] = if k.is_multiple_of(2) { size } else { -size };
         gravity
     };
     let differs = move |g: &[f64; 3]| g.iter().zip(&own).any(|(a, b)| (a - b).abs() > 0.01 * size);

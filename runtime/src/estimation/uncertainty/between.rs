@@ -94,21 +94,25 @@ mod tests {
 
     const MOTIONS: usize = 8;
     const ROWS: usize = 60;
+    /// As many as of a small robot.
+    const UNKNOWNS: usize = 12;
+    const LAST: usize = UNKNOWNS - 1;
 
-    /// Motions of four unknowns with noise of 1; the last unknown changes from motion to motion by `change`.
+    /// Motions with noise of 1; the last unknown changes from motion to motion by `change`.
     fn drawn(seed: u64, change: f64) -> (Vec<MotionPart>, DVector<f64>) {
         let mut random = Pcg64::seed_from_u64(seed);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         let mut parts = Vec::new();
         for _ in 0..MOTIONS {
             let own = change * draw();
-            let w = DMatrix::from_fn(ROWS, 4, |_, _| draw());
-            let y = DVector::from_fn(ROWS, |t, _| own * w[(t, 3)] + draw());
+            let w = DMatrix::from_fn(ROWS, UNKNOWNS, |_, _| draw());
+            let y = DVector::from_fn(ROWS, |t, _| own * w[(t, LAST)] + draw());
             let information = w.tr_mul(&w);
             parts.push(MotionPart { spread: information.clone(), right: w.tr_mul(&y), information });
         }
-        let information = parts.iter().fold(DMatrix::zeros(4, 4), |sum, p| sum + &p.information);
-        let right = parts.iter().fold(DVector::zeros(4), |sum, p| sum + &p.right);
+        let information =
+            parts.iter().fold(DMatrix::zeros(UNKNOWNS, UNKNOWNS), |sum, p| sum + &p.information);
+        let right = parts.iter().fold(DVector::zeros(UNKNOWNS), |sum, p| sum + &p.right);
         let chi = information.try_inverse().expect("independent columns") * right;
         (parts, chi)
     }
@@ -119,12 +123,13 @@ mod tests {
         let seeds = 300;
         for seed in 0..seeds {
             let (parts, chi) = drawn(seed, 1.0);
-            let factors = factors(&parts, 4);
-            let information = parts.iter().fold(DMatrix::zeros(4, 4), |sum, p| sum + &p.information);
-            let sigma = information.try_inverse().expect("independent columns")[(3, 3)].sqrt();
-            before += usize::from(chi[3].abs() < 1.96 * sigma);
-            inside += usize::from(chi[3].abs() < 1.96 * sigma * factors[3].sqrt());
-            still += factors[..3].iter().map(|f| f.sqrt()).sum::<f64>() / (3.0 * seeds as f64);
+            let factors = factors(&parts, UNKNOWNS);
+            let information =
+                parts.iter().fold(DMatrix::zeros(UNKNOWNS, UNKNOWNS), |sum, p| sum + &p.information);
+            let sigma = information.try_inverse().expect("independent columns")[(LAST, LAST)].sqrt();
+            before += usize::from(chi[LAST].abs() < 1.96 * sigma);
+            inside += usize::from(chi[LAST].abs() < 1.96 * sigma * factors[LAST].sqrt());
+            still += factors[..LAST].iter().map(|f| f.sqrt()).sum::<f64>() / (LAST as f64 * seeds as f64);
         }
         let share = |count: usize| count as f64 / seeds as f64;
         assert!(share(before) < 0.5, "{}", share(before));
@@ -136,9 +141,11 @@ mod tests {
     #[test]
     fn motions_that_differ_by_noise_alone_hardly_change_an_interval() {
         let seeds = 200;
-        let mean = |seed| factors(&drawn(seed, 0.0).0, 4).iter().map(|f| f.sqrt()).sum::<f64>() / 4.0;
+        let mean = |seed| {
+            factors(&drawn(seed, 0.0).0, UNKNOWNS).iter().map(|f| f.sqrt()).sum::<f64>() / UNKNOWNS as f64
+        };
         let all: f64 = (0..seeds).map(mean).sum::<f64>() / seeds as f64;
         assert!((1.0..1.1).contains(&all), "{all}");
-        assert_eq!(factors(&drawn(1, 3.0).0[..2], 4), vec![1.0; 4]);
+        assert_eq!(factors(&drawn(1, 3.0).0[..2], UNKNOWNS), vec![1.0; UNKNOWNS]);
     }
 }
