@@ -1,5 +1,6 @@
 //! Joints and confidences in words.
 
+use dynid_runtime::diagnosis::OnTest;
 use dynid_runtime::model::{Frame, JointIndex, Robot};
 use dynid_runtime::report::significant;
 
@@ -45,4 +46,12 @@ pub fn table_doubts(robot: &Robot) -> Vec<String> {
         wrong
     };
     robot.frames.iter().enumerate().flat_map(of_frame).collect()
+}
+
+/// How much of a law a test recording shows, as the end of `on the test recording ..`.
+pub fn part_words(on_test: &OnTest) -> String {
+    match on_test.sigma {
+        Some(sigma) => format!("{:.2} ± {sigma:.2} of it is there", on_test.part),
+        None => format!("{:.2} of it is there", on_test.part),
+    }
 }

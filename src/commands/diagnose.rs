@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
-use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter, doubt};
+use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter, difference, doubt};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
@@ -60,13 +60,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let measured = measure(source)?;
     let model = measured.dynamics.model();
     let baseline = match (&arguments.baseline, &arguments.reference) {
-        (Some(path), _) => measure(&source.other(path))?.trajectories,
+        (Some(path), _) => of_the_same_robot(measure(&source.other(path))?, &measured, path)?.trajectories,
         (None, Some(path)) => reference::as_the_reference(path, source, &arguments.sampling)?,
         (None, None) => Vec::new(),
     };
     let settings = settings(&arguments.sampling, model.robot().joints());
     let test = match &arguments.test {
-        Some(path) => Some(Test::new(&source.other(path), &arguments.sampling)?),
+        Some(path) => {
+            let test = of_the_same_robot(measure(&source.other(path))?, &measured, path)?;
+            Some(Test::new(test, path, &arguments.sampling)?)
+        }
         None => None,
     };
     let bar = Bar::new("diagnosis");
@@ -104,6 +107,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         write(path, &page(&measured.title, &diagnosis, &extras, &left_out_words(&measured.rows)))?;
     }
     Ok(())
+}
+
+/// Another recording, where it is one of the same robot.
+fn of_the_same_robot(other: Measured, measured: &Measured, path: &Path) -> Result<Measured, Failure> {
+    let [robot, its] = [measured, &other].map(|m| m.dynamics.model().robot());
+    match difference(its, robot) {
+        None => Ok(other),
+        Some(what) => Err(Failure::Input(format!(
+            "{}: a recording of {}, not of the {} that is diagnosed ({what}); record the same robot, or correct robot: there",
+            path.display(),
+            its.name,
+            robot.name
+        ))),
+    }
 }
 
 /// The settings of a diagnosis as they were asked for.

@@ -98,7 +98,7 @@ mod stages;
 pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
-    OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
+    OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
     StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
 pub use predict::term_torques;
@@ -107,7 +107,7 @@ pub use settings::{Progress, Settings, Silent};
 use crate::effects::EffectKind;
 use crate::model::Model;
 use crate::recording::Trajectory;
-use stages::Recordings;
+use stages::{Objections, Recordings};
 
 /// Diagnoses a recording; `baseline` are motions of the same robot before it changed, empty where there are none.
 ///
@@ -123,7 +123,19 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = Recordings { trajectories, baseline };
-    stages::run(model, recordings, None, settings, progress)
+    stages::run(model, recordings, None, &mut |_| Vec::new(), settings, progress)
+}
+
+/// As [`diagnose`], without what there are `objections` to.
+pub(crate) fn diagnose_despite(
+    model: &dyn Model,
+    [trajectories, baseline]: [&[Trajectory]; 2],
+    objections: &mut Objections<'_>,
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Result<Diagnosis, DiagnosisError> {
+    let recordings = Recordings { trajectories, baseline };
+    stages::run(model, recordings, None, objections, settings, progress)
 }
 
 /// Fits known effects, on a joint (0-based) where one is given, instead of looking for any: their shapes and
@@ -139,5 +151,5 @@ pub fn fit_known(
     settings: &Settings,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = Recordings { trajectories, baseline };
-    stages::run(model, recordings, Some(known), settings, &Silent)
+    stages::run(model, recordings, Some(known), &mut |_| Vec::new(), settings, &Silent)
 }

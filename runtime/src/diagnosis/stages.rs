@@ -12,7 +12,7 @@ use super::rows::fit::Fit;
 use super::search::extended_model::ExtendedModel;
 use super::search::state::Search;
 use super::settings::{Progress, Settings};
-use crate::effects::EffectKind;
+use crate::effects::{EffectKind, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
 
@@ -22,11 +22,17 @@ pub(super) struct Recordings<'a> {
     pub baseline: &'a [Trajectory],
 }
 
+/// Laws at places that other evidence speaks against, given a diagnosis; it may write down what it saw. Nothing where it
+/// has no objection.
+pub(crate) type Objections<'o> = dyn FnMut(&mut Diagnosis) -> Vec<(EffectKind, Place)> + 'o;
+
 /// Prepares, sets pushes aside, searches, explains; where `known` effects are given, fits them and searches nothing.
+/// What there are `objections` to is searched for no more, until there are none.
 pub(super) fn run(
     model: &dyn Model,
     recordings: Recordings<'_>,
     known: Option<&[(EffectKind, Option<usize>)]>,
+    objections: &mut Objections<'_>,
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
@@ -51,61 +57,71 @@ pub(super) fn run(
     // motion, and only what still stands out then is set aside.
     let mut set_aside = !change;
 
-    loop {
+    let mut settings = prepared.motions.settings().clone();
+    'rows: loop {
         // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
         let known_contacts = Contacts::joined(contacts.clone().filter(|_| set_aside), pushed.clone());
         let Begun { mut search, standard, sampling } =
-            begin(model, &prepared, known_contacts.as_ref(), change, progress)?;
-        let settings = prepared.motions.settings();
-        let report = match known {
-            Some(known) => search.force(known)?,
-            None => search.run(settings, progress)?,
-        };
+            begin(model, &prepared, known_contacts.as_ref(), change, (&settings, progress))?;
+        let without_effects = search.model.copy()?;
+        loop {
+            let report = match known {
+                Some(known) => search.force(known)?,
+                None => search.run(&settings, progress)?,
+            };
 
-        // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
-        if let Some(found) = &contacts {
-            let remain = remain(found, &prepared, &search);
-            if !remain {
-                contacts = None;
+            // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
+            if let Some(found) = &contacts {
+                let remain = remain(found, &prepared, &search);
+                if !remain {
+                    contacts = None;
+                }
+                if remain != set_aside {
+                    set_aside = true;
+                    continue 'rows;
+                }
             }
-            if remain != set_aside {
-                set_aside = true;
-                continue;
+            if settings.single_joint_contacts && (!scanned || pushed.is_some()) {
+                let found = pushed_in_motion(model, &prepared, contacts.as_ref(), &search);
+                if scanned {
+                    pushed = pushed.and_then(|p| moving::still_there(p, found.as_ref()));
+                } else if found.is_some() {
+                    // What was found with the pushes among the rows is looked for again without them.
+                    (pushed, scanned) = (found, true);
+                    continue 'rows;
+                }
             }
-        }
-        if settings.single_joint_contacts && (!scanned || pushed.is_some()) {
-            let found = pushed_in_motion(model, &prepared, contacts.as_ref(), &search);
-            if scanned {
-                pushed = pushed.and_then(|p| moving::still_there(p, found.as_ref()));
-            } else if found.is_some() {
-                // What was found with the pushes among the rows is looked for again without them.
-                (pushed, scanned) = (found, true);
-                continue;
-            }
-        }
-        let rest =
-            standing::at_rest(&search.model.context, &prepared.moving.fitted, &prepared.motions.slowest);
-        let contacts = Contacts::joined(
-            Contacts::joined(contacts, pushed),
-            rest.contacts(prepared.motions.signals.len()),
-        );
 
-        // 5. Numbers, errors, curves, sentences.
-        progress.at(0.92, "explanations");
-        let ended = Ended {
-            standard: &standard,
-            contacts: contacts.as_ref(),
-            report,
-            delay: prepared.delay,
-            sampling,
-        };
-        let small = small(&search, settings);
-        search.model = search.model.without_nuisances()?;
-        let mut diagnosis = Diagnosis { small, ..explain(&search, ended, settings)? };
-        standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
-        progress.at(1.0, "done");
-        return Ok(diagnosis);
+            // 5. Numbers, errors, curves, sentences.
+            progress.at(0.92, "explanations");
+            let rest =
+                standing::at_rest(&search.model.context, &prepared.moving.fitted, &prepared.motions.slowest);
+            let all_contacts = Contacts::joined(
+                Contacts::joined(contacts.clone(), pushed.clone()),
+                rest.contacts(prepared.motions.signals.len()),
+            );
+            let ended = Ended {
+                standard: &standard,
+                contacts: all_contacts.as_ref(),
+                report,
+                delay: prepared.delay,
+                sampling: sampling.clone(),
+            };
+            let small = small(&search, &settings);
+            search.model = search.model.without_nuisances()?;
+            let mut diagnosis = Diagnosis { small, ..explain(&search, ended, &settings)? };
+            standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
+
+            // 6. What other evidence speaks against is left out, and the search goes on.
+            let objected = objections(&mut diagnosis);
+            if objected.is_empty() {
+                progress.at(1.0, "done");
+                return Ok(diagnosis);
+            }
+            search.go_on_without(&objected, without_effects.copy()?)?;
+            settings.excluded.extend(objected);
+        }
     }
 }
 
@@ -149,7 +165,7 @@ fn begin<'a>(
     prepared: &'a Prepared,
     contacts: Option<&Contacts>,
     change: bool,
-    progress: &dyn Progress,
+    (settings, progress): (&Settings, &dyn Progress),
 ) -> Result<Begun<'a>, DiagnosisError> {
     let motions = &prepared.motions;
     let rows = motions.rows(model, contacts.map(|c| c.windows.as_slice()));
@@ -160,7 +176,7 @@ fn begin<'a>(
         context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
     }
     let extended = ExtendedModel::new(context, rows.slow, rows.fast, change)?;
-    let mut search = Search::new(extended, &motions.slowest, motions.settings(), progress);
+    let mut search = Search::new(extended, &motions.slowest, settings, progress);
     // No law is tried where only joints that hardly move would show it.
     let judged = &prepared.moving.judged;
     for candidates in [&mut search.slow, &mut search.fast] {

@@ -94,9 +94,9 @@ pub trait JointLaw: Sync {
     /// Values of the columns at an instant.
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, memory: f64, out: &mut [f64]);
 
-    /// Whether these amplitudes are mostly those of the effect's special case, whatever the rest of them gains.
-    fn is_mostly_special(&self, _amplitude: &[f64]) -> bool {
-        false
+    /// Whether these amplitudes are mostly those of the effect's special case; `None` where amplitudes do not tell.
+    fn is_mostly_special(&self, _amplitude: &[f64]) -> Option<bool> {
+        None
     }
 
     /// New inner state after a travel of the joint; laws without memory keep 0.

@@ -7,11 +7,11 @@ use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::Model;
 use dynid_runtime::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate};
 
-use crate::arguments::{DiagnosisOptions, Source};
+use crate::arguments::DiagnosisOptions;
 use crate::errors::prediction_failure;
 use crate::failure::Failure;
 use crate::pages::diagnosis::Tested;
-use crate::recorded::{Measured, measure};
+use crate::recorded::Measured;
 
 /// The errors on the recording itself, but for windows in which something pushed the robot. `None` where it is too
 /// short for the rows of the comparison.
@@ -35,13 +35,12 @@ pub(super) struct Test {
 }
 
 impl Test {
-    /// Reads and prepares it.
-    pub fn new(source: &Source, options: &DiagnosisOptions) -> Result<Self, Failure> {
-        let measured = measure(source)?;
+    /// Prepares it.
+    pub fn new(measured: Measured, path: &Path, options: &DiagnosisOptions) -> Result<Self, Failure> {
         let prepared = options
             .comparison(measured.dynamics.model().robot().joints())
             .prepare(&measured.trajectories)
-            .map_err(|error| prediction_failure(&source.recording, &error))?;
+            .map_err(|error| prediction_failure(path, &error))?;
         Ok(Self { measured, prepared })
     }
 }

@@ -4,7 +4,7 @@ use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueS
 use dynid_runtime::effects::{Abscissa, EffectKind, Words};
 use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
-use crate::words::{confidence_words, joint_words};
+use crate::words::{confidence_words, joint_words, part_words};
 
 /// A finding: what it is, where it was seen, what it changed.
 pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
@@ -58,6 +58,12 @@ fn numbers(page: &mut Page, finding: &Finding, words: Option<&Words>) {
         percent(finding.held_out_after),
         confidence_words(finding.confidence)
     ));
+    if let Some(on_test) = &finding.on_test {
+        page.paragraph(&format!(
+            "On the test recording {}: the slope of what the model without it leaves over what it predicts.",
+            part_words(on_test)
+        ));
+    }
     if !finding.alternatives.is_empty() {
         page.subheading("Other explanations");
         let rows: Vec<Vec<String>> = finding

@@ -9,7 +9,7 @@ use crate::errors::noise_words;
 use crate::output::table;
 use crate::recorded::{Measured, left_out_words};
 
-use crate::words::{confidence_words, joint_words};
+use crate::words::{confidence_words, joint_words, part_words};
 
 /// The verdict, the errors and the findings for a terminal.
 pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> String {
@@ -66,5 +66,8 @@ fn found(finding: &Finding) -> String {
         percent(finding.held_out_after),
         confidence_words(finding.confidence)
     ));
+    if let Some(on_test) = &finding.on_test {
+        text.push_str(&format!("\n  on the test recording {}", part_words(on_test)));
+    }
     text
 }

@@ -36,9 +36,24 @@ pub struct Finding {
     /// Where it is a contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<ContactForce>,
+    /// How much of it a test recording shows; `None` where there is none, or where its rows do not show such a law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on_test: Option<OnTest>,
     /// The model without it, everything else fitted anew; `None` where it is no term of the fit.
     #[serde(skip)]
     pub without: Option<WithoutIt>,
+}
+
+/// How much of a law is there on motion that it was not fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OnTest {
+    /// Slope of what the model without the law leaves over what the law predicts: 1 where all of it is there, 0 where
+    /// nothing of it is.
+    pub part: f64,
+    /// Its standard deviation; `None` where too little motion shows the law to tell.
+    pub sigma: Option<f64>,
+    /// Stretches of motion that the standard deviation is made from.
+    pub units: usize,
 }
 
 /// A model without one of its effects.
@@ -67,6 +82,7 @@ impl Finding {
             curve: None,
             term,
             contacts: Vec::new(),
+            on_test: None,
             without: None,
         }
     }
@@ -137,7 +153,7 @@ pub struct Removed {
     pub joints: Vec<usize>,
 }
 
-/// A law that the recording shows and that made a test recording worse: it is not in the model.
+/// A law that the recording shows and a test recording does not: it is not in the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Refuted {
     /// Effect.
@@ -148,6 +164,8 @@ pub struct Refuted {
     pub test_before: f64,
     /// With it.
     pub test_after: f64,
+    /// How much of it is there.
+    pub on_test: OnTest,
 }
 
 /// A joint on which nothing could be looked for.

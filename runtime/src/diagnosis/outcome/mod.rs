@@ -7,7 +7,7 @@ mod finding;
 pub use drawn::{Curve, OrderSpectrum, TorqueSeries};
 pub use errors::{Errors, HeldOut, Mismatch, Unexplained};
 pub use finding::{
-    Alternative, CannotTell, Finding, NotJudged, ParameterValue, Refuted, Removed, Small, WithoutIt,
+    Alternative, CannotTell, Finding, NotJudged, OnTest, ParameterValue, Refuted, Removed, Small, WithoutIt,
 };
 
 use crate::effects::EffectTerm;
@@ -132,7 +132,7 @@ pub struct Diagnosis {
     /// Joints about which the recording says nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_judged: Vec<NotJudged>,
-    /// Laws that made a test recording worse, in the order in which they were taken out.
+    /// Laws that a test recording does not show, in the order in which they were taken out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refuted: Vec<Refuted>,
 }

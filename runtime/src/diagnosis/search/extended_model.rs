@@ -113,7 +113,11 @@ impl<'a> ExtendedModel<'a> {
         Ok(copy)
     }
 
-    fn copy(&self) -> Result<Self, DiagnosisError> {
+    /// A copy.
+    ///
+    /// # Errors
+    /// Where the model could not be built once more.
+    pub fn copy(&self) -> Result<Self, DiagnosisError> {
         let context = &self.context;
         Ok(Self {
             context: Context::new(

@@ -24,9 +24,16 @@ impl Search<'_> {
         settings: &Settings,
         progress: &dyn Progress,
     ) -> Result<SearchReport, SingularDesign> {
+        let mut second_chance = true;
         loop {
             // 1. Forward: the best candidate that holds joins the model, until none does.
             let stop = self.extend(settings, progress)?;
+            // What did not hold beside a model that still lacked other laws is tried once more beside the whole of it.
+            if second_chance && !self.rejected.is_empty() {
+                second_chance = false;
+                self.rejected.clear();
+                continue;
+            }
             // 2. Backward: what does not hold beside the others is taken out, for good.
             progress.at(0.87, "pruning");
             let rejected = self.prune(settings)?;

@@ -188,7 +188,8 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Whether the nested special case of a law explains nearly as much at the same place, or the law is mostly that.
+    /// Whether the nested special case of a law explains nearly as much at the same place. Where the law's amplitudes
+    /// tell whether it is mostly that case, they decide.
     fn nested_case_suffices(&self, ranked: &[Ranked], k: usize) -> bool {
         let (regression, more) = self.of(&ranked[k]);
         let (Some(nested), Some(case)) = (more.effect.special_case(), more.effect.properties().special_case)
@@ -199,9 +200,13 @@ impl Search<'_> {
         let amplitude = regression.fit.project_out(trial).and_then(|part| part.solve(more));
         let mostly = match (more.effect.form(), amplitude) {
             (Form::Joint(law), Some((amplitude, _))) => law.is_mostly_special(amplitude.as_slice()),
-            _ => false,
+            _ => None,
         };
-        let least = if mostly { 0.0 } else { case.suffices * ranked[k].verdict.total() };
+        let least = match mostly {
+            Some(false) => return false,
+            Some(true) => 0.0,
+            None => case.suffices * ranked[k].verdict.total(),
+        };
         ranked.iter().any(|other| {
             let candidate = self.of(other).1;
             candidate.effect == nested && candidate.place == more.place && other.verdict.total() > least

@@ -74,6 +74,34 @@ impl<'a> Search<'a> {
         Self { model, slow, fast, rejected: Vec::new(), ties, spectra, lines, tried, threads }
     }
 
+    /// Goes on from a model without effects with what was found, but without these laws at their places. A change of
+    /// friction is named last, and so once more.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn go_on_without(
+        &mut self,
+        excluded: &[(EffectKind, Place)],
+        without_effects: ExtendedModel<'a>,
+    ) -> Result<(), SingularDesign> {
+        let mut found = std::mem::replace(&mut self.model, without_effects).terms;
+        found.retain(|t| {
+            t.effect != EffectKind::FrictionLevelChange && !excluded.contains(&(t.effect, t.place))
+        });
+        self.model.terms = found;
+        self.rejected.clear();
+        self.ties.clear();
+        for candidates in [&mut self.slow, &mut self.fast] {
+            candidates.retain(|c| !excluded.contains(&(c.effect, c.place)));
+        }
+        for (j, lines) in self.lines.iter_mut().enumerate() {
+            if excluded.contains(&(EffectKind::TorqueRipple, Place::Joint(j))) {
+                lines.lines.clear();
+            }
+        }
+        self.refit_and_update()
+    }
+
     /// The candidates on the rows of a window.
     pub fn candidates(&self, window: SmoothingWindow) -> &[Candidate] {
         match window {

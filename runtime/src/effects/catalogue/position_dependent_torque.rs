@@ -28,7 +28,7 @@ const PROPERTIES: Properties = Properties {
     standing_friction: false,
 };
 
-/// What is a spring in so much of its squares is called one.
+/// What is a line in so much of its squares over the travel is called a spring.
 const SPRING: f64 = 0.75;
 
 /// The effect.
@@ -103,11 +103,12 @@ impl JointLaw for PositionDependentTorque {
         out.copy_from_slice(&legendre(x));
     }
 
-    /// Three quarters of the squares of the curve are those of its line.
-    fn is_mostly_special(&self, amplitude: &[f64]) -> bool {
+    /// Whether three quarters of the squares of the curve are those of its line. What the line explains beside the
+    /// standard model says less: gravity takes a part of it.
+    fn is_mostly_special(&self, amplitude: &[f64]) -> Option<bool> {
         let squares = |(k, a): (usize, &f64)| a * a / (2.0 * k as f64 + 3.0);
         let whole: f64 = amplitude.iter().enumerate().map(squares).sum();
-        amplitude.first().is_some_and(|a| a * a / 3.0 >= SPRING * whole)
+        amplitude.first().map(|a| a * a / 3.0 >= SPRING * whole)
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {

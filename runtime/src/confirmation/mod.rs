@@ -1,16 +1,22 @@
 //! A diagnosis that another recording has a say in: what makes motion worse that it was not fitted to is not reported.
 //!
 //! Evidence inside one recording cannot exclude that a law imitates something that this motion has and other motion has
-//! not. Where there is a test recording, each finding is therefore held against it: the torques of its joints must not
-//! be predicted worse with it than by the model without it, everything else fitted anew. What fails is taken out,
-//! and the diagnosis is made again without it. The test recording then no longer is one for what was
-//! chosen by it: of a finding that stays, only that it did not fail is known from it.
+//! not. Where there is a test recording, each finding is therefore held against it: the part of it that is there
+//! ([`OnTest`]) must be more than one half, or its joints are predicted worse with it; it must be told from nothing where
+//! the motion could have shown it; and it must not certainly make the other joints worse. What fails is taken out, and the
+//! search goes on without it. The test recording then no longer is one for what was chosen by it: of a finding that
+//! stays, only that it did not fail is known from it.
 
-use crate::diagnosis::{Diagnosis, DiagnosisError, Finding, Progress, Refuted, Settings, diagnose};
-use crate::effects::{EffectKind, EffectTerm};
+mod slope;
+
+use crate::diagnosis::{
+    Diagnosis, DiagnosisError, Finding, OnTest, Progress, Refuted, Settings, diagnose_despite,
+};
+use crate::effects::{EffectKind, EffectTerm, SmoothingWindow};
 use crate::model::{JointNumber, Model};
 use crate::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate};
 use crate::recording::Trajectory;
+use slope::{Judgement, Slope};
 
 /// Why there is no confirmed diagnosis.
 #[derive(Debug, thiserror::Error)]
@@ -24,11 +30,11 @@ pub enum ConfirmationError {
     Test(#[from] PredictionError),
 }
 
-/// Diagnoses a recording as [`diagnose`] does, and takes out what makes the test recording worse: see
-/// [`Diagnosis::refuted`].
+/// Diagnoses a recording as [`diagnose`](crate::diagnosis::diagnose) does, and takes out what the test recording does
+/// not show: see [`Diagnosis::refuted`].
 ///
 /// # Errors
-/// [`ConfirmationError`] where [`diagnose`] fails, or the test recording cannot be predicted.
+/// [`ConfirmationError`] where [`diagnose`](crate::diagnosis::diagnose) fails, or the test recording cannot be predicted.
 pub fn diagnose_and_confirm(
     model: &dyn Model,
     trajectories: &[Trajectory],
@@ -37,22 +43,28 @@ pub fn diagnose_and_confirm(
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Diagnosis, ConfirmationError> {
-    let mut settings = settings.clone();
     let mut refuted: Vec<Refuted> = Vec::new();
-    loop {
-        let mut diagnosis = diagnose(model, trajectories, baseline, &settings, progress)?;
-        let failing = failing(model, &diagnosis, test)?;
-        if failing.is_empty() {
-            diagnosis.verdict.extend(words(&refuted));
-            diagnosis.refuted = refuted;
-            return Ok(diagnosis);
-        }
-        for (k, reason) in failing {
-            let term = &diagnosis.findings[k].term;
-            settings.excluded.push((term.effect, term.place));
+    let mut failed = None;
+    let mut objections = |diagnosis: &mut Diagnosis| {
+        let failing = held_against_test(model, diagnosis, test).unwrap_or_else(|error| {
+            failed = Some(error);
+            Vec::new()
+        });
+        let object = |(k, reason): (usize, Refuted)| {
             refuted.push(reason);
-        }
+            let term = &diagnosis.findings[k].term;
+            (term.effect, term.place)
+        };
+        failing.into_iter().map(object).collect()
+    };
+    let recordings = [trajectories, baseline];
+    let mut diagnosis = diagnose_despite(model, recordings, &mut objections, settings, progress)?;
+    if let Some(error) = failed {
+        return Err(error.into());
     }
+    diagnosis.verdict.extend(words(&refuted));
+    diagnosis.refuted = refuted;
+    Ok(diagnosis)
 }
 
 /// What was taken out and why, for a person; nothing where nothing was.
@@ -62,41 +74,63 @@ fn words(refuted: &[Refuted]) -> Option<String> {
         let joints: Vec<String> = r.joints.iter().map(ToString::to_string).collect();
         let place =
             if joints.is_empty() { String::new() } else { format!(" on joint {}", joints.join(" and ")) };
-        format!("{title}{place} ({:.2} % to {:.2} %)", 100.0 * r.test_before, 100.0 * r.test_after)
+        let part = match r.on_test.sigma {
+            Some(sigma) => format!("{:.2} ± {sigma:.2}", r.on_test.part),
+            None => format!("{:.2}", r.on_test.part),
+        };
+        let errors = format!("{:.2} % to {:.2} %", 100.0 * r.test_before, 100.0 * r.test_after);
+        format!("{title}{place} ({part} of it; error of its joints {errors})")
     };
     let list: Vec<String> = refuted.iter().map(one).collect();
-    (!list.is_empty()).then(|| {
-        format!(
-            "Not reported, because the test recording is predicted worse with it (error of its joints): {}.",
-            list.join("; ")
-        )
-    })
+    (!list.is_empty())
+        .then(|| format!("Not reported, because the test recording does not show it: {}.", list.join("; ")))
 }
 
-/// The findings that make the test recording worse, and by how much.
-fn failing(
+/// Finds out how much of each finding the test recording shows, and returns those that it contradicts.
+fn held_against_test(
     model: &dyn Model,
-    diagnosis: &Diagnosis,
+    diagnosis: &mut Diagnosis,
     test: &Prepared,
 ) -> Result<Vec<(usize, Refuted)>, PredictionError> {
-    let all = diagnosis.terms();
-    let with = Predictor { chi: &diagnosis.model.chi, effects: &all, delay: diagnosis.delay };
+    let without: Vec<(usize, Vec<f64>, Vec<EffectTerm>)> = (0..diagnosis.findings.len())
+        .filter_map(|k| without(diagnosis, k).map(|(chi, effects)| (k, chi, effects)))
+        .collect();
+    if without.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (all, delay) = (diagnosis.terms(), diagnosis.delay);
+    let mut predictors = vec![Predictor { chi: &diagnosis.model.chi, effects: &all, delay }];
+    predictors.extend(without.iter().map(|(_, chi, effects)| Predictor { chi, effects, delay }));
+    let evaluation = evaluate(model, &predictors, &test.motions, &test.settings, &[])?;
     let mut failing = Vec::new();
-    for (k, finding) in diagnosis.findings.iter().enumerate() {
-        let Some((chi, effects)) = without(diagnosis, k) else { continue };
-        let without = Predictor { chi: &chi, effects: &effects, delay: diagnosis.delay };
-        let evaluation = evaluate(model, &[without, with], &test.motions, &test.settings, &[])?;
-        if !shows(model, finding, [without, with], test, &evaluation)? {
+    let mut parts = Vec::new();
+    for (which, (k, ..)) in without.iter().enumerate().map(|(i, w)| (i + 1, w)) {
+        let finding = &diagnosis.findings[*k];
+        let joints = joints_of(model, finding);
+        let Some(slope) = Slope::of(&evaluation, [which, 0], Some(&joints)) else { continue };
+        let models = [predictors[which], predictors[0]];
+        if finding.term.effect.properties().window == SmoothingWindow::Fast
+            && !shows(model, finding, models, test, (&evaluation, [which, 0]))?
+        {
             continue;
         }
-        let [before, after] = [0, 1].map(|which| evaluation.predictions[which].errors.per_joint.clone());
-        // Each joint in units of its own error, so that a joint with small torques counts as much as any.
-        let rise = after.iter().zip(&before).filter(|(_, b)| **b > 0.0).map(|(a, b)| (a / b).powi(2) - 1.0);
-        if rise.sum::<f64>() > 0.0 {
-            let [test_before, test_after] = [0, 1].map(|which| error_on(model, finding, &evaluation, which));
+        let on_test = OnTest { part: slope.value, sigma: slope.sigma, units: slope.units };
+        parts.push((*k, on_test));
+        // By the parameters that joints share it may show, or do harm, on others.
+        let on_all = Slope::of(&evaluation, [which, 0], None);
+        let fails = match slope.judgement() {
+            Judgement::Stands => on_all.is_some_and(|s| s.certainly_harms()),
+            Judgement::Harms => true,
+            Judgement::NotSeen => on_all.is_none_or(|s| s.judgement() != Judgement::Stands),
+        };
+        if fails {
+            let [test_before, test_after] = [which, 0].map(|m| error_on(model, finding, &evaluation, m));
             let (effect, joints) = (finding.effect.clone(), finding.joints.clone());
-            failing.push((k, Refuted { effect, joints, test_before, test_after }));
+            failing.push((*k, Refuted { effect, joints, test_before, test_after, on_test }));
         }
+    }
+    for (k, on_test) in parts {
+        diagnosis.findings[k].on_test = Some(on_test);
     }
     Ok(failing)
 }
@@ -111,7 +145,7 @@ fn shows(
     finding: &Finding,
     models: [Predictor<'_>; 2],
     test: &Prepared,
-    evaluation: &Evaluation,
+    (evaluation, which): (&Evaluation, [usize; 2]),
 ) -> Result<bool, PredictionError> {
     let joints = joints_of(model, finding);
     let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;
@@ -126,7 +160,7 @@ fn shows(
     }
     for rows in evaluation.rows.iter().filter(|r| joints.contains(&r.joint)) {
         for t in (0..rows.used.len()).filter(|&t| rows.used[t]) {
-            let change = rows.predicted[0][t] - rows.predicted[1][t];
+            let change = rows.predicted[which[0]][t] - rows.predicted[which[1]][t];
             on_rows = (on_rows.0 + change * change, on_rows.1 + 1);
         }
     }

@@ -1,0 +1,101 @@
+//! A law of the catalogue at a random place with a random shape.
+
+use dynid_runtime::effects::{EffectKind, EffectTerm, Form, Place, Scale, TermScale};
+use dynid_runtime::model::{JointKind, Model, StateSlices, torques};
+use dynid_runtime::signal::Motion;
+
+use crate::random::Random;
+
+/// Draws the place, the shape and the direction of the amplitudes; the size is 1 in the units of the law.
+pub fn draw(
+    effect: EffectKind,
+    model: &dyn Model,
+    motions: &[Motion],
+    chi: &[f64],
+    random: &mut Random,
+) -> Option<EffectTerm> {
+    let robot = model.robot();
+    let scales = scales(model, motions, chi);
+    let places = effect.form().places(robot);
+    let place = *places.get(random.below(places.len()))?;
+    let shapes = effect.form().shapes(place, &scales);
+    let shape = shapes.get(random.below(shapes.len()))?.clone();
+    let amplitude = match effect.form() {
+        Form::Joint(law) => {
+            let signed = |x: f64| if law.only_positive() { x } else { 2.0 * x - 1.0 };
+            (0..law.amplitudes(&shape)).map(|_| signed(random.share())).collect()
+        }
+        Form::Body(_) => body(random),
+        Form::Sensitivity(_) | Form::Coupled => vec![if random.share() < 0.5 { -1.0 } else { 1.0 }],
+        Form::Compliance(_) | Form::Window => return None,
+    };
+    let scale = place.joint().and_then(|j| scales.get(j)).map(|s| TermScale {
+        speed: s.speed,
+        range: s.range,
+        centre: s.centre,
+        torque: s.torque,
+        duration: s.duration,
+        gear: s.gear,
+        prismatic: s.prismatic,
+    });
+    let numbers = effect.form().named_joints(robot, place);
+    let sigma = vec![0.0; amplitude.len()];
+    Some(EffectTerm {
+        effect,
+        place,
+        joints: numbers.iter().map(|j| j + 1).collect(),
+        shape,
+        amplitude,
+        sigma,
+        scale,
+        wrenches: Vec::new(),
+    })
+}
+
+/// A cube of 6 cm and 1 kg beside the origin of its frame.
+fn body(random: &mut Random) -> Vec<f64> {
+    let [x, y, z] = [0.0; 3].map(|_| 0.2 * random.share() - 0.1);
+    let own = 0.06 * 0.06 / 6.0;
+    let (xx, yy, zz) = (own + y * y + z * z, own + x * x + z * z, own + x * x + y * y);
+    vec![xx, -x * y, -x * z, yy, -y * z, zz, x, y, z, 1.0]
+}
+
+/// Whether an effect is at a place that is no joint's.
+pub fn is_of_the_robot(place: Place) -> bool {
+    place.joint().is_none()
+}
+
+fn scales(model: &dyn Model, motions: &[Motion], chi: &[f64]) -> Vec<Scale> {
+    let robot = model.robot();
+    let n = robot.joints();
+    let kinds = robot.joint_kinds();
+    (0..n)
+        .map(|j| {
+            let of = |signal: fn(&Motion) -> &Vec<Vec<f64>>| -> Vec<f64> {
+                motions.iter().flat_map(|m| signal(m)[j].clone()).collect()
+            };
+            let (q, mut dq) = (of(|m| &m.q), of(|m| &m.dq));
+            dq.iter_mut().for_each(|v| *v = v.abs());
+            dq.sort_by(f64::total_cmp);
+            let [low, high] = [
+                q.iter().copied().fold(f64::INFINITY, f64::min),
+                q.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            ];
+            let torque = motions
+                .iter()
+                .flat_map(|m| {
+                    torques(model, chi, StateSlices::new(&m.q, &m.dq, &m.ddq).states()).swap_remove(j)
+                })
+                .fold(0.0, |most: f64, x| most.max(x.abs()));
+            Scale {
+                speed: dq.get(dq.len() * 98 / 100).copied().unwrap_or(0.0).max(1e-9),
+                range: (high - low).max(1e-9),
+                centre: 0.5 * (low + high),
+                torque: torque.max(1e-9),
+                duration: motions.iter().map(|m| m.start + m.q[j].len() as f64 / m.rate).fold(0.0, f64::max),
+                gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),
+                prismatic: kinds[j] == JointKind::Prismatic,
+            }
+        })
+        .collect()
+}
