@@ -14,8 +14,9 @@ use dynid_runtime::report::{percent, significant};
 use crate::failure::Failure;
 use crate::models;
 use crate::recorded::Recorded;
+use crate::words::table_doubts;
 
-/// Checks that the recording can be one of its robot; a warning for the person, if there is one to give.
+/// Checks that the recording can be one of its robot; warnings for the person, if there are any to give.
 ///
 /// # Errors
 /// [`Failure::Data`] where something else explains the recording far better, or where physics takes away what the
@@ -25,7 +26,7 @@ pub fn check(
     recorded: &Recorded,
     torques: &Observation,
     estimated: &Estimate,
-) -> Result<Option<String>, Failure> {
+) -> Result<Vec<String>, Failure> {
     let model = recorded.dynamics.model();
     let judged = Judged {
         model,
@@ -41,13 +42,20 @@ pub fn check(
             fault_words(&fault, robot)
         )));
     }
+    let mut warnings = table_doubts(robot);
+    let doubts: String =
+        warnings.iter().map(|doubt| format!(". In the table of {}, {doubt}", robot.name)).collect();
     let refused = |words: String| {
-        Err(Failure::Data(format!("{}: {words}. (--implausible identifies all the same)", path.display())))
+        let words = words.trim_end_matches('.');
+        Err(Failure::Data(format!(
+            "{}: {words}{doubts}. (--implausible identifies all the same)",
+            path.display()
+        )))
     };
     match judge(&judged, torques, estimated, models::all()) {
         Verdict::Better { own, worst: (joint, error), instead } => {
             let names: Vec<String> = instead.iter().map(|(what, _)| words(what, robot)).collect();
-            let Some((first, best)) = instead.first() else { return Ok(None) };
+            let Some((first, best)) = instead.first() else { return Ok(warnings) };
             refused(format!(
                 "this cannot be a recording of {} as it is described: the best parameters that such a robot can have \
                  leave {} of the torques unexplained (joint {}: {}); {} leaves {}. {}",
@@ -68,14 +76,17 @@ pub fn check(
             percent(error),
             robot.joint_number(joint)
         )),
-        Verdict::Strained { possible, free } => Ok(Some(format!(
+        Verdict::Strained { possible, free } => {
+            warnings.push(format!(
             "some parameters are none that a robot can have (a negative inertia, friction that drives): the best possible \
              ones leave {} of the torques unexplained, these {}. A filtered or delayed torque signal does that; so do a \
              wrong table, sign, order, unit or offset",
             percent(possible),
             percent(free)
-        ))),
-        _ => Ok(None),
+        ));
+            Ok(warnings)
+        }
+        _ => Ok(warnings),
     }
 }
 
@@ -125,6 +136,11 @@ fn advice(instead: &Instead) -> &'static str {
             "Name that robot; if the robot is right, look for a wrong sign, order of columns, unit or offset"
         }
         Instead::Sign { .. } => "Change it with a negative `gain`, or in the robot's `drive: gear`",
+        Instead::Scale { .. } => {
+            "All torques of a recording are read in one `unit`: bring the column to it with its `gain`"
+        }
+        Instead::Gravity(_) => "Check `gravity` in the robot's table, and how its base was mounted",
+        Instead::TableAngles => "Write them in rad, as 90*pi/180",
         Instead::Exchange { .. } => "Check the order of `columns`",
         Instead::Unit(_) => "Check `unit`",
         Instead::Offset { .. } => "Check `offset`, and theta in the robot's table",
@@ -147,6 +163,21 @@ fn words(instead: &Instead, robot: &Robot) -> String {
         Instead::Exchange { of, joints: [a, b] } => {
             format!("exchanging {} of joints {} and {}", name(*of), number(*a), number(*b))
         }
+        Instead::Scale { joint, factor } if *factor > 1.0 => {
+            format!("the torque of joint {} times 1000 (kN.m read as N.m, or N.m as mN.m)", number(*joint))
+        }
+        Instead::Scale { joint, .. } => {
+            format!(
+                "a thousandth of the torque of joint {} (mN.m read as N.m, or N.m as kN.m)",
+                number(*joint)
+            )
+        }
+        Instead::Gravity(g) => {
+            let axis = (0..3).max_by(|&a, &b| g[a].abs().total_cmp(&g[b].abs())).unwrap_or(2);
+            let sign = if g[axis] < 0.0 { "-" } else { "+" };
+            format!("gravity along {sign}{} of frame 0", ["x", "y", "z"][axis])
+        }
+        Instead::TableAngles => "reading the table's angles beyond a turn in degrees".to_owned(),
         Instead::Unit(AngleUnit::Degrees) => "reading angles in degrees".to_owned(),
         Instead::Unit(AngleUnit::Radians) => "reading angles in radians".to_owned(),
         Instead::Offset { joint, degrees } => {

@@ -1,7 +1,7 @@
 //! Joints and confidences in words.
 
 use dynid_runtime::diagnosis::OnTest;
-use dynid_runtime::model::{JointIndex, Robot};
+use dynid_runtime::model::{Frame, JointIndex, Robot};
 use dynid_runtime::report::significant;
 
 /// The number that a joint (counted from 0) has in the table.
@@ -24,6 +24,28 @@ pub fn joint_words(joints: &[usize]) -> String {
 /// The confidence in words.
 pub fn confidence_words(confidence: f64) -> String {
     format!("confidence {}", significant(confidence, 4))
+}
+
+/// Angles of the table that are hardly meant in rad.
+pub fn table_doubts(robot: &Robot) -> Vec<String> {
+    let turns = |angle: f64| angle.abs() > std::f64::consts::TAU;
+    let of_frame = |(k, frame): (usize, &Frame)| {
+        let angles = [("alpha", frame.alpha), ("gamma", frame.gamma), ("theta", frame.theta)];
+        let wrong: Vec<String> = angles
+            .into_iter()
+            .filter(|(_, angle)| turns(*angle))
+            .map(|(name, angle)| {
+                format!(
+                    "frame {}: {name} is {} rad, more than a turn. Are degrees meant? Write {}*pi/180",
+                    k + 1,
+                    significant(angle, 4),
+                    significant(angle, 4)
+                )
+            })
+            .collect();
+        wrong
+    };
+    robot.frames.iter().enumerate().flat_map(of_frame).collect()
 }
 
 /// How much of a law a test recording shows, as the end of `on the test recording ..`.

@@ -6,7 +6,7 @@ mod common;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::{Folder, MANIFEST, error_of, moving, words_of};
+use common::{ARM, Folder, MANIFEST, error_of, moving, words_of};
 
 fn assert_refused(output: &Output, status: i32, what: &[&str]) {
     let error = error_of(output);
@@ -60,6 +60,45 @@ fn data_that_cannot_support_an_answer_end_with_status_1_and_say_why() {
     let not_a_number: String = (0..900).map(|k| format!("{},NaN,0.4,1,1\n", k as f64 * 0.01)).collect();
     folder.write("motion.csv", &format!("t,q1,q2,u1,u2\n{not_a_number}"));
     assert_refused(&folder.run(&["identify", "recording.yaml"]), 1, &["not finite", "motion.csv:2"]);
+}
+
+#[test]
+fn a_value_that_no_robot_can_have_is_marked_in_print_and_in_the_page() {
+    let folder = Folder::new("marked");
+    folder.write("motion.csv", &moving(800));
+    folder.write("recording.yaml", &MANIFEST.replace("unit: N.m}", "unit: N.m, gain: [1, -1]}"));
+    let refused = folder.run(&["identify", "recording.yaml"]);
+    assert_refused(&refused, 1, &["recording.yaml", "sign", "joint 2", "--implausible"]);
+    let words = ["identify", "recording.yaml", "--implausible", "--report", "r.html", "--out", "m.json"];
+    let output = folder.run(&words);
+    let said = words_of(&output);
+    let page = std::fs::read_to_string(folder.path("r.html")).unwrap();
+    let model: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path("m.json")).unwrap()).unwrap();
+    let doubted: Vec<&serde_json::Value> =
+        model["base_parameters"].as_array().unwrap().iter().filter(|p| !p["doubt"].is_null()).collect();
+    assert!(!doubted.is_empty(), "{said}");
+    for p in doubted {
+        let name = p["name"].as_str().unwrap();
+        let line = said.lines().find(|l| l.trim_start().starts_with(&format!("{name} "))).unwrap();
+        assert!(line.contains(" !"), "{line}");
+        assert!(said.contains(&format!("! {name} is below zero")), "{said}");
+        assert!(page.contains(&format!("! {name} is below zero")));
+    }
+    assert!(page.matches(" !<").count() > 0, "no mark in the table");
+}
+
+#[test]
+fn angles_that_look_like_degrees_are_said_where_a_robot_is_identified() {
+    let folder = Folder::new("degrees");
+    folder.write("motion.csv", &moving(800));
+    folder.write("arm.yaml", &ARM.replace("{j: 2, sigma: 0, alpha: 0,", "{j: 2, sigma: 0, alpha: 90,"));
+    folder.write("recording.yaml", &MANIFEST.replace("planar_2r", "./arm.yaml"));
+    for words in [vec!["identify", "recording.yaml"], vec!["show", "./arm.yaml"]] {
+        let output = folder.run(&words);
+        let said = words_of(&output) + &error_of(&output);
+        assert!(said.contains("alpha is 90") && said.contains("pi/180"), "{words:?}: {said}");
+    }
 }
 
 #[test]

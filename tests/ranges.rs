@@ -76,7 +76,7 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, and a seed, which may be any.
-const OTHERS: [&str; 17] = [
+const OTHERS: [&str; 18] = [
     "--out",
     "--json",
     "--report",
@@ -86,6 +86,7 @@ const OTHERS: [&str; 17] = [
     "--reference",
     "--test",
     "--follow",
+    "--planned",
     "--kind",
     "--seed",
     "--elastic",

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
-use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter, difference};
+use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter, difference, doubt};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
@@ -181,7 +181,7 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
             relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
             sigma_white: None,
             correction: None,
-            doubt: None,
+            doubt: doubt(robot, &base.name, value, Some(sigma).filter(|s| s.is_finite())),
             sigma_blocks: None,
             unit: base.unit.to_string(),
         })

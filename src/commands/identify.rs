@@ -1,5 +1,8 @@
 //! `dynid identify REC`: parameters from a recording.
 
+mod method;
+mod simulated;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -16,6 +19,7 @@ use crate::ranges;
 use crate::recorded::{self, Recorded, left_out_words, observe_failure};
 use crate::verdict;
 use crate::words::joint_number;
+use method::Identification;
 
 /// What to identify and where to put it.
 #[derive(Debug, Args)]
@@ -24,9 +28,14 @@ pub(super) struct Arguments {
     recording: Source,
     #[command(flatten)]
     sampling: Sampling,
-    /// idim-ols, idim-wls, pim-ols, pim-wls; robust idim-irls, pim-irls; total least squares idim-tls, pim-tls
+    /// idim-ols, idim-wls, pim-ols, pim-wls; robust idim-irls, pim-irls; total least squares idim-tls, pim-tls;
+    /// simulating the planned motions: instrumental variables idim-iv, and idim-didim
     #[arg(long, default_value = "idim-wls")]
-    method: Method,
+    method: Identification,
+    /// The planned motions, which idim-iv and idim-didim simulate with the robot's nominal controller: a CSV or a folder
+    /// as `excite` writes it, one motion for each of the recording
+    #[arg(long)]
+    planned: Option<PathBuf>,
     /// The power model from dh in closed form instead of differentiating h as in the paper
     #[arg(long)]
     closed_form: bool,
@@ -59,12 +68,13 @@ pub(super) struct Arguments {
 
 /// Identifies, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    simulated::check(arguments.method, arguments.planned.as_deref())?;
     let power = Equations::Power { closed_form: arguments.closed_form };
     let equations: &[Equations] =
-        if arguments.method.is_power() { &[power, Equations::Torque] } else { &[Equations::Torque] };
+        if arguments.method.method().is_power() { &[power, Equations::Torque] } else { &[Equations::Torque] };
     let recorded::Observed { recorded, observations, whole } =
         recorded::read_observed(&arguments.recording, &arguments.sampling, equations)?;
-    let (identified, estimate) = identify(&recorded, &observations, arguments)?;
+    let (identified, estimate) = identify(&recorded, whole, &observations, arguments)?;
     if arguments.json.as_deref() != Some(Path::new("-")) {
         print(&summary(&recorded, &identified, &estimate, arguments));
     }
@@ -85,6 +95,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Identifies from the observation of the method's equations; the last one is of the torques.
 fn identify(
     recorded: &Recorded,
+    whole: bool,
     observations: &[Observation],
     arguments: &Arguments,
 ) -> Result<(Identified, Estimate), Failure> {
@@ -94,11 +105,11 @@ fn identify(
         return Err(Failure::Data("nothing was observed".to_owned()));
     };
     let torques = observations.last().unwrap_or(observation);
-    let estimate = estimate(
+    let mut estimate = estimate(
         observation,
         &EstimateSettings {
             r_sigma: Some(arguments.r_sigma),
-            ..EstimateSettings::for_method(arguments.method)
+            ..EstimateSettings::for_method(arguments.method.method())
         },
     );
     if estimate.degrees_of_freedom == 0 {
@@ -122,11 +133,29 @@ fn identify(
         };
         warnings.extend(verdict::check(path, recorded, torques, of_torques)?);
     }
+    let mut simulated = None;
+    if let Some(plan) = &arguments.planned {
+        let paths = [arguments.recording.recording.as_path(), plan.as_path()];
+        let found = simulated::identify(
+            arguments.method,
+            recorded,
+            whole,
+            paths,
+            torques,
+            &estimate,
+            arguments.r_sigma,
+        )?;
+        estimate = found.estimate;
+        simulated = Some(found.simulated);
+        warnings.extend(found.warnings);
+    }
     let chi = estimate.chi();
     let errors = observed_errors(torques, &chi);
     let mut rows = EvaluatedRows::observed(observation, settings.band, &estimate, errors);
     rows.rows_left_out = Some(recorded.rows.rows.left_out);
     let mut identified = Identified::new(model.robot(), &recorded.robot, rows, &estimate);
+    identified.method = arguments.method.name().to_owned();
+    identified.simulated = simulated;
     identified.warnings.extend(warnings);
     Ok((identified, estimate))
 }
@@ -161,6 +190,9 @@ fn summary(
             if essential.cancelled.is_empty() { "none".to_owned() } else { essential.cancelled.join(" ") },
         ));
     }
+    if let Some(simulated) = &identified.simulated {
+        text.push_str(&format!("\n\n{}", simulated::words(simulated)));
+    }
     text.push_str("\n\n");
     text.push_str(&equations(identified));
     if let Some(power) = identified.power_relative_error {
@@ -187,13 +219,18 @@ fn summary(
 
 fn parameters(robot: &dynid_runtime::model::Robot, identified: &Identified, relations: bool) -> String {
     let essential = identified.essential_parameters.as_ref();
+    let simulated = identified.simulated.as_ref();
     let rows = identified
         .base_parameters
         .iter()
-        .map(|p| {
+        .enumerate()
+        .map(|(k, p)| {
             let kept = essential.and_then(|e| e.parameters.iter().find(|kept| kept.name == p.name));
             let mut row = cells(p);
-            row.push(kept.map_or_else(String::new, |k| significant(k.value, 4)));
+            if let Some(simulated) = simulated {
+                row.push(simulated.values.get(k).map_or_else(String::new, |&v| significant(v, 4)));
+            }
+            row.push(kept.map_or_else(String::new, value));
             if relations {
                 let relation = robot.base.iter().find(|b| b.name == p.name).map_or("", |b| &b.relation);
                 row.push(format!("= {relation}"));
@@ -201,7 +238,9 @@ fn parameters(robot: &dynid_runtime::model::Robot, identified: &Identified, rela
             row
         })
         .collect();
-    let mut header = vec!["<parameter", "value", "sigma", "sigma %", "sigma, white", "<unit", "essential"];
+    let mut header = vec!["<parameter", "value", "sigma", "sigma %", "sigma, white", "<unit"];
+    header.extend(simulated.map(|s| s.compared_with.as_str()));
+    header.push("essential");
     if relations {
         header.push("<");
     }
@@ -214,12 +253,17 @@ pub(crate) fn cells(p: &NamedParameter) -> Vec<String> {
         |value: Option<f64>, digits| value.map_or_else(|| "-".to_owned(), |v| significant(v, digits));
     vec![
         p.name.clone(),
-        format!("{}{}", significant(p.value, 4), if p.doubt.is_some() { " !" } else { "" }),
+        value(p),
         optional(p.sigma, 2),
         optional(p.relative_sigma_percent, 2),
         optional(p.sigma_white, 2),
         p.unit.clone(),
     ]
+}
+
+/// A value, with a mark where no robot can have it.
+fn value(p: &NamedParameter) -> String {
+    format!("{}{}", significant(p.value, 4), if p.doubt.is_some() { " !" } else { "" })
 }
 
 /// Which equations were used and which were not.

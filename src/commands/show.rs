@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::models;
 use crate::output::{print, table};
 use crate::robots::{Dynamics, resolve};
+use crate::words::table_doubts;
 
 /// What to show.
 #[derive(Debug, Args)]
@@ -31,7 +32,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&format!("gravity ({x}, {y}, {z}) m/s2, {} joints", robot.joints()));
     print("");
     print(&frames(robot));
-    for doubt in doubts(robot) {
+    for doubt in table_doubts(robot) {
         print(&format!("warning: {doubt}"));
     }
     print("");
@@ -46,28 +47,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(&operations(&dynamics)?);
     }
     Ok(())
-}
-
-/// Angles of the table that are hardly meant in rad.
-fn doubts(robot: &Robot) -> Vec<String> {
-    let turns = |angle: f64| angle.abs() > std::f64::consts::TAU;
-    let of_frame = |(k, frame): (usize, &Frame)| {
-        let angles = [("alpha", frame.alpha), ("gamma", frame.gamma), ("theta", frame.theta)];
-        let wrong: Vec<String> = angles
-            .into_iter()
-            .filter(|(_, angle)| turns(*angle))
-            .map(|(name, angle)| {
-                format!(
-                    "frame {}: {name} is {} rad, more than a turn. Are degrees meant? Write {}*pi/180",
-                    k + 1,
-                    significant(angle, 4),
-                    significant(angle, 4)
-                )
-            })
-            .collect();
-        wrong
-    };
-    robot.frames.iter().enumerate().flat_map(of_frame).collect()
 }
 
 /// The modified-DH table; angles in rad, lengths in m.

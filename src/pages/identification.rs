@@ -2,7 +2,7 @@
 
 use dynid_runtime::estimation::observe::{Equations, ObserveError, ObserveSettings, Rows, observe};
 use dynid_runtime::model::Robot;
-use dynid_runtime::model_file::Identified;
+use dynid_runtime::model_file::{Identified, NamedParameter};
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
 
 use crate::recorded::{Recorded, left_out_words};
@@ -23,6 +23,7 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
     let mut page = Page::new(&format!("{}: {}", robot.name, recorded.title));
     page.verdict(&verdict(robot, identified));
     page.list(left_out_words(&recorded.rows));
+    page.list(doubts(identified));
     page.list(&identified.warnings);
     page.heading("Torques, measured and predicted");
     for rows in observation.rows.iter().flatten() {
@@ -45,6 +46,18 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
          value ± 1.96 sigma contains the truth in 95 of 100 recordings. The white one is for errors that are independent from \
          row to row.",
     );
+    if let Some(simulated) = &identified.simulated {
+        page.subheading(&format!("Beside {}", simulated.compared_with));
+        page.table(
+            &["parameter", &identified.method, &simulated.compared_with, "difference / sigma"],
+            &beside(identified, &simulated.values),
+        );
+        let worst = simulated.apart.iter().fold(0.0_f64, |m, &a| m.max(a));
+        page.note(&format!(
+            "The planned motions were simulated; simulated and measured positions are {} apart at most.",
+            percent(worst)
+        ));
+    }
     if let Some(essential) = &identified.essential_parameters {
         page.subheading("Essential parameters");
         page.paragraph(&format!(
@@ -101,6 +114,28 @@ fn torque_plot(robot: &Robot, rows: &Rows, chi: &[f64], trajectory: &str, severa
 
 fn parameters(identified: &Identified) -> Vec<Vec<String>> {
     identified.base_parameters.iter().map(crate::commands::parameter_cells).collect()
+}
+
+/// The values beside those that the simulation began with.
+fn beside(identified: &Identified, values: &[f64]) -> Vec<Vec<String>> {
+    let all = identified.base_parameters.iter().zip(values);
+    all.map(|(p, &other)| {
+        let sigmas = p.sigma.filter(|s| *s > 0.0).map(|s| significant((p.value - other) / s, 2));
+        let mark = if p.doubt.is_some() { " !" } else { "" };
+        vec![
+            p.name.clone(),
+            format!("{}{mark}", significant(p.value, 4)),
+            significant(other, 4),
+            sigmas.unwrap_or_else(|| "-".to_owned()),
+        ]
+    })
+    .collect()
+}
+
+/// What is marked with `!`, in words.
+fn doubts(identified: &Identified) -> Vec<String> {
+    let told = |p: &NamedParameter| p.doubt.as_ref().map(|doubt| format!("! {} is {doubt}", p.name));
+    identified.base_parameters.iter().filter_map(told).collect()
 }
 
 fn relations(robot: &Robot) -> Vec<Vec<String>> {

@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
-use super::observe::{Equations, ExtraColumns, Observation};
+use super::observe::{EquationFactor, Equations, ExtraColumns, Observation};
+use super::residuals::{per_equation, relative_error};
 use super::solve::RANK_TOLERANCE;
 use super::uncertainty::{Solved, variances};
-use super::weights::stack;
+use super::weights::{residual_norm, stack};
+use super::{EquationError, Estimate, ParameterEstimate};
 use crate::model::{Model, States};
 use crate::signal::Motion;
 use nalgebra::DMatrix;
@@ -66,6 +68,38 @@ pub struct InstrumentalEstimate {
     /// Their standard deviations: for errors that last where the observation has kept its rows, else for errors that are
     /// independent from row to row.
     pub sigma: Vec<f64>,
+}
+
+impl InstrumentalEstimate {
+    /// The same with its errors on the `torques`, an observation without instruments; `weighted` is the estimate whose
+    /// errors were the weights.
+    pub fn described(&self, torques: &Observation, weighted: &Estimate) -> Estimate {
+        let parameters = weighted.parameters.iter().zip(self.chi.iter().zip(&self.sigma));
+        let parameters = parameters.map(|(p, (&value, &sigma))| ParameterEstimate {
+            name: p.name.clone(),
+            value,
+            sigma: Some(sigma),
+            sigma_white: None,
+            sigma_blocks: None,
+            correction: None,
+            relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
+        });
+        let own = |e: &EquationError| {
+            let alike = |g: &&EquationFactor| (g.trajectory, g.equation) == (e.trajectory, e.equation);
+            let group = torques.groups.iter().find(alike).filter(|g| g.factor.norm_y() > 0.0);
+            let relative_error = group.map(|g| residual_norm(g, &self.chi) / g.factor.norm_y());
+            EquationError { relative_error, ..e.clone() }
+        };
+        Estimate {
+            parameters: parameters.collect(),
+            errors: weighted.errors.iter().map(own).collect(),
+            relative_error: relative_error(torques, &self.chi),
+            per_equation: per_equation(torques, &self.chi),
+            warnings: Vec::new(),
+            essential: None,
+            ..weighted.clone()
+        }
+    }
 }
 
 /// Why there is no estimate by instrumental variables.

@@ -52,6 +52,9 @@ pub struct Identified {
     pub equations: Vec<EquationRows>,
     /// Band of the equations, Hz.
     pub band: f64,
+    /// What the states were simulated with, where the method simulates them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simulated: Option<SimulatedStates>,
     /// What to know before believing it.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -100,6 +103,21 @@ pub struct NamedParameter {
     pub unit: String,
 }
 
+/// How a method that simulates the planned motions came to its values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulatedStates {
+    /// The method whose values it began with and is compared with, as `idim-wls`.
+    pub compared_with: String,
+    /// These values, in the order of the base parameters.
+    pub values: Vec<f64>,
+    /// For each joint the root mean square of measured less simulated positions over that of the measured ones about
+    /// their mean.
+    pub apart: Vec<f64>,
+    /// Relative change of the parameters in each iteration, where there are any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<f64>,
+}
+
 /// The simplified model of the paper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EssentialParameters {
@@ -122,7 +140,7 @@ impl Identified {
             relative_sigma_percent: p.relative_sigma_percent,
             sigma_white: p.sigma_white,
             correction: p.correction,
-            doubt: doubt(robot, p),
+            doubt: doubt(robot, &p.name, p.value, p.sigma),
             sigma_blocks: p.sigma_blocks,
             unit: robot
                 .base
@@ -174,6 +192,7 @@ impl Identified {
             rows_left_out: rows.rows_left_out,
             equations: rows.equations,
             band: rows.band,
+            simulated: None,
             warnings: Vec::new(),
             effects: Vec::new(),
             delay: 0.0,
@@ -194,6 +213,7 @@ impl Identified {
             equations: rows.equations,
             band: rows.band,
             noise: rows.noise,
+            simulated: None,
             ..self.clone()
         }
     }
@@ -217,18 +237,18 @@ impl Identified {
     }
 }
 
-/// Why a value is none that a robot can have: a mass, a moment of inertia or a friction below zero, where nothing else is
-/// regrouped into it.
-fn doubt(robot: &Robot, p: &ParameterEstimate) -> Option<String> {
+/// Why the value of a base parameter is none that a robot can have: a mass, a moment of inertia or a friction below zero,
+/// where nothing else is regrouped into it. `None` where a robot can have it.
+pub fn doubt(robot: &Robot, name: &str, value: f64, sigma: Option<f64>) -> Option<String> {
     use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M, XX, YY, ZZ};
-    let base = robot.base.iter().find(|b| b.name == p.name)?;
+    let base = robot.base.iter().find(|b| b.name == name)?;
     let standard = robot.standard.get(base.standard)?;
     let positive = matches!(standard.kind, M | XX | YY | ZZ | Ia | Fv | Fc | Fvm | Fcm);
-    if !positive || base.name != standard.name || p.value >= 0.0 {
+    if !positive || base.name != standard.name || value >= 0.0 {
         return None;
     }
-    Some(match p.sigma {
-        Some(sigma) if p.value > -2.0 * sigma => "below zero, but not more than its uncertainty".to_owned(),
+    Some(match sigma {
+        Some(sigma) if value > -2.0 * sigma => "below zero, but not more than its uncertainty".to_owned(),
         _ => "below zero: no robot can have it".to_owned(),
     })
 }

@@ -30,7 +30,7 @@ mod table;
 pub use check::{check, read};
 pub use error::FileError;
 pub use fingerprint::{difference, fingerprint};
-pub use identified::{EssentialParameters, Identified, NamedParameter, SCHEMA};
+pub use identified::{EssentialParameters, Identified, NamedParameter, SCHEMA, SimulatedStates, doubt};
 pub use robot_yaml::to_yaml;
 pub use rows::{EquationRows, EvaluatedRows};
 

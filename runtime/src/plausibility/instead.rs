@@ -1,8 +1,10 @@
-//! What could be meant instead of what a recording says of itself: another robot, a sign, an order, a unit, an offset.
+//! What could be meant instead of what a recording says of itself: another robot, another gravity, a sign, an order, a
+//! unit, an offset.
 
 use std::f64::consts::PI;
 
 use super::judged::Judged;
+use super::table::{self, Table};
 use crate::estimation::observe::{Equations, observe};
 use crate::estimation::{EstimateSettings, PhysicalFit, estimate, physical_fit};
 use crate::model::{Drive, JointIndex, JointKind, Model, Robot};
@@ -11,6 +13,8 @@ use crate::signal::Motion;
 
 /// A joint's error from which something is looked for that was mistaken about it.
 pub(super) const POOR: f64 = 0.25;
+/// Between N.m and mN.m, N and kN.
+const THOUSAND: f64 = 1000.0;
 
 /// What could be meant instead.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +36,17 @@ pub enum Instead {
         /// Which joints.
         joints: [JointIndex; 2],
     },
+    /// Another unit of the torque of one joint.
+    Scale {
+        /// Which joint.
+        joint: JointIndex,
+        /// What its torque is multiplied with.
+        factor: f64,
+    },
+    /// Gravity along another axis of frame 0, or the other way, m/s2.
+    Gravity([f64; 3]),
+    /// Angles of the table that are beyond a turn in degrees.
+    TableAngles,
     /// Angles in another unit.
     Unit(AngleUnit),
     /// Another zero of a joint's position.
@@ -63,18 +78,29 @@ pub enum AngleUnit {
     Degrees,
 }
 
-/// What may have been mistaken about the joints that are explained poorly.
+/// What may have been mistaken about the table, and about signs and units of single joints. The joint that was mistaken
+/// need not be the one that is explained worst: what it is coupled to is as wrong.
+pub(super) fn single_mistakes(robot: &Robot) -> Vec<Instead> {
+    let mut all: Vec<Instead> = table::other_gravities(robot).map(Instead::Gravity).collect();
+    if table::beyond_a_turn(robot) {
+        all.push(Instead::TableAngles);
+    }
+    for joint in (0..robot.joints()).map(JointIndex) {
+        all.extend([Signal::Position, Signal::Torque, Signal::Both].map(|of| Instead::Sign { of, joint }));
+        all.extend([THOUSAND, 1.0 / THOUSAND].map(|factor| Instead::Scale { joint, factor }));
+    }
+    all
+}
+
+/// What else may have been mistaken about the joints that are explained poorly.
 pub(super) fn mistakes(robot: &Robot, own: &PhysicalFit) -> Vec<Instead> {
     let kinds = robot.joint_kinds();
     let n = kinds.len();
     let poor: Vec<bool> = own.per_equation.iter().map(|e| e.is_some_and(|e| e > POOR)).collect();
     let mut all = Vec::new();
-    for joint in (0..n).filter(|&j| poor[j]) {
-        let index = JointIndex(joint);
-        all.extend([Signal::Position, Signal::Torque].map(|of| Instead::Sign { of, joint: index }));
-        if kinds[joint] == JointKind::Revolute {
-            all.extend([90, -90, 180].map(|degrees| Instead::Offset { joint: index, degrees }));
-        }
+    for joint in (0..n).filter(|&j| poor[j] && kinds[j] == JointKind::Revolute) {
+        let joint = JointIndex(joint);
+        all.extend([90, -90, 180].map(|degrees| Instead::Offset { joint, degrees }));
     }
     for a in 0..n {
         for b in a + 1..n {
@@ -92,21 +118,40 @@ pub(super) fn mistakes(robot: &Robot, own: &PhysicalFit) -> Vec<Instead> {
 }
 
 impl Instead {
-    /// How well it explains the recording. `None` where it cannot be told.
-    pub(super) fn fit(&self, judged: &Judged<'_>, others: &[&dyn Model]) -> Option<PhysicalFit> {
+    /// Whether it is about signs, or units, or gravity, ...: what is as good as another of its family cannot be told from
+    /// it.
+    pub(super) fn same_family(&self, other: &Instead) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+
+    /// How well it explains the recording. `None` where it cannot be told, or where the errors of the joints are not
+    /// `promising` even with parameters that no robot can have.
+    pub(super) fn fit(
+        &self,
+        judged: &Judged<'_>,
+        others: &[&dyn Model],
+        promising: impl Fn(&[Option<f64>]) -> bool,
+    ) -> Option<PhysicalFit> {
         let own = judged.model;
+        let altered;
         let model = match self {
             Instead::Robot(name) => *others.iter().find(|m| m.robot().name == name.as_str())?,
-            Instead::Sign { .. } | Instead::Exchange { .. } | Instead::Unit(_) | Instead::Offset { .. } => {
-                own
+            Instead::Gravity(gravity) => {
+                altered = table::altered(own.robot(), Table::Gravity(*gravity))?;
+                &altered as &dyn Model
             }
+            Instead::TableAngles => {
+                altered = table::altered(own.robot(), Table::Degrees)?;
+                &altered
+            }
+            _ => own,
         };
         let (gear, other) = (&own.robot().drive, &model.robot().drive);
         let kinds = own.robot().joint_kinds();
         let changed = |motion: &Motion| match self {
             Instead::Robot(_) if judged.motor_side => regear(motion, gear, other),
             // Columns of motors were mixed up before the gear brought them to the joints.
-            Instead::Sign { .. } | Instead::Exchange { .. } if judged.motor_side => {
+            Instead::Sign { .. } | Instead::Exchange { .. } | Instead::Scale { .. } if judged.motor_side => {
                 let mut motors = regear(motion, gear, &direct(kinds.len()))?;
                 self.change(&mut motors, &kinds);
                 regear(&motors, &direct(kinds.len()), gear)
@@ -125,17 +170,26 @@ impl Instead {
             lasting_noise: false,
             ..EstimateSettings::default()
         };
-        physical_fit(model.robot(), &observation, &estimate(&observation, &settings))
+        let free = estimate(&observation, &settings);
+        if !promising(&free.per_equation) {
+            return None;
+        }
+        physical_fit(model.robot(), &observation, &free)
     }
 
     fn change(&self, motion: &mut Motion, kinds: &[JointKind]) {
         let Motion { q, dq, ddq, torque, .. } = motion;
         let positions = [q, dq, ddq];
         match *self {
-            Instead::Robot(_) => {}
-            Instead::Sign { of: Signal::Torque, joint: JointIndex(joint) } => scale(&mut torque[joint], -1.0),
-            Instead::Sign { joint: JointIndex(joint), .. } => {
-                positions.into_iter().for_each(|p| scale(&mut p[joint], -1.0))
+            Instead::Robot(_) | Instead::Gravity(_) | Instead::TableAngles => {}
+            Instead::Scale { joint: JointIndex(joint), factor } => scale(&mut torque[joint], factor),
+            Instead::Sign { of, joint: JointIndex(joint) } => {
+                if of != Signal::Torque {
+                    positions.into_iter().for_each(|p| scale(&mut p[joint], -1.0));
+                }
+                if of != Signal::Position {
+                    scale(&mut torque[joint], -1.0);
+                }
             }
             Instead::Exchange { of, joints: [JointIndex(a), JointIndex(b)] } => {
                 if of != Signal::Torque {

@@ -3,6 +3,7 @@
 mod channels;
 mod instead;
 mod judged;
+mod table;
 
 pub use channels::{ChannelFault, faulty_channel};
 pub use instead::{AngleUnit, Instead, Signal};
@@ -13,17 +14,29 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use crate::estimation::observe::Observation;
 use crate::estimation::{Estimate, PhysicalFit, physical_fit};
 use crate::model::{JointIndex, Model};
-use instead::{POOR, mistakes};
+use instead::{POOR, mistakes, single_mistakes};
 
 /// Strain from which the parameters are said not to be those of a real robot.
 const STRAINED: f64 = 1.1;
-/// A joint's error, and a strain, from which signs, orders, units and offsets are tried.
+/// A joint's error, and a strain, from which gravity, and signs and units of single joints are tried. That costs time
+/// only: what is believed is decided by [`ROBOT`] and [`MISTAKE`].
+const DOUBTFUL: f64 = 0.125;
+const TENSE: f64 = 1.05;
+/// A joint's error, and a strain, from which orders, units of angles and offsets are tried as well.
 const BAD: f64 = 0.5;
 const OVERSTRAINED: f64 = 2.0;
-/// Something else is believed where it lowers the joints' errors by this factor, on their geometric mean.
-const FAR_BETTER: f64 = 1.25;
+/// Another robot is believed where it lowers the joints' errors by this factor, on their geometric mean.
+const ROBOT: f64 = 1.25;
+/// A mistake about one or two joints is believed where it lowers the joints' errors as if that of one of them were
+/// halved. What a recording does not say anything about, as the sign of an axis that nothing is coupled to, changes
+/// no error.
+const MISTAKE: f64 = 2.0;
 /// Robots count as equally good where they lower the errors within this share of the best.
 const AS_GOOD: f64 = 0.95;
+/// So do mistakes of one kind, of the logarithm of the best: two signs that nearly undo each other are both named.
+const NEARLY: f64 = 0.75;
+/// What parameters that no robot can have do not explain this nearly, those of a robot do not either.
+const PROMISING: f64 = 0.9;
 /// A joint's error where half of its squared torque is explained.
 const HALF: f64 = FRAC_1_SQRT_2;
 
@@ -46,7 +59,8 @@ pub enum Verdict {
         own: f64,
         /// The joint that these explain worst, and its error.
         worst: (JointIndex, f64),
-        /// What explains it better, with its error: the best first, and other robots that are as good.
+        /// What explains it better, with its error: the best first, and others of its kind (robots, signs, units, ...)
+        /// that are as good.
         instead: Vec<(Instead, f64)>,
     },
     /// No such robot can have made it, and nothing that was tried explains it.
@@ -62,8 +76,9 @@ pub enum Verdict {
 /// weighted estimate, `others` the robots that it could be of instead.
 ///
 /// The free fit is compared with the best one that a real robot can have ([`physical_fit`]). Where physics costs
-/// something or a joint is explained poorly, other robots of the same joints are tried; where it costs much or a joint
-/// is explained badly, so are signs, orders of columns, units and offsets.
+/// something or a joint is explained poorly, other robots of the same joints are tried, other directions of gravity, and
+/// signs and units of single joints; where it costs much or a joint is explained badly, so are orders of columns, units
+/// of angles and offsets.
 pub fn judge(
     judged: &Judged<'_>,
     torques: &Observation,
@@ -85,6 +100,9 @@ pub fn judge(
         let alike =
             |other: &&&dyn Model| other.robot().name != robot.name && other.robot().joint_kinds() == kinds;
         candidates.extend(others.iter().filter(alike).map(|m| Instead::Robot(m.robot().name.to_string())));
+    }
+    if own.strain > TENSE || error > DOUBTFUL || table::beyond_a_turn(robot) {
+        candidates.extend(single_mistakes(robot));
     }
     if own.strain > OVERSTRAINED || error > BAD {
         candidates.extend(mistakes(robot, &own));
@@ -122,7 +140,7 @@ fn largest(joints: usize, value: impl Fn(usize) -> f64) -> Option<usize> {
     (0..joints).max_by(|&a, &b| value(a).total_cmp(&value(b)))
 }
 
-/// What explains the recording far better than what was declared: the best, and other robots that are as good.
+/// What explains the recording far better than what was declared: the best, and others of its kind that are as good.
 fn better(
     judged: &Judged<'_>,
     others: &[&dyn Model],
@@ -132,22 +150,25 @@ fn better(
     let mut all: Vec<(f64, Instead, f64)> = candidates
         .into_iter()
         .filter_map(|candidate| {
-            let fit = candidate.fit(judged, others)?;
+            let enough = match candidate {
+                Instead::Robot(_) => ROBOT,
+                _ => MISTAKE.powf(1.0 / own.per_equation.len().max(1) as f64),
+            };
+            let promising = |free: &[Option<f64>]| ratio(&own.per_equation, free) >= PROMISING * enough;
+            let fit = candidate.fit(judged, others, promising)?;
             let better = ratio(&own.per_equation, &fit.per_equation);
-            (better >= FAR_BETTER).then_some((better, candidate, fit.relative_error?))
+            (better >= enough).then_some((better, candidate, fit.relative_error?))
         })
         .collect();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     let best = all.first().map_or(0.0, |first| first.0);
-    let robot = |instead: &Instead| matches!(instead, Instead::Robot(_));
-    let first_is_robot = all.first().is_some_and(|(_, instead, _)| robot(instead));
-    all.into_iter()
-        .enumerate()
-        .filter(|(place, (better, instead, _))| {
-            *place == 0 || first_is_robot && robot(instead) && *better > AS_GOOD * best
-        })
-        .map(|(_, (_, instead, error))| (instead, error))
-        .collect()
+    let Some(first) = all.first().map(|(_, instead, _)| instead.clone()) else { return Vec::new() };
+    let least = match first {
+        Instead::Robot(_) => AS_GOOD * best,
+        _ => best.powf(NEARLY),
+    };
+    all.retain(|(better, instead, _)| instead.same_family(&first) && *better > least);
+    all.into_iter().map(|(_, instead, error)| (instead, error)).collect()
 }
 
 /// Geometric mean of the joints' errors over those of another fit.

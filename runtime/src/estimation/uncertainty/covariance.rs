@@ -1,5 +1,6 @@
 //! Standard deviations of parameters under noise that lasts.
 
+use super::between::{MotionPart, factors};
 use super::noise::{Noise, inverse};
 use super::series::Series;
 use crate::estimation::observe::{Equations, Observation};
@@ -32,6 +33,8 @@ pub(in crate::estimation) struct Solved<'a> {
 /// are correlated between equations ([`Noise`]). The innovations of a power have each their own variance. ZT V C V Z is never formed from C: each column of Z is turned into what
 /// each innovation weighs in it.
 ///
+/// Where motions differ by more than that noise, the variances are as much larger ([`factors`]).
+///
 /// `None` where the rows were not kept, or do not determine the unknowns.
 pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> {
     let k = solved.unknowns.len();
@@ -43,14 +46,19 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
     let scores = others.as_ref().unwrap_or(&series);
     // The noise of a power is that of the torques times the speeds.
     let own_variances = solved.observation.equations != Equations::Torque;
-    let mut information = DMatrix::<f64>::zeros(k, k);
-    let mut spread = DMatrix::<f64>::zeros(k, k);
+    let mut parts: Vec<MotionPart> = Vec::new();
     let trajectories = series.iter().map(|s| s.trajectory + 1).max().unwrap_or(0);
     for trajectory in 0..trajectories {
+        let mut information = DMatrix::<f64>::zeros(k, k);
+        let mut spread = DMatrix::<f64>::zeros(k, k);
+        let mut right = DVector::<f64>::zeros(k);
         let mut innovations: Vec<(usize, &[usize], DMatrix<f64>)> = Vec::new();
         for (w, z) in series.iter().zip(scores).filter(|(s, _)| s.trajectory == trajectory) {
             let weight = (solved.errors[w.group] / solved.weights[w.group]).powi(2);
             add(&mut information, &z.places, &w.places, &(weight * (z.w.transpose() * &w.w)));
+            for (column, &place) in z.w.column_iter().zip(&z.places) {
+                right[place] += weight * column.iter().zip(&w.y).map(|(z, y)| z * y).sum::<f64>();
+            }
             let model = &noise.equations[w.equation];
             let before = model.memory(LONGEST_MEMORY);
             let rows = z.w.nrows() + before;
@@ -81,13 +89,20 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
                 }
             }
         }
+        if !innovations.is_empty() {
+            parts.push(MotionPart { information, spread, right });
+        }
     }
+    let factors = factors(&parts, k);
+    let zero = || DMatrix::<f64>::zeros(k, k);
+    let mut information = parts.iter().fold(zero(), |sum, part| sum + &part.information);
+    let spread = parts.iter().fold(zero(), |sum, part| sum + &part.spread);
     if let Some(noise) = solved.noise_of_columns {
         information -= noise;
     }
     let inverse = if same { inverse(&information)? } else { information.try_inverse()? };
-    let variances: Vec<f64> =
-        (0..k).map(|l| (inverse.row(l) * &spread * inverse.row(l).transpose())[(0, 0)]).collect();
+    let of = |l: usize| factors[l] * (inverse.row(l) * &spread * inverse.row(l).transpose())[(0, 0)];
+    let variances: Vec<f64> = (0..k).map(of).collect();
     variances.iter().all(|v| v.is_finite() && *v >= 0.0).then_some(variances)
 }
 

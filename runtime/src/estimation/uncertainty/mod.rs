@@ -1,6 +1,7 @@
 //! How much an estimate can be believed: variances of groups, noise that lasts, covariances.
 
 mod autoregression;
+mod between;
 mod covariance;
 mod gamma;
 mod moderation;

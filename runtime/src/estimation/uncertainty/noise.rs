@@ -60,9 +60,10 @@ impl Noise {
         Some(Noise { equations, correlation, fit })
     }
 
-    /// For each row of a series the square of its own innovation in units of its variance, corrected for what the fit takes
-    /// of it (1 where a row is not used): what stands for the variance where that differs from row to row (White 1980;
-    /// HC2 of MacKinnon and White 1985).
+    /// For each row of a series the square of its own innovation in units of its variance (1 where a row is not used): what
+    /// stands for the variance where that differs from row to row (White 1980). The innovation is that of a fit without the
+    /// row: the jackknife, HC3 of MacKinnon and White 1985. With a few rows for each parameter the squares that only give
+    /// back what the fit takes (HC2) are too small by experience (Long and Ervin 2000).
     pub fn own_squares(&self, series: &Series) -> Vec<f64> {
         let model = &self.equations[series.equation];
         let white = whitened(series, model);
@@ -76,7 +77,7 @@ impl Noise {
             let columns = white.row(row);
             let predicted: f64 = (0..last).map(|c| columns[c] * self.fit.chi[series.places[c]]).sum();
             let leverage: f64 = (0..last).map(|c| columns[c] * taken[(row, c)]).sum();
-            squares[t] = (columns[last] - predicted).powi(2) / (1.0 - leverage).max(f64::EPSILON);
+            squares[t] = ((columns[last] - predicted) / (1.0 - leverage).max(f64::EPSILON)).powi(2);
         }
         squares
     }
