@@ -78,7 +78,7 @@ pub enum AngleUnit {
     Degrees,
 }
 
-/// What may have been mistaken about the table, and about signs of single joints. The joint that was mistaken
+/// What may have been mistaken about the table, and about signs and units of single joints. The joint that was mistaken
 /// need not be the one that is explained worst: what it is coupled to is as wrong.
 pub(super) fn single_mistakes(robot: &Robot) -> Vec<Instead> {
     let mut all: Vec<Instead> = table::other_gravities(robot).map(Instead::Gravity).collect();
@@ -87,20 +87,17 @@ pub(super) fn single_mistakes(robot: &Robot) -> Vec<Instead> {
     }
     for joint in (0..robot.joints()).map(JointIndex) {
         all.extend([Signal::Position, Signal::Torque, Signal::Both].map(|of| Instead::Sign { of, joint }));
+        all.extend([THOUSAND, 1.0 / THOUSAND].map(|factor| Instead::Scale { joint, factor }));
     }
     all
 }
 
-/// What else may have been mistaken about the joints that are explained poorly, and units of single joints: what is a
-/// thousand times too large or too small leaves hardly anything explained of its joint, or of those it is coupled to.
+/// What else may have been mistaken about the joints that are explained poorly.
 pub(super) fn mistakes(robot: &Robot, own: &PhysicalFit) -> Vec<Instead> {
     let kinds = robot.joint_kinds();
     let n = kinds.len();
     let poor: Vec<bool> = own.per_equation.iter().map(|e| e.is_some_and(|e| e > POOR)).collect();
     let mut all = Vec::new();
-    for joint in (0..n).map(JointIndex) {
-        all.extend([THOUSAND, 1.0 / THOUSAND].map(|factor| Instead::Scale { joint, factor }));
-    }
     for joint in (0..n).filter(|&j| poor[j] && kinds[j] == JointKind::Revolute) {
         let joint = JointIndex(joint);
         all.extend([90, -90, 180].map(|degrees| Instead::Offset { joint, degrees }));

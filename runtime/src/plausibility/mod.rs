@@ -18,11 +18,11 @@ use instead::{POOR, mistakes, single_mistakes};
 
 /// Strain from which the parameters are said not to be those of a real robot.
 const STRAINED: f64 = 1.1;
-/// A joint's error, and a strain, from which gravity and signs of single joints are tried. That costs time only: what is
-/// believed is decided by [`ROBOT`] and [`MISTAKE`].
+/// A joint's error, and a strain, from which gravity, and signs and units of single joints are tried. That costs time
+/// only: what is believed is decided by [`ROBOT`] and [`MISTAKE`].
 const DOUBTFUL: f64 = 0.125;
 const TENSE: f64 = 1.05;
-/// A joint's error, and a strain, from which orders, units and offsets are tried as well.
+/// A joint's error, and a strain, from which orders, units of angles and offsets are tried as well.
 const BAD: f64 = 0.5;
 const OVERSTRAINED: f64 = 2.0;
 /// Another robot is believed where it lowers the joints' errors by this factor, on their geometric mean.
@@ -77,8 +77,8 @@ pub enum Verdict {
 ///
 /// The free fit is compared with the best one that a real robot can have ([`physical_fit`]). Where physics costs
 /// something or a joint is explained poorly, other robots of the same joints are tried, other directions of gravity, and
-/// signs of single joints; where it costs much or a joint is explained badly, so are orders of columns, units of angles
-/// and of single joints, and offsets.
+/// signs and units of single joints; where it costs much or a joint is explained badly, so are orders of columns, units
+/// of angles and offsets.
 pub fn judge(
     judged: &Judged<'_>,
     torques: &Observation,
