@@ -157,6 +157,12 @@ fn better(
             let promising = |free: &[Option<f64>]| ratio(&own.per_equation, free) >= PROMISING * enough;
             let fit = candidate.fit(judged, others, promising)?;
             let better = ratio(&own.per_equation, &fit.per_equation);
+            // A factor of a thousand is the worst that is wrong: what is explained worst is explained by it.
+            let [before, after] =
+                [own, &fit].map(|f| errors_of(&f.per_equation).into_iter().fold(0.0, f64::max));
+            if matches!(candidate, Instead::Scale { .. }) && MISTAKE * after > before {
+                return None;
+            }
             (better >= enough).then_some((better, candidate, fit.relative_error?))
         })
         .collect();
