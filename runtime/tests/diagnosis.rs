@@ -183,6 +183,19 @@ fn a_spring_on_a_revolute_joint_is_told_from_gravity() {
 }
 
 #[test]
+fn a_torque_that_bends_with_the_position_is_no_spring() {
+    let robot = scara();
+    // No line and no lever bends as often.
+    let curve = [0.0, 0.0, 2.0, 0.0, 2.0];
+    let hidden = Hidden::effect(EffectKind::PositionDependentTorque, Place::Joint(0), &[0.0, 2.1], &curve);
+    let diagnosis = diagnosed(robot, &hidden);
+    assert_only(&diagnosis, EffectKind::PositionDependentTorque, &[1]);
+    // Highest less lowest value of numpy.polynomial.legendre.legval(q / 2.1, [0, 0, 0, 2, 0, 2]) over the travel of the
+    // motions, -1.89 to 0.97 rad.
+    assert_within_four_sigma(&diagnosis, "swing", 1.962);
+}
+
+#[test]
 fn a_spring_on_a_slide_is_named_in_newton_per_metre() {
     let robot = scara();
     let hidden = Hidden::effect(EffectKind::Spring, Place::Joint(2), &[], &[100.0]);

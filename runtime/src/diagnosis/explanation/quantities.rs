@@ -7,7 +7,7 @@ use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, Parameter};
+use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, Parameter, Step};
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
 /// derivative of the columns (variable projection, Golub and Pereyra 1973).
@@ -27,9 +27,13 @@ pub(in crate::diagnosis) fn uncertainty(
     };
     let start = design.columns.len();
     let mut varied = Vec::new();
-    // The shape of a sensitivity is its amplitude once more.
-    let own_shape = !term.effect.form().shape_is_amplitude();
-    for (i, &value) in term.shape.iter().enumerate().filter(|_| own_shape) {
+    let form = term.effect.form();
+    let steps = form.shape_search(term.place, &model.context.scales, &[]).steps;
+    // What the search does not vary chooses between forms of the law, and is no estimate. The shape of a sensitivity is
+    // its amplitude once more.
+    let estimated =
+        |i: usize| !form.shape_is_amplitude() && steps.get(i).is_some_and(|step| !matches!(step, Step::Keep));
+    for (i, &value) in term.shape.iter().enumerate().filter(|(i, _)| estimated(*i)) {
         let step = SHAPE_STEP * value.abs().max(1e-6);
         let moved = |s: f64| {
             let mut shape = term.shape.clone();
