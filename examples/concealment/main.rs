@@ -12,6 +12,7 @@ mod failure;
 mod hide;
 mod hiding;
 mod hiding_table;
+mod in_parallel;
 mod journal;
 mod motions;
 mod options;
@@ -19,6 +20,7 @@ mod page;
 mod places;
 mod put;
 mod random;
+mod residual;
 mod score;
 mod secret;
 mod seen;
@@ -27,8 +29,6 @@ mod visible;
 mod words;
 
 use std::io::Write;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use clap::Parser;
@@ -38,6 +38,7 @@ use dynid_runtime::effects::EffectKind;
 use case::Case;
 use failure::Failure;
 use hide::{draw, recordings};
+use in_parallel::in_parallel;
 use journal::Journal;
 use options::Options;
 use random::Random;
@@ -49,7 +50,7 @@ fn main() -> Result<(), Failure> {
     let cases = cases(&options)?;
     let start = Instant::now();
     if let Some(folder) = &options.dump {
-        let failed = in_parallel(&cases, options.threads, |case| {
+        let failed = in_parallel(&cases, options.threads, Case::name, |case| {
             let model = models::find(&case.robot).ok_or("no such robot")?;
             let recordings = recordings(model, case, true)?;
             dump::write(folder, model.robot(), case, &recordings)?;
@@ -61,7 +62,7 @@ fn main() -> Result<(), Failure> {
         return Ok(());
     }
     if options.visible {
-        let seen = in_parallel(&cases, options.threads, |case| {
+        let seen = in_parallel(&cases, options.threads, Case::name, |case| {
             let model = models::find(&case.robot).ok_or("no such robot")?;
             let drawn = draw(model, case)?;
             Ok((words::hidden_in_words(&drawn.hidden), drawn.hidden))
@@ -70,7 +71,7 @@ fn main() -> Result<(), Failure> {
         return finish(&options, &seen::what_can_be_seen(&cases, &seen, &options, minutes));
     }
     let journal = options.journal.as_deref().map(Journal::open).transpose()?;
-    let scores: Vec<Score> = in_parallel(&cases, options.threads, |case| {
+    let scores: Vec<Score> = in_parallel(&cases, options.threads, Case::name, |case| {
         if let Some(score) = journal.as_ref().and_then(|j| j.done(case)) {
             return Ok((words::in_a_line(&score), score));
         }
@@ -154,36 +155,4 @@ fn partner(
         .collect();
     let drawn = Random::of(&["partner", robot, size, first.id()], seed).below(possible.len());
     possible.get(drawn).copied()
-}
-
-/// Does something with every case, on several threads; the order of the results is that of the cases. Each is told on
-/// standard error as it ends; one that fails gives `None`.
-fn in_parallel<T: Send>(
-    cases: &[Case],
-    threads: usize,
-    work: impl Fn(&Case) -> Result<(String, T), Failure> + Sync,
-) -> Vec<Option<T>> {
-    let next = AtomicUsize::new(0);
-    let done = AtomicUsize::new(0);
-    let results: Mutex<Vec<Option<T>>> = Mutex::new(cases.iter().map(|_| None).collect());
-    std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            scope.spawn(|| {
-                while let Some((k, case)) =
-                    Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, cases.get(k)?)))
-                {
-                    let (words, result) = match work(case) {
-                        Ok((words, result)) => (words, Some(result)),
-                        Err(error) => (error.to_string(), None),
-                    };
-                    let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    eprintln!("{finished}/{} {}: {words}", cases.len(), case.name());
-                    if let Ok(mut all) = results.lock() {
-                        all[k] = result;
-                    }
-                }
-            });
-        }
-    });
-    results.into_inner().unwrap_or_default()
 }

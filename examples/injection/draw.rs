@@ -1,7 +1,8 @@
 //! A law of the catalogue at a random place with a random shape.
 
-use dynid_runtime::effects::{EffectKind, EffectTerm, Form, Place, Scale, TermScale};
-use dynid_runtime::model::{JointKind, Model, StateSlices, torques};
+use dynid_runtime::diagnosis::joint_scales;
+use dynid_runtime::effects::{EffectKind, EffectTerm, Form, Place, TermScale};
+use dynid_runtime::model::Model;
 use dynid_runtime::signal::Motion;
 
 use crate::random::Random;
@@ -15,7 +16,7 @@ pub fn draw(
     random: &mut Random,
 ) -> Option<EffectTerm> {
     let robot = model.robot();
-    let scales = scales(model, motions, chi);
+    let scales = joint_scales(model, motions, chi);
     let places = effect.form().places(robot);
     let place = *places.get(random.below(places.len()))?;
     let shapes = effect.form().shapes(place, &scales);
@@ -29,15 +30,7 @@ pub fn draw(
         Form::Sensitivity(_) | Form::Coupled => vec![if random.share() < 0.5 { -1.0 } else { 1.0 }],
         Form::Compliance(_) | Form::Window => return None,
     };
-    let scale = place.joint().and_then(|j| scales.get(j)).map(|s| TermScale {
-        speed: s.speed,
-        range: s.range,
-        centre: s.centre,
-        torque: s.torque,
-        duration: s.duration,
-        gear: s.gear,
-        prismatic: s.prismatic,
-    });
+    let scale = place.joint().and_then(|j| scales.get(j)).map(|s| TermScale::from(*s));
     let numbers = effect.form().named_joints(robot, place);
     let sigma = vec![0.0; amplitude.len()];
     Some(EffectTerm {
@@ -63,39 +56,4 @@ fn body(random: &mut Random) -> Vec<f64> {
 /// Whether an effect is at a place that is no joint's.
 pub fn is_of_the_robot(place: Place) -> bool {
     place.joint().is_none()
-}
-
-fn scales(model: &dyn Model, motions: &[Motion], chi: &[f64]) -> Vec<Scale> {
-    let robot = model.robot();
-    let n = robot.joints();
-    let kinds = robot.joint_kinds();
-    (0..n)
-        .map(|j| {
-            let of = |signal: fn(&Motion) -> &Vec<Vec<f64>>| -> Vec<f64> {
-                motions.iter().flat_map(|m| signal(m)[j].clone()).collect()
-            };
-            let (q, mut dq) = (of(|m| &m.q), of(|m| &m.dq));
-            dq.iter_mut().for_each(|v| *v = v.abs());
-            dq.sort_by(f64::total_cmp);
-            let [low, high] = [
-                q.iter().copied().fold(f64::INFINITY, f64::min),
-                q.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            ];
-            let torque = motions
-                .iter()
-                .flat_map(|m| {
-                    torques(model, chi, StateSlices::new(&m.q, &m.dq, &m.ddq).states()).swap_remove(j)
-                })
-                .fold(0.0, |most: f64, x| most.max(x.abs()));
-            Scale {
-                speed: dq.get(dq.len() * 98 / 100).copied().unwrap_or(0.0).max(1e-9),
-                range: (high - low).max(1e-9),
-                centre: 0.5 * (low + high),
-                torque: torque.max(1e-9),
-                duration: motions.iter().map(|m| m.start + m.q[j].len() as f64 / m.rate).fold(0.0, f64::max),
-                gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),
-                prismatic: kinds[j] == JointKind::Prismatic,
-            }
-        })
-        .collect()
 }

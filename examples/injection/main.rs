@@ -8,25 +8,28 @@
 //! the window without the law is not held against the diagnosis; `none` in the list of effects gives it.
 
 mod draw;
+#[path = "../concealment/failure.rs"]
+mod failure;
+mod fit;
+#[path = "../concealment/in_parallel.rs"]
+mod in_parallel;
 mod options;
 #[path = "../concealment/random.rs"]
 mod random;
+#[path = "../concealment/residual.rs"]
 mod residual;
 mod run;
 
 use std::collections::BTreeMap;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Parser;
 use dynid::arguments::Source;
 use dynid::recorded::measure;
 
+use failure::Failure;
+use in_parallel::in_parallel;
 use options::Options;
 use run::{Case, Outcome, Recordings};
-
-/// Anything that ends a run.
-type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 fn main() -> Result<(), Failure> {
     let options = Options::parse();
@@ -39,35 +42,15 @@ fn main() -> Result<(), Failure> {
     let model = recording.dynamics.model();
     let recordings = Recordings { model, motions: &recording.trajectories, baseline: &baseline };
     let cases = Case::all(&options)?;
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let outcomes: Mutex<BTreeMap<usize, Outcome>> = Mutex::new(BTreeMap::new());
-    std::thread::scope(|scope| {
-        for _ in 0..options.threads.max(1) {
-            scope.spawn(|| {
-                while let Some((k, case)) =
-                    Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, cases.get(k)?)))
-                {
-                    let outcome = run::run(&recordings, case, &options);
-                    let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    match outcome {
-                        Ok(outcome) => {
-                            eprintln!("{finished}/{} {}: {outcome}", cases.len(), case.name());
-                            if let Ok(mut all) = outcomes.lock() {
-                                all.insert(k, outcome);
-                            }
-                        }
-                        Err(error) => eprintln!("{finished}/{} {}: {error}", cases.len(), case.name()),
-                    }
-                }
-            });
-        }
+    let outcomes: Vec<Option<Outcome>> = in_parallel(&cases, options.threads, Case::name, |case| {
+        let outcome = run::run(&recordings, case, &options)?;
+        Ok((outcome.to_string(), outcome))
     });
-    let outcomes = outcomes.into_inner().unwrap_or_default();
     println!("| effect | size | runs | named | told apart not | something on its joint | something false |");
     println!("|---|---|---|---|---|---|---|");
     let mut rows: BTreeMap<(String, String), [usize; 5]> = BTreeMap::new();
-    for (k, outcome) in &outcomes {
-        let case = &cases[*k];
+    for (case, outcome) in cases.iter().zip(&outcomes) {
+        let Some(outcome) = outcome else { continue };
         for key in [(case.effect_id(), case.size_in_words()), ("all".into(), case.size_in_words())] {
             let row = rows.entry(key).or_default();
             let counted = [

@@ -10,11 +10,12 @@ use dynid_runtime::model::Model;
 use dynid_runtime::prediction::{Comparison, Predictor};
 use dynid_runtime::recording::Trajectory;
 
-use crate::Failure;
 use crate::draw::{draw, is_of_the_robot};
+use crate::failure::Failure;
+use crate::fit::{Fitted, fit};
 use crate::options::Options;
 use crate::random::Random;
-use crate::residual::{Fitted, fit};
+use crate::residual::beside;
 
 /// What windows are cut from.
 pub struct Recordings<'a> {
@@ -214,7 +215,7 @@ fn resize(
         term.amplitude.iter_mut().for_each(|a| *a *= factor);
         let with = fit(model, &[added(model, &plain[0], fitted, term)?], known)?;
         let left = with.residual.iter().zip(&fitted.residual);
-        seen = left.map(|(r, r0)| (r * r - r0 * r0).max(0.0).sqrt() / r0.max(1e-12)).fold(0.0, f64::max);
+        seen = left.map(|(r, r0)| beside(*r, *r0)).fold(0.0, f64::max);
         factor = (wanted / seen.max(0.1 * wanted)).min(10.0);
         if (factor - 1.0).abs() < 0.1 {
             break;

@@ -101,7 +101,7 @@ pub use outcome::{
     OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
     StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
-pub use predict::term_torques;
+pub use predict::{joint_scales, term_torques};
 pub use settings::{Progress, Settings, Silent};
 
 use crate::effects::EffectKind;
@@ -123,7 +123,7 @@ pub fn diagnose(
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = Recordings { trajectories, baseline };
-    stages::run(model, recordings, None, &mut |_| Vec::new(), settings, progress)
+    stages::run(model, recordings, None, None, settings, progress)
 }
 
 /// As [`diagnose`], without what there are `objections` to.
@@ -135,7 +135,7 @@ pub(crate) fn diagnose_despite(
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = Recordings { trajectories, baseline };
-    stages::run(model, recordings, None, objections, settings, progress)
+    stages::run(model, recordings, None, Some(objections), settings, progress)
 }
 
 /// Fits known effects, on a joint (0-based) where one is given, instead of looking for any: their shapes and
@@ -151,5 +151,5 @@ pub fn fit_known(
     settings: &Settings,
 ) -> Result<Diagnosis, DiagnosisError> {
     let recordings = Recordings { trajectories, baseline };
-    stages::run(model, recordings, Some(known), &mut |_| Vec::new(), settings, &Silent)
+    stages::run(model, recordings, Some(known), None, settings, &Silent)
 }

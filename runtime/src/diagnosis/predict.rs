@@ -4,9 +4,16 @@ use super::error::DiagnosisError;
 use super::rows::context::Context;
 use super::rows::scales::scales;
 use super::rows::signals::Signals;
-use crate::effects::{EffectTerm, Place};
+use crate::effects::{EffectTerm, Place, Scale};
 use crate::model::Model;
 use crate::signal::Motion;
+
+/// How fast, how far and how hard each joint moves in motions, with the base parameters `chi`: what the shapes of laws are
+/// multiples of.
+pub fn joint_scales(model: &dyn Model, motions: &[Motion], chi: &[f64]) -> Vec<Scale> {
+    let signals: Vec<Signals> = motions.iter().map(Signals::of_motion).collect();
+    scales(model, &signals, chi)
+}
 
 /// Torques of terms on a motion, to be added to those of the standard model: `[j][t]`, N.m or N.
 ///

@@ -32,7 +32,7 @@ pub(super) fn run(
     model: &dyn Model,
     recordings: Recordings<'_>,
     known: Option<&[(EffectKind, Option<usize>)]>,
-    objections: &mut Objections<'_>,
+    mut objections: Option<&mut Objections<'_>>,
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
@@ -54,7 +54,8 @@ pub(super) fn run(
         progress.at(0.1, "candidates");
         let Begun { mut search, standard, sampling } =
             begin(model, &prepared, pushes.set_aside().as_ref(), change, (&settings, progress))?;
-        let without_effects = search.model.copy()?;
+        // Where there may be objections, the search can go on from here.
+        let without_effects = objections.is_some().then(|| search.model.copy()).transpose()?;
         loop {
             let report = match known {
                 Some(known) => search.force(known)?,
@@ -82,12 +83,14 @@ pub(super) fn run(
             standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
 
             // 6. What other evidence speaks against is left out, and the search goes on.
-            let objected = objections(&mut diagnosis);
-            if objected.is_empty() {
-                progress.at(1.0, "done");
-                return Ok(diagnosis);
+            let objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
+            match &without_effects {
+                Some(model) if !objected.is_empty() => search.go_on_without(&objected, model.copy()?)?,
+                _ => {
+                    progress.at(1.0, "done");
+                    return Ok(diagnosis);
+                }
             }
-            search.go_on_without(&objected, without_effects.copy()?)?;
             settings.excluded.extend(objected);
         }
     }

@@ -110,22 +110,24 @@ mod tests {
         signals
     }
 
+    /// Of the swing.
+    const SWING: Scale = Scale {
+        speed: 1.3,
+        range: 2.0,
+        centre: 0.0,
+        torque: 1.0,
+        duration: 40.0,
+        gear: 50.0,
+        prismatic: false,
+    };
+
     #[test]
     fn a_ripple_is_a_peak_at_its_order_and_of_its_amplitude() {
         let signals = [swing(40.0)];
-        let scale = Scale {
-            speed: 1.3,
-            range: 2.0,
-            centre: 0.0,
-            torque: 1.0,
-            duration: 40.0,
-            gear: 50.0,
-            prismatic: false,
-        };
         for order in [50.0, 101.5] {
             let ripple = |q: &f64| 0.3 * (order * q + 0.7).cos();
             let residual = [signals[0].q[0].iter().map(ripple).collect::<Vec<f64>>()];
-            let spectrum = order_spectrum(0, &signals, &residual, &scale, 0.05);
+            let spectrum = order_spectrum(0, &signals, &residual, &SWING, 0.05);
             let found = peaks(&spectrum, 2);
             assert!((found[0] - order).abs() < 1.3, "{order}: {found:?}");
             let highest = spectrum.amplitude.iter().fold(0.0_f64, |a, &b| a.max(b));
@@ -136,16 +138,7 @@ mod tests {
     #[test]
     fn a_residual_that_is_flat_has_no_peaks() {
         let signals = [swing(40.0)];
-        let scale = Scale {
-            speed: 1.3,
-            range: 2.0,
-            centre: 0.0,
-            torque: 1.0,
-            duration: 40.0,
-            gear: 50.0,
-            prismatic: false,
-        };
-        let spectrum = order_spectrum(0, &signals, &[vec![0.0; signals[0].len()]], &scale, 0.05);
+        let spectrum = order_spectrum(0, &signals, &[vec![0.0; signals[0].len()]], &SWING, 0.05);
         assert!(peaks(&spectrum, 2).is_empty());
     }
 }

@@ -3,6 +3,7 @@ use crate::diagnosis::judging::units::{Unit, Units};
 use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::ops::Range;
 
 const ROWS: usize = 150;
 
@@ -101,6 +102,12 @@ fn rates(seed: u64, files: usize, baseline: bool, amplitude: f64, spread: f64, l
     below.map(|b| b as f64 / f64::from(runs))
 }
 
+/// One joint with nothing but its torque.
+fn plain<'a>(y: &'a [f64], all: &'a Range<usize>) -> Regressors<'a> {
+    static NONE: [Vec<Vec<f64>>; 1] = [Vec::new()];
+    Regressors { shared: &[], y, free: &NONE, companions: &NONE, of_joint: std::slice::from_ref(all) }
+}
+
 #[test]
 fn a_law_that_varies_anyway_is_no_change_however_well_its_noise_is_known() {
     let [calibrated, naive] = rates(5, 12, true, 0.0, 1.0, 0.01);
@@ -133,13 +140,7 @@ fn a_law_that_is_in_both_recordings_is_no_change() {
     let y: Vec<f64> = noise(&mut rng, rows).iter().zip(&law).map(|(n, l)| n + 5.0 * l).collect();
     let residual: Vec<f64> = y.iter().zip(&law).map(|(y, l)| y - 5.0 * l).collect();
     let all = 0..rows;
-    let regressors = Regressors {
-        shared: &[],
-        y: &y,
-        free: &[vec![]],
-        companions: &[vec![]],
-        of_joint: std::slice::from_ref(&all),
-    };
+    let regressors = plain(&y, &all);
     let tail = |common| {
         let law = std::slice::from_ref(&law);
         let found = alone(&units(files, true), &regressors, law, &residual, common).expect("determined");
@@ -155,13 +156,7 @@ fn a_column_that_the_model_makes_itself_has_no_evidence() {
     let (y, column) = (noise(&mut rng, rows), wave(&mut rng, rows));
     let all = 0..rows;
     let shared = [column.clone()];
-    let regressors = Regressors {
-        shared: &shared,
-        y: &y,
-        free: &[vec![]],
-        companions: &[vec![]],
-        of_joint: std::slice::from_ref(&all),
-    };
+    let regressors = Regressors { shared: &shared, ..plain(&y, &all) };
     assert_eq!(alone(&units(10, false), &regressors, &[column], &y, false), None);
 }
 
@@ -182,13 +177,7 @@ fn of_two_laws_the_true_one_is_told_apart_only_where_it_is_well_ahead() {
             let rival: Vec<f64> = law.iter().zip(&other).map(|(a, b)| a + b).collect();
             let noise = noise(&mut rng, rows);
             let y: Vec<f64> = noise.iter().zip(&law).map(|(n, l)| n + amplitude * l).collect();
-            let regressors = Regressors {
-                shared: &[],
-                y: &y,
-                free: &[vec![]],
-                companions: &[vec![]],
-                of_joint: std::slice::from_ref(&all),
-            };
+            let regressors = plain(&y, &all);
             let judged = |law: &[f64]| alone(&units, &regressors, &[law.to_vec()], &y, false);
             let (Some(a), Some(b)) = (judged(&law), judged(&rival)) else { continue };
             right += usize::from(rival_p_value(&a, &b, a.squares - b.squares) < 0.05);

@@ -166,6 +166,10 @@ impl Search<'_> {
 
     /// Laws that are certainly there beside the model as it is, and too small to be named.
     pub(in crate::diagnosis) fn small(&self, settings: &Settings) -> Vec<SmallLaw> {
+        if !self.model.change {
+            // Nothing of one recording is too small for what differs between days.
+            return Vec::new();
+        }
         let mut ranked = self.ranked(None);
         ranked.retain(|r| r.verdict.total() > 0.0 && r.verdict.fitted_fraction > 0.0);
         ranked.truncate(MOST_COMPARED);
