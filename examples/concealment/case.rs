@@ -2,6 +2,7 @@
 
 use dynid_runtime::effects::EffectKind;
 
+use crate::recorder::Recorder;
 use crate::size::SIZES;
 
 /// One simulation and one diagnosis.
@@ -17,6 +18,8 @@ pub struct Case {
     pub seed: u64,
     /// Duration of its one motion, s; `None` for one to three of the usual length.
     pub seconds: Option<f64>,
+    /// How it is recorded.
+    pub recorder: Recorder,
 }
 
 impl Case {
@@ -25,7 +28,11 @@ impl Case {
         let hidden: Vec<&str> = self.effects.iter().map(|e| e.id()).collect();
         let hidden = if hidden.is_empty() { "none".to_owned() } else { hidden.join("+") };
         let length = self.seconds.map_or_else(String::new, |s| format!("_{s}s"));
-        format!("{}_{hidden}_{}_{}{length}", self.robot, self.size_name(), self.seed)
+        let recorder = match self.recorder {
+            Recorder::White => String::new(),
+            other => format!("_{}", other.name()),
+        };
+        format!("{}_{hidden}_{}_{}{length}{recorder}", self.robot, self.size_name(), self.seed)
     }
 
     pub fn size_name(&self) -> &'static str {

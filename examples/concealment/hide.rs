@@ -71,8 +71,8 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
     let mut secrets: Vec<(Secret, f64)> = Vec::new();
     let mut hidden = Vec::new();
     for &effect in &case.effects {
-        let taken = secrets.first().and_then(|(s, _)| s.joint);
-        let mut secret = Secret::draw(effect, model, taken, &mut random)
+        let taken: Vec<usize> = secrets.iter().filter_map(|(s, _)| s.joint).collect();
+        let mut secret = Secret::draw(effect, model, &taken, &mut random)
             .ok_or_else(|| format!("{} has no joint that can hide {}", case.robot, effect.id()))?;
         if let (EffectKind::TorqueSaturation, Some(joint)) = (effect, secret.joint) {
             secret.most_torque = most_torque(&recorded(&plain(model)?, &motions, &[], noise)?, joint);
@@ -117,7 +117,14 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
         test = recorded(&world, &planned, &lasting, noise.wrapping_add(200))?;
     }
     let motions = recorded(&world, &motions, &secrets, noise)?;
-    Ok(Recordings { hidden, motions, baseline, test })
+    let mut recordings = Recordings { hidden, motions, baseline, test };
+    let parts = [&mut recordings.motions, &mut recordings.baseline, &mut recordings.test];
+    for (part, motions) in (0..).zip(parts) {
+        for motion in motions {
+            case.recorder.alter(model.robot(), motion, (case.seed, part));
+        }
+    }
+    Ok(recordings)
 }
 
 /// Largest torque of a joint in recordings, N.m or N.

@@ -55,6 +55,7 @@ impl Journal {
 mod tests {
     use super::*;
     use crate::hide::Hidden;
+    use crate::recorder::Recorder;
     use crate::score::Outcome;
     use dynid_runtime::effects::EffectKind;
 
@@ -66,6 +67,7 @@ mod tests {
             size: 1,
             seed,
             seconds: Some(5.0),
+            recorder: Recorder::White,
         };
         let hidden = Hidden {
             effect: EffectKind::Stribeck,

@@ -6,6 +6,7 @@
 //! a random joint. The diagnosis gets the recorded motions alone. Runs without any effect give the rate of false
 //! alarms. With `--dump` the recordings are written as folders of a challenge, and nothing is diagnosed.
 
+mod calibration;
 mod case;
 mod dump;
 mod failure;
@@ -20,6 +21,7 @@ mod page;
 mod places;
 mod put;
 mod random;
+mod recorder;
 mod residual;
 mod score;
 mod secret;
@@ -115,7 +117,9 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
         effects = EffectKind::ALL.into_iter().map(|e| vec![e]).chain([Vec::new()]).collect();
     }
     let mut cases = Vec::new();
-    for seed in options.first_seed..options.first_seed + options.seeds {
+    for (seed, &recorder) in
+        (options.first_seed..options.first_seed + options.seeds).zip(options.recorders.iter().cycle())
+    {
         for robot in &options.robots {
             models::find(robot).ok_or_else(|| format!("--robots {robot}: robots/ has no such robot"))?;
             for hidden in &effects {
@@ -125,13 +129,14 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
                         .position(|s| s == name)
                         .ok_or_else(|| format!("--sizes {name}: one of {}", SIZES.join(", ")))?;
                     let mut hidden = hidden.clone();
-                    if options.pairs {
+                    if options.together > 1 {
                         let Some(&first) = hidden.first() else { continue };
-                        hidden.extend(partner(first, &effects, robot, name, seed));
+                        hidden.extend(partners(first, &effects, options.together - 1, (robot, name, seed)));
                     }
                     // Without an effect a size is only another run.
                     let seconds = options.seconds;
-                    cases.push(Case { robot: robot.clone(), effects: hidden, size, seed, seconds });
+                    let robot = robot.clone();
+                    cases.push(Case { robot, effects: hidden, size, seed, seconds, recorder });
                 }
             }
         }
@@ -139,20 +144,21 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
     Ok(cases)
 }
 
-/// Another effect of the list that can be hidden with `first`: both are changes, or none is.
-fn partner(
+/// Other effects of the list that can be hidden with `first`, as many as there are up to `count`: all are changes, or
+/// none is.
+fn partners(
     first: EffectKind,
     effects: &[Vec<EffectKind>],
-    robot: &str,
-    size: &str,
-    seed: u64,
-) -> Option<EffectKind> {
-    let possible: Vec<EffectKind> = effects
+    count: u8,
+    (robot, size, seed): (&str, &str, u64),
+) -> Vec<EffectKind> {
+    let mut possible: Vec<EffectKind> = effects
         .iter()
         .flatten()
         .copied()
         .filter(|&e| e != first && secret::is_change(e) == secret::is_change(first))
         .collect();
-    let drawn = Random::of(&["partner", robot, size, first.id()], seed).below(possible.len());
-    possible.get(drawn).copied()
+    let mut random = Random::of(&["partner", robot, size, first.id()], seed);
+    let drawn = usize::from(count).min(possible.len());
+    (0..drawn).map(|_| possible.swap_remove(random.below(possible.len()))).collect()
 }

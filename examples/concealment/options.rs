@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
+use crate::recorder::Recorder;
+
 /// What to hide, and where the table goes.
 #[derive(Debug, Parser)]
 pub struct Options {
@@ -22,9 +24,12 @@ pub struct Options {
     /// The first seed
     #[arg(long, default_value_t = 1)]
     pub first_seed: u64,
-    /// Hide two effects at once: each effect with another one of the list
-    #[arg(long)]
-    pub pairs: bool,
+    /// Hide so many effects at once: each effect with others of the list
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub together: u8,
+    /// How torques and positions are recorded; each seed takes the next one of the list
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "white")]
+    pub recorders: Vec<Recorder>,
     /// One motion of this duration, s, instead of one to three of 16 to 24 s together
     #[arg(long)]
     pub seconds: Option<f64>,

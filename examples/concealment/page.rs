@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use dynid_runtime::effects::EffectKind;
 
+use crate::calibration::calibration;
 use crate::case::Case;
 use crate::hide::Hidden;
 use crate::hiding;
@@ -25,6 +26,7 @@ pub fn markdown(cases: &[Case], scores: &[Score], options: &Options) -> String {
     rates(&mut text, &all, &effects);
     by_visibility(&mut text, &all);
     robots(&mut text, &all, options);
+    calibration(&mut text, scores);
     confusion(&mut text, &all, &effects);
     what_is_hidden(&mut text, &effects);
     every_run(&mut text, &all);
@@ -33,14 +35,14 @@ pub fn markdown(cases: &[Case], scores: &[Score], options: &Options) -> String {
 
 fn introduction(text: &mut String, all: &[Pair<'_>], options: &Options) {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let how = if options.pairs { "two at a time" } else { "one at a time" };
+    let how = ["one", "two", "three", "four"][usize::from(options.together - 1).min(3)];
     let motions = options.seconds.map_or_else(
         || "one to three random motions, 16 to 24 s together".to_owned(),
         |seconds| format!("one random motion of {seconds} s"),
     );
     let _ = writeln!(
         text,
-        "Every effect of the catalogue is hidden in simulated robots, {how}, and diagnosed without being told. A run is \
+        "Every effect of the catalogue is hidden in simulated robots, {how} at a time, and diagnosed without being told. A run is \
          {motions} (Fourier series of 4 to 12 harmonics, or points joined by a \
          profile), at 500 Hz in closed loop, with the nominal noise of the robot. Joint, shape and motions are drawn \
          for each run. Only after the diagnosis is it compared with what was hidden.\n"

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use dynid::models;
-use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
+use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings, Silent, diagnose};
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
@@ -20,6 +20,11 @@ pub struct Score {
     pub others: Vec<(String, Vec<usize>)>,
     /// Effects found anywhere, each once.
     pub found: Vec<String>,
+    /// Of each finding its confidence, and whether it is one of the hidden effects on its joint.
+    pub told: Vec<(f64, bool)>,
+    /// Of the quantities of hidden effects that were named: effect, quantity, and how far the value is from the truth in
+    /// its standard deviations.
+    pub numbers: Vec<(String, String, f64)>,
     /// Why there is no diagnosis.
     pub refused: Option<String>,
     /// Time of the diagnosis, s.
@@ -79,8 +84,11 @@ fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
         if !score.found.contains(&finding.effect) {
             score.found.push(finding.effect.clone());
         }
-        if !hidden.iter().any(|h| finding.effect == h.effect.id() && here(h, &finding.joints)) {
-            score.others.push((finding.effect.clone(), finding.joints.clone()));
+        let truth = hidden.iter().find(|h| finding.effect == h.effect.id() && here(h, &finding.joints));
+        score.told.push((finding.confidence, truth.is_some()));
+        match truth {
+            Some(truth) => score.numbers.extend(deviations(finding, truth)),
+            None => score.others.push((finding.effect.clone(), finding.joints.clone())),
         }
     }
     score.hidden = hidden
@@ -98,4 +106,13 @@ fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
             (h, outcome)
         })
         .collect();
+}
+
+/// How far the quantities that were drawn and that have a standard deviation are from the truth, in those.
+fn deviations(finding: &Finding, truth: &Hidden) -> Vec<(String, String, f64)> {
+    let own = |(name, value): &(&'static str, f64)| {
+        let told = finding.parameters.get(*name).filter(|p| p.sigma > 0.0 && p.sigma.is_finite())?;
+        Some((finding.effect.clone(), (*name).to_owned(), (told.value - value) / told.sigma))
+    };
+    truth.numbers.iter().filter_map(own).collect()
 }

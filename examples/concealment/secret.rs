@@ -20,19 +20,14 @@ pub struct Secret {
 }
 
 impl Secret {
-    /// Draws a place and a shape. A joint that is `taken` is used only where there is no other.
-    pub fn draw(
-        effect: EffectKind,
-        model: &dyn Model,
-        taken: Option<usize>,
-        random: &mut Random,
-    ) -> Option<Self> {
+    /// Draws a place and a shape. Joints that are `taken` are used only where there is no other.
+    pub fn draw(effect: EffectKind, model: &dyn Model, taken: &[usize], random: &mut Random) -> Option<Self> {
         let places = crate::hiding::of(effect)?.places;
         let joint = match places(model) {
             Places::Robot => None,
             Places::Joints(mut joints) => {
-                if joints.len() > 1 {
-                    joints.retain(|j| Some(*j) != taken);
+                if joints.iter().any(|j| !taken.contains(j)) {
+                    joints.retain(|j| !taken.contains(j));
                 }
                 Some(*joints.get(random.below(joints.len()))?)
             }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use crate::hide::Hidden;
 use crate::options::Options;
+use crate::recorder::Recorder;
 use crate::score::{Outcome, Score};
 use crate::size::VISIBLE;
 
@@ -99,8 +100,12 @@ pub fn command(options: &Options) -> String {
     if !options.effects.is_empty() {
         let _ = write!(command, " --effects {}", options.effects.join(","));
     }
-    if options.pairs {
-        command.push_str(" --pairs");
+    if options.together > 1 {
+        let _ = write!(command, " --together {}", options.together);
+    }
+    if options.recorders != [Recorder::White] {
+        let names: Vec<String> = options.recorders.iter().map(|r| r.name()).collect();
+        let _ = write!(command, " --recorders {}", names.join(","));
     }
     if let Some(seconds) = options.seconds {
         let _ = write!(command, " --seconds {seconds}");

@@ -47,7 +47,7 @@ pub fn draw(
 
 /// A cube of 6 cm and 1 kg beside the origin of its frame.
 fn body(random: &mut Random) -> Vec<f64> {
-    let [x, y, z] = [0.0; 3].map(|_| 0.2 * random.share() - 0.1);
+    let [x, y, z] = [0.0; 3].map(|_| random.within(-0.1, 0.1));
     let own = 0.06 * 0.06 / 6.0;
     let (xx, yy, zz) = (own + y * y + z * z, own + x * x + z * z, own + x * x + y * y);
     vec![xx, -x * y, -x * z, yy, -y * z, zz, x, y, z, 1.0]

@@ -5,6 +5,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::Gram;
 use crate::diagnosis::rules::{FIT_RIDGE, LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::ops::Range;
 
 /// A fit of the columns of a design on some of its segments, with weights 1 / sigma² per joint.
 #[derive(Clone)]
@@ -102,6 +103,19 @@ impl Fit {
             }
         }
         r
+    }
+
+    /// Squares, in units of the residual variance, that only these columns explain: Wald's statistic. Nothing where they
+    /// are not determined.
+    pub fn wald(&self, columns: Range<usize>) -> Option<f64> {
+        let (first, k) = (columns.start, columns.len());
+        let unit = DMatrix::from_fn(self.chi.len(), k, |i, c| if i == first + c { 1.0 } else { 0.0 });
+        let covariance = self.factor.solve(&unit).rows(first, k).into_owned();
+        let scaled = DVector::from_fn(k, |c, _| match self.scale[first + c] {
+            scale if scale > 0.0 => self.chi[first + c] / scale,
+            _ => 0.0,
+        });
+        Some(scaled.dot(&covariance.cholesky()?.solve(&scaled)))
     }
 
     /// Variance of each parameter in units of the residual variance.

@@ -5,7 +5,7 @@
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::StopReason;
-use crate::diagnosis::rules::{KEPT_FRACTION, LEVEL_TO_STAY};
+use crate::diagnosis::rules::KEPT_FRACTION;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::round::Winner;
@@ -66,9 +66,10 @@ impl Search<'_> {
             if found.is_empty() {
                 return Ok(StopReason::NoneAccepted);
             }
+            let before = self.own_squares();
             self.model.terms.extend(found);
             self.refit_and_update()?;
-            self.reconsider(settings)?;
+            self.reconsider(&before, settings)?;
         }
         Ok(StopReason::EffectLimit(settings.most_effects))
     }
@@ -111,47 +112,6 @@ impl Search<'_> {
             }
         }
         Ok(SearchReport { stop: StopReason::Given, removed: Vec::new() })
-    }
-
-    /// With a new effect in the model an earlier one may turn out to have been its imitator: each is taken out, and
-    /// the best explanation of its joints is put in its place.
-    fn reconsider(&mut self, settings: &Settings) -> Result<(), SingularDesign> {
-        let mut k = 0;
-        while self.model.terms.len() > 1 && k < self.model.terms.len() - 1 {
-            let old = self.model.terms.remove(k);
-            self.refit_and_update()?;
-            let joint = (old.own.len() < self.model.slow.design.joints).then(|| old.own[0]);
-            // What was certain when it joined stays up to a higher level: its variation is estimated anew in each round.
-            let doubt = (LEVEL_TO_STAY * (1.0 - settings.least_confidence)).min(0.5);
-            let lenient = Settings { least_confidence: 1.0 - doubt, ..settings.clone() };
-            let same = |w: &Winner| {
-                let candidate = &self.candidates(w.window)[w.index];
-                candidate.effect == old.effect && candidate.place == old.place
-            };
-            let winner = self.best(&lenient, joint, 1)?.winner;
-            let holds = |w: &Winner| same(w) || w.confidence >= settings.least_confidence;
-            let replacement = winner.filter(holds).map(|w| self.accept(&w));
-            let keep = match replacement {
-                Some(new) if new.effect == old.effect && new.place == old.place => Some(Accepted {
-                    shape: new.shape,
-                    explained_fraction: new.explained_fraction,
-                    rivals: new.rivals,
-                    ..old.clone()
-                }),
-                other => other,
-            };
-            if let Some(term) = keep {
-                self.model.terms.insert(k, term);
-                self.refit_and_update()?;
-                k += 1;
-            } else {
-                // What no longer holds is left out for good, or it might come and go for ever; those after it move up,
-                // and all are considered anew.
-                self.rejected.push(old);
-                k = 0;
-            }
-        }
-        Ok(())
     }
 
     /// Takes out what no longer earns its place beside the others, and returns it.
