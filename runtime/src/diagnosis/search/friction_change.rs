@@ -3,17 +3,34 @@
 //! It differs between any two days, so it is free in the recording from the start and counts as evidence for nothing
 //! else. What is left of it when everything else has been found is named joint by joint, where it is more than a few
 //! per cent of the friction and more than the baseline's own units differ by.
+//!
+//! On a joint that carries little but its friction, a drive gain that is off by a factor looks like friction that has
+//! changed. What each of the two explains beside the other tells them apart; where neither does, both are said.
 
+use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::calibration::{Law, calibrate};
+use crate::diagnosis::judging::calibration::{Calibrated, Law, beside, calibrate};
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::white_products::{Background, Regressors};
-use crate::diagnosis::rules::LEAST_FRICTION_CHANGE;
+use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
 use crate::diagnosis::search::state::Search;
-use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
 use crate::effects::{EffectKind, Place, SmoothingWindow};
 use nalgebra::{DMatrix, DVector};
+
+/// The law that friction which has changed is told from.
+const DRIVE_GAIN: EffectKind = EffectKind::TorqueConstantError;
+
+/// What has changed on a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Change {
+    Friction,
+    /// Every torque by one factor.
+    DriveGain,
+    /// One of the two, and the motion does not tell which.
+    Either,
+}
 
 impl Search<'_> {
     /// Names the joints whose friction has changed since the baseline.
@@ -43,17 +60,22 @@ impl Search<'_> {
         };
         let residual = regression.residual();
         let background = Background::new(&bench.units, &regressors, &residual, self.threads);
-        let changed: Vec<(usize, Evidence)> = (0..joints)
-            .filter(|&j| !settings.excluded.contains(&(EffectKind::FrictionLevelChange, Place::Joint(j))))
+        let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
+        let changed: Vec<(usize, Evidence, Change)> = (0..joints)
             .filter_map(|j| {
-                let evidence = self.friction_evidence(j, &shared, &background, &residual)?;
+                let (evidence, change) = self.friction_evidence(j, &shared, &background, &residual)?;
                 let sure = evidence.confidence(joints) >= settings.least_confidence;
-                (sure && self.friction_change(j) >= LEAST_FRICTION_CHANGE).then_some((j, evidence))
+                let excluded = match change {
+                    Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
+                    Change::DriveGain => is_excluded(DRIVE_GAIN, j),
+                };
+                let large = self.friction_change(j) >= LEAST_FRICTION_CHANGE;
+                (sure && large && !excluded).then_some((j, evidence, change))
             })
             .collect();
-        for (j, evidence) in changed {
+        for (j, evidence, change) in changed {
             let confidence = evidence.confidence(joints);
-            self.take_friction_change(j, evidence.significance, confidence)?;
+            self.take(j, change, evidence.significance, confidence)?;
         }
         Ok(())
     }
@@ -62,9 +84,15 @@ impl Search<'_> {
     ///
     /// # Errors
     /// As [`Self::name_friction_changes`].
-    pub(in crate::diagnosis) fn take_friction_change(
+    pub(in crate::diagnosis) fn take_friction_change(&mut self, joint: usize) -> Result<(), SingularDesign> {
+        self.take(joint, Change::Friction, 0.0, 0.5)
+    }
+
+    /// Makes what has changed on a joint a term of the model, in the place of friction that is free in the recording.
+    fn take(
         &mut self,
         joint: usize,
+        change: Change,
         significance: f64,
         confidence: f64,
     ) -> Result<(), SingularDesign> {
@@ -82,18 +110,29 @@ impl Search<'_> {
             };
             regression.silence(columns.into_iter());
         }
+        let rival = |effect| Rival {
+            effect,
+            place: Place::Joint(joint),
+            explained_fraction: 0.0,
+            difference_p_value: 1.0,
+        };
+        let (effect, shape, rivals) = match change {
+            Change::Friction => (EffectKind::FrictionLevelChange, before.to_vec(), Vec::new()),
+            Change::Either => (EffectKind::FrictionLevelChange, before.to_vec(), vec![rival(DRIVE_GAIN)]),
+            Change::DriveGain => (DRIVE_GAIN, Vec::new(), Vec::new()),
+        };
         self.model.terms.push(Accepted {
-            effect: EffectKind::FrictionLevelChange,
+            effect,
             place: Place::Joint(joint),
             own: vec![joint],
             shows_on: vec![joint],
-            shape: before.to_vec(),
+            shape,
             fixed: None,
             significance,
             confidence,
             inflation,
             explained_fraction: 0.0,
-            rivals: Vec::new(),
+            rivals,
         });
         self.refit_and_update()
     }
@@ -103,18 +142,18 @@ impl Search<'_> {
     }
 
     /// Evidence that the viscous and Coulomb friction of a joint differ from the baseline's, against what they differ by
-    /// between its units.
+    /// between its units, and whether it is friction that has changed.
     fn friction_evidence(
         &self,
         joint: usize,
         shared: &[Vec<f64>],
         background: &Background,
         residual: &[f64],
-    ) -> Option<Evidence> {
-        let bench = self.model.bench(SmoothingWindow::Slow);
+    ) -> Option<(Evidence, Change)> {
+        let (context, bench) = (&self.model.context, self.model.bench(SmoothingWindow::Slow));
         let design = &self.model.slow.design;
         let range = design.of_joint(joint);
-        let law: Vec<Vec<f64>> = bench.free[joint][..2]
+        let friction: Vec<Vec<f64>> = bench.free[joint][..2]
             .iter()
             .map(|on_joint| {
                 let mut column = vec![0.0; design.rows.len()];
@@ -122,6 +161,7 @@ impl Search<'_> {
                 column
             })
             .collect();
+        let gain = dense_columns(context, design, DRIVE_GAIN, Place::Joint(joint), &[], false);
         let mut free = bench.free.clone();
         free[joint].drain(..2);
         let regressors = Regressors {
@@ -131,9 +171,24 @@ impl Search<'_> {
             companions: &bench.companions,
             of_joint: &bench.of_joint,
         };
-        let law = Law { columns: &law, residual, common: false, trend_of: 0 };
-        let found = calibrate(&bench.units, &regressors, background, &law)?;
-        Some(found.evidence())
+        let judged = |columns| {
+            let law = Law { columns, residual, common: false, trend_of: 0 };
+            let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
+            Some((law, calibrated))
+        };
+        let shows_beside = |(law, calibrated): &(Law<'_>, Calibrated), other: &[Vec<f64>]| {
+            beside(&bench.units, &regressors, background, law, calibrated, other)
+                .is_some_and(|left| left.evidence().p_value <= TOLD_APART)
+        };
+        let of_friction = judged(&friction)?;
+        let evidence = of_friction.1.evidence();
+        let change = match judged(&gain) {
+            None => Change::Friction,
+            Some(_) if shows_beside(&of_friction, &gain) => Change::Friction,
+            Some(of_gain) if shows_beside(&of_gain, &friction) => Change::DriveGain,
+            Some(_) => Change::Either,
+        };
+        Some((evidence, change))
     }
 
     /// Change of a joint's friction torque in the recording, as a share of the friction torque of the baseline.

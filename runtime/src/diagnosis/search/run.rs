@@ -81,7 +81,7 @@ impl Search<'_> {
     pub fn force(&mut self, known: &[(EffectKind, Option<usize>)]) -> Result<SearchReport, SingularDesign> {
         for &(effect, joint) in known {
             if let (EffectKind::FrictionLevelChange, Some(joint)) = (effect, joint) {
-                self.take_friction_change(joint, 0.0, 0.5)?;
+                self.take_friction_change(joint)?;
                 continue;
             }
             if effect.form().fixed_amplitude().is_some() {
