@@ -18,6 +18,8 @@ pub struct Case {
     pub seed: u64,
     /// Duration of its one motion, s; `None` for one to three of the usual length.
     pub seconds: Option<f64>,
+    /// Whether there is a baseline where no effect asks for one.
+    pub baseline: bool,
     /// How it is recorded.
     pub recorder: Recorder,
 }
@@ -32,7 +34,8 @@ impl Case {
             Recorder::White => String::new(),
             other => format!("_{}", other.name()),
         };
-        format!("{}_{hidden}_{}_{}{length}{recorder}", self.robot, self.size_name(), self.seed)
+        let baseline = if self.baseline { "_baseline" } else { "" };
+        format!("{}_{hidden}_{}_{}{length}{recorder}{baseline}", self.robot, self.size_name(), self.seed)
     }
 
     pub fn size_name(&self) -> &'static str {

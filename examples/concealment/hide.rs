@@ -98,7 +98,7 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
     for (secret, size) in &secrets {
         hide(&mut world, model, secret, *size)?;
     }
-    let change = case.effects.iter().any(|&e| is_change(e));
+    let change = case.baseline || case.effects.iter().any(|&e| is_change(e));
     let baseline = if change {
         recorded(&plain(model)?, &planned(model, count, length, &mut random)?, &[], noise.wrapping_add(100))?
     } else {

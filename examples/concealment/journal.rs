@@ -67,6 +67,7 @@ mod tests {
             size: 1,
             seed,
             seconds: Some(5.0),
+            baseline: false,
             recorder: Recorder::White,
         };
         let hidden = Hidden {
@@ -76,7 +77,7 @@ mod tests {
             visible: 2.5,
             numbers: Vec::new(),
         };
-        let outcome = Outcome { detected: true, named: true, cannot_tell: false };
+        let outcome = Outcome { detected: true, named: true, cannot_tell: false, small: false };
         let score = Score { hidden: vec![(hidden, outcome)], seconds: 2.0, ..Score::default() };
         let path = std::env::temp_dir().join(format!("dynid_journal_{}.jsonl", std::process::id()));
         let first = Journal::open(&path)?;

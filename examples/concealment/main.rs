@@ -136,7 +136,8 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
                     // Without an effect a size is only another run.
                     let seconds = options.seconds;
                     let robot = robot.clone();
-                    cases.push(Case { robot, effects: hidden, size, seed, seconds, recorder });
+                    let baseline = options.baseline;
+                    cases.push(Case { robot, effects: hidden, size, seed, seconds, baseline, recorder });
                 }
             }
         }

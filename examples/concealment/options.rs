@@ -30,6 +30,9 @@ pub struct Options {
     /// How torques and positions are recorded; each seed takes the next one of the list
     #[arg(long, value_enum, value_delimiter = ',', default_value = "white")]
     pub recorders: Vec<Recorder>,
+    /// Record every robot before anything was hidden in it, too, and look for what changed
+    #[arg(long)]
+    pub baseline: bool,
     /// One motion of this duration, s, instead of one to three of 16 to 24 s together
     #[arg(long)]
     pub seconds: Option<f64>,

@@ -92,12 +92,13 @@ fn rates(text: &mut String, all: &[Pair<'_>], effects: &[EffectKind]) {
     line(
         text,
         "Detected: something was found on the joint. Named: the effect itself, on its joint. Cannot tell: the effect is \
-         among those that the diagnosis says the motion cannot tell apart. Others: findings beside it or instead of it. \
+         among those that the diagnosis says the motion cannot tell apart. Small: it says that the effect is there and too \
+         small to be named. Others: findings beside it or instead of it. \
          Visible: median, and least to most.\n",
     );
     line(
         text,
-        "| effect | size | visible | detected | named | named or cannot tell | runs with others | refused |",
+        "| effect | size | visible | detected | named | named, cannot tell or small | runs with others | refused |",
     );
     line(text, "|---|---|---|---|---|---|---|---|");
     let every = hidden_of(all);
@@ -119,7 +120,7 @@ fn rates(text: &mut String, all: &[Pair<'_>], effects: &[EffectKind]) {
                 median(visible),
                 share(&runs, |r| r.3.detected),
                 share(&runs, |r| r.3.named),
-                share(&runs, |r| r.3.named || r.3.cannot_tell),
+                share(&runs, |r| r.3.named || r.3.cannot_tell || r.3.small),
                 share(&runs, |r| !r.1.others.is_empty()),
                 share(&runs, |r| r.1.refused.is_some())
             );
@@ -130,7 +131,7 @@ fn rates(text: &mut String, all: &[Pair<'_>], effects: &[EffectKind]) {
 
 fn by_visibility(text: &mut String, all: &[Pair<'_>]) {
     line(text, "## By what can be seen\n");
-    line(text, "| visible | detected | named | named or cannot tell |");
+    line(text, "| visible | detected | named | named, cannot tell or small |");
     line(text, "|---|---|---|---|");
     let every = hidden_of(all);
     let edges = [0.0, 0.5, 1.5, 4.0, f64::INFINITY];
@@ -146,7 +147,7 @@ fn by_visibility(text: &mut String, all: &[Pair<'_>]) {
             "| {words} | {} | {} | {} |",
             share(&runs, |r| r.3.detected),
             share(&runs, |r| r.3.named),
-            share(&runs, |r| r.3.named || r.3.cannot_tell)
+            share(&runs, |r| r.3.named || r.3.cannot_tell || r.3.small)
         );
     }
     text.push('\n');

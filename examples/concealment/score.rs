@@ -53,6 +53,8 @@ pub struct Outcome {
     pub named: bool,
     /// The effect is among those that the diagnosis says it cannot tell apart there.
     pub cannot_tell: bool,
+    /// The effect is among those that the diagnosis says are there and too small to be named.
+    pub small: bool,
 }
 
 /// Simulates, diagnoses, and only then compares.
@@ -102,6 +104,7 @@ fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
                     .cannot_tell
                     .iter()
                     .any(|c| here(&h, &c.joints) && c.between.iter().any(|effect| effect == id)),
+                small: found.small.iter().any(|s| here(&h, &s.joints) && s.effect == id),
             };
             (h, outcome)
         })

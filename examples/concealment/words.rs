@@ -46,6 +46,7 @@ impl Outcome {
         match self {
             Outcome { named: true, .. } => "named",
             Outcome { cannot_tell: true, .. } => "cannot tell",
+            Outcome { small: true, .. } => "told as small",
             _ => "missed",
         }
     }
@@ -106,6 +107,9 @@ pub fn command(options: &Options) -> String {
     if options.recorders != [Recorder::White] {
         let names: Vec<String> = options.recorders.iter().map(|r| r.name()).collect();
         let _ = write!(command, " --recorders {}", names.join(","));
+    }
+    if options.baseline {
+        command.push_str(" --baseline");
     }
     if let Some(seconds) = options.seconds {
         let _ = write!(command, " --seconds {seconds}");

@@ -13,6 +13,8 @@ use crate::diagnosis::judging::calibration::{Calibrated, Law, beside, calibrate}
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::white_products::{Background, Regressors};
 use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
+use crate::diagnosis::search::bench::Size;
+use crate::diagnosis::search::gate::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
@@ -69,13 +71,18 @@ impl Search<'_> {
                     Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
                     Change::DriveGain => is_excluded(DRIVE_GAIN, j),
                 };
-                let large = self.friction_change(j) >= LEAST_FRICTION_CHANGE;
-                (sure && large && !excluded).then_some((j, evidence, change))
+                (sure && !excluded).then_some((j, evidence, change))
             })
             .collect();
+        self.small_friction.clear();
         for (j, evidence, change) in changed {
-            let confidence = evidence.confidence(joints);
-            self.take(j, change, evidence.significance, confidence)?;
+            let size = self.friction_change(j);
+            if size.law < size.repeats {
+                let (effect, place) = (EffectKind::FrictionLevelChange, Place::Joint(j));
+                self.small_friction.push(SmallLaw { effect, place, own: vec![j], size });
+            } else {
+                self.take(j, change, evidence.significance, evidence.confidence(joints))?;
+            }
         }
         Ok(())
     }
@@ -191,22 +198,24 @@ impl Search<'_> {
         Some((evidence, change))
     }
 
-    /// Change of a joint's friction torque in the recording, as a share of the friction torque of the baseline.
-    fn friction_change(&self, joint: usize) -> f64 {
+    /// Change of a joint's friction torque in the recording, and what of its friction torque is worth a name.
+    fn friction_change(&self, joint: usize) -> Size {
         let regression = &self.model.slow;
         let design = &regression.design;
         let [viscous, coulomb] = self.friction_of_baseline(joint);
         let own: Vec<f64> = self.own_friction(joint).map(|k| regression.fit.chi[k]).collect();
-        let [by_speed, level] = own[..] else { return 0.0 };
+        let [by_speed, level] = own[..] else { return Size { law: 0.0, repeats: 0.0 } };
         let columns = &self.model.bench(SmoothingWindow::Slow).free[joint];
-        let (mut changed, mut whole) = (0.0, 0.0);
+        let (mut changed, mut whole, mut count) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (row, r) in design.of_joint(joint).enumerate() {
             if self.model.context.signals[design.rows[r].signal].is_target {
                 changed += (by_speed * columns[0][row] + level * columns[1][row]).powi(2);
                 whole += (viscous * columns[0][row] + coulomb * columns[1][row]).powi(2);
+                count += 1.0;
             }
         }
-        if whole > 0.0 { (changed / whole).sqrt() } else { 0.0 }
+        let rms = |squares: f64| (squares / count.max(1.0)).sqrt();
+        Size { law: rms(changed), repeats: LEAST_FRICTION_CHANGE * rms(whole) }
     }
 
     /// Viscous and Coulomb coefficients that the model has for a joint.

@@ -177,7 +177,7 @@ impl Search<'_> {
         let outcomes = parallel::map(self.threads, ranked.len(), |k| {
             self.judged_by_gate(&round, &ranked, k, settings.least_confidence)
         });
-        let mut small: Vec<SmallLaw> = Vec::new();
+        let mut small = self.small_friction.clone();
         for (r, outcome) in ranked.iter().zip(outcomes) {
             let Outcome::Small(size) = outcome else { continue };
             let candidate = self.of(r).1;

@@ -7,6 +7,7 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::gate::SmallLaw;
 use crate::diagnosis::search::line::{JointLines, all_lines};
 use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::term::Accepted;
@@ -26,6 +27,8 @@ pub(in crate::diagnosis) struct Search<'a> {
     pub rejected: Vec<Accepted>,
     /// Laws that the last round could not tell from one on another joint.
     pub ties: Vec<Tie>,
+    /// Friction that has certainly changed, by less than is named.
+    pub small_friction: Vec<SmallLaw>,
     pub spectra: Vec<OrderSpectrum>,
     /// Ripple that stands out as a line, per joint.
     pub lines: Vec<JointLines>,
@@ -70,8 +73,18 @@ impl<'a> Search<'a> {
         let wanted = |c: &Candidate| !settings.excluded.contains(&(c.effect, c.place));
         slow.retain(|c| wanted(c) && model.slow.is_identifiable(c));
         fast.retain(|c| wanted(c) && model.fast.is_identifiable(c));
-        let ties = Vec::new();
-        Self { model, slow, fast, rejected: Vec::new(), ties, spectra, lines, tried, threads }
+        Self {
+            model,
+            slow,
+            fast,
+            rejected: Vec::new(),
+            ties: Vec::new(),
+            small_friction: Vec::new(),
+            spectra,
+            lines,
+            tried,
+            threads,
+        }
     }
 
     /// Goes on from a model without effects with what was found, but without these laws at their places. A change of
