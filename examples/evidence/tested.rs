@@ -1,7 +1,6 @@
 //! The part of a recording that the diagnosis never sees.
 
 use dynid_runtime::diagnosis::Diagnosis;
-use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::Model;
 use dynid_runtime::prediction::{Comparison, Evaluation, Predictor, evaluate};
 use dynid_runtime::recording::Trajectory;
@@ -17,11 +16,8 @@ pub fn compared(
     test: &[Trajectory],
 ) -> Result<Evaluation, Failure> {
     let prepared = Comparison::default().prepare(test)?;
-    let (terms, none): (Vec<EffectTerm>, &[EffectTerm]) = (found.terms(), &[]);
-    let models = [
-        Predictor { chi: identified, effects: none, delay: 0.0 },
-        Predictor { chi: &found.standard.chi, effects: none, delay: found.delay },
-        Predictor { chi: &found.model.chi, effects: &terms, delay: found.delay },
-    ];
+    let terms = found.terms();
+    let [before, after] = Predictor::before_and_after(found, &terms);
+    let models = [Predictor { chi: identified, effects: &[], delay: 0.0 }, before, after];
     Ok(evaluate(model, &models, &prepared.motions, &prepared.settings, &[])?)
 }

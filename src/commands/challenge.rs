@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::Args;
 use dynid_runtime::diagnosis::scoring::{Hidden, Naming, Scored, TestErrors};
 use dynid_runtime::diagnosis::{Diagnosis, Progress, Settings, diagnose, fit_known};
-use dynid_runtime::effects::{EffectKind, EffectTerm};
+use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::{JointNumber, Model};
 use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
 use dynid_runtime::recording::{Manifest, Trajectory, load};
@@ -203,11 +203,7 @@ impl Case {
             .map_err(|error| prediction_failure(&file, &error))?;
         let known = self.with_known(hidden, settings)?;
         let (terms, true_terms) = (found.terms(), known.as_ref().map(Diagnosis::terms).unwrap_or_default());
-        let none: &[EffectTerm] = &[];
-        let mut models = vec![
-            Predictor { chi: &found.standard.chi, effects: none, delay: found.delay },
-            Predictor { chi: &found.model.chi, effects: &terms, delay: found.delay },
-        ];
+        let mut models = Predictor::before_and_after(found, &terms).to_vec();
         if let Some(known) = &known {
             models.push(Predictor { chi: &known.model.chi, effects: &true_terms, delay: known.delay });
         }

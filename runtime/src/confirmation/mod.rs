@@ -176,17 +176,18 @@ fn joints_of(model: &dyn Model, finding: &Finding) -> Vec<usize> {
     finding.joints.iter().filter_map(|&j| Some(robot.joint_index(JointNumber(j))?.0)).collect()
 }
 
-/// Parameters and effects without a finding; `None` for what is no law of the robot (pushes) or belongs to the model
-/// with and without findings (the skew of the channels).
+/// Parameters and effects without a finding; `None` for what is no law of the robot (pushes) or is wrong with
+/// the recording alone.
 fn without(diagnosis: &Diagnosis, k: usize) -> Option<(Vec<f64>, Vec<EffectTerm>)> {
     let finding = &diagnosis.findings[k];
     match (finding.term.effect, &finding.without) {
-        (EffectKind::Contact | EffectKind::TimeDelay, _) => None,
+        (EffectKind::Contact, _) => None,
         (_, Some(without)) => {
             // What is no term of the fit, such as lines of a ripple, stays as it is.
             let lines = diagnosis.findings.iter().filter(|f| f.without.is_none()).map(|f| f.term.clone());
             Some((without.chi.clone(), without.effects.iter().cloned().chain(lines).collect()))
         }
+        (_, None) if finding.term.distortion().is_some() => None,
         (_, None) => {
             let mut effects = diagnosis.terms();
             effects.remove(k);

@@ -88,6 +88,7 @@ mod judging;
 mod outcome;
 mod predict;
 mod preparation;
+mod rate;
 mod rows;
 mod rules;
 pub mod scoring;

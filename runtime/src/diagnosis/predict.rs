@@ -17,6 +17,9 @@ pub fn joint_scales(model: &dyn Model, motions: &[Motion], chi: &[f64]) -> Vec<S
 
 /// Torques of terms on a motion, to be added to those of the standard model: `[j][t]`, N.m or N.
 ///
+/// What is wrong with a recording rather than with the robot adds nothing: it changes the motion that the model is
+/// evaluated on, see [`crate::prediction::Predictor`].
+///
 /// `chi` are the base parameters that were identified together with the terms. Contacts belong to the recording they
 /// were seen in and add nothing.
 ///
@@ -46,7 +49,7 @@ fn torques_on(
         return Ok(out);
     }
     let mut context = Context::new(model, signals, scales(model, signals, chi), chi.to_vec())?;
-    for term in terms {
+    for term in terms.iter().filter(|t| t.distortion().is_none()) {
         if let (Place::Joint(j), Some(scale)) = (term.place, term.scale)
             && j < n
         {

@@ -4,6 +4,7 @@
 use super::error::DiagnosisError;
 use super::explanation::delay::skew_of;
 use super::outcome::Sampling;
+use super::rate::{WrongRate, corrected, factor};
 use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
@@ -17,6 +18,7 @@ use crate::model::{JointIndex, Model};
 use crate::recording::Trajectory;
 
 /// The motions with everything that decides where rows are.
+#[derive(Clone)]
 pub(super) struct Motions {
     /// Motions of the baseline, then those of the recording that is diagnosed.
     pub signals: Vec<Signals>,
@@ -104,6 +106,22 @@ impl Motions {
         design
     }
 
+    /// The same motions in a time that runs so many times faster.
+    pub fn faster(&self, factor: f64) -> Self {
+        let speeds = |slowest: &[f64]| slowest.iter().map(|v| factor * v).collect();
+        Self {
+            signals: self.signals.iter().map(|s| s.faster(factor)).collect(),
+            slowest: speeds(&self.slowest),
+            slowest_fast: speeds(&self.slowest_fast),
+            settings: Settings {
+                slow_window: self.settings.slow_window / factor,
+                fast_window: self.settings.fast_window / factor,
+                ..self.settings.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// Leaves out all rows of joints that do not move: what such a joint seems to do is noise.
     fn hold_still(&mut self, moving: &[bool]) {
         for speeds in [&mut self.slowest, &mut self.slowest_fast] {
@@ -114,7 +132,7 @@ impl Motions {
     }
 
     /// Slow rows that leave nothing out but standstills.
-    fn aligned(&self, model: &dyn Model) -> Design {
+    pub fn aligned(&self, model: &dyn Model) -> Design {
         self.design(model, self.settings.slow_window, None)
     }
 
@@ -163,6 +181,16 @@ pub(super) struct Prepared {
     pub chi_sigma: Vec<f64>,
     /// How much each joint moves.
     pub moving: Moving,
+    /// Times that were wrong by a factor, and were corrected before anything else.
+    pub rate: Option<WrongRate>,
+}
+
+/// The standard model on all rows, not yet judged.
+struct Fitted {
+    motions: Motions,
+    aligned: Design,
+    fit: Fit,
+    moving: Moving,
 }
 
 impl Prepared {
@@ -184,23 +212,43 @@ impl Prepared {
         if let Some(other) = baseline.iter().find(|t| t.position.len() != joints) {
             return Err(DiagnosisError::OtherBaseline { given: other.position.len(), joints });
         }
-        let mut motions = Motions::new(model, trajectories, baseline, settings)?;
-        let mut aligned = motions.aligned(model);
-        let moving = Moving::of(&aligned);
-        if moving.fitted.contains(&false) {
-            motions.hold_still(&moving.fitted);
-            aligned = motions.aligned(model);
+        let fitted = Fitted::new(model, trajectories, baseline, settings)?;
+        if baseline.is_empty()
+            && fitted.moving.judged.contains(&true)
+            && let Some(factor) = factor(model, &fitted.motions, (&fitted.aligned, &fitted.fit))?
+        {
+            let wrong = WrongRate::new(factor, &fitted.aligned, &fitted.fit)?;
+            return Self::at_the_right_rate(model, trajectories, settings, wrong);
         }
-        let mut fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
-        motions.left_over = check_rows(model, &aligned, &fit, &moving)?;
-        if !motions.left_over.is_empty() {
-            aligned = motions.aligned(model);
-            fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        Self::judged(model, fitted)
+    }
+
+    /// With times that run as the robot did; the factor is refined on the way.
+    fn at_the_right_rate(
+        model: &dyn Model,
+        trajectories: &[Trajectory],
+        settings: &Settings,
+        mut wrong: WrongRate,
+    ) -> Result<Self, DiagnosisError> {
+        loop {
+            let faster = corrected(trajectories, wrong.logarithm.exp());
+            let mut prepared = Self::judged(model, Fitted::new(model, &faster, &[], settings)?)?;
+            let right = wrong.refine(&prepared.context(model)?, prepared.aligned.clone())?;
+            if right {
+                prepared.rate = Some(wrong);
+                return Ok(prepared);
+            }
         }
+    }
+
+    /// Refuses what cannot be diagnosed, and takes the skew of the torques out.
+    fn judged(model: &dyn Model, fitted: Fitted) -> Result<Self, DiagnosisError> {
+        let Fitted { motions, aligned, fit, moving } = fitted;
         check_fit(&aligned, &fit)?;
         let chi = fit.chi.iter().take(aligned.parameters).copied().collect();
         let chi_sigma = fit.variances().iter().take(aligned.parameters).map(|v| v.max(0.0).sqrt()).collect();
-        let mut prepared = Self { motions, chi, sigma: fit.sigma, delay: 0.0, aligned, chi_sigma, moving };
+        let (sigma, rate) = (fit.sigma, None);
+        let mut prepared = Self { motions, chi, sigma, delay: 0.0, aligned, chi_sigma, moving, rate };
         // Without motion there is no skew to be seen.
         if prepared.moving.judged.contains(&true) {
             prepared.take_out_skew(model)?;
@@ -233,6 +281,31 @@ impl Prepared {
             self.aligned = self.motions.aligned(model);
         }
         Ok(())
+    }
+}
+
+impl Fitted {
+    /// Fits the standard model to the rows of what moves, and refuses motions that tell nothing.
+    fn new(
+        model: &dyn Model,
+        trajectories: &[Trajectory],
+        baseline: &[Trajectory],
+        settings: &Settings,
+    ) -> Result<Self, DiagnosisError> {
+        let mut motions = Motions::new(model, trajectories, baseline, settings)?;
+        let mut aligned = motions.aligned(model);
+        let moving = Moving::of(&aligned);
+        if moving.fitted.contains(&false) {
+            motions.hold_still(&moving.fitted);
+            aligned = motions.aligned(model);
+        }
+        let mut fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        motions.left_over = check_rows(model, &aligned, &fit, &moving)?;
+        if !motions.left_over.is_empty() {
+            aligned = motions.aligned(model);
+            fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        }
+        Ok(Self { motions, aligned, fit, moving })
     }
 }
 

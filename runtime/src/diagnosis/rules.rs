@@ -201,6 +201,21 @@ pub(super) const KEPT_FRACTION: f64 = 0.6;
 /// An effect that was accepted stays up to this many times the level that it had to pass. Statistics: stepwise regression
 /// asks less to stay than to enter (Efroymson 1960), or what is near the level comes and goes.
 pub(super) const LEVEL_TO_STAY: f64 = 5.0;
+/// Factors on the rate that are tried before anything else; smaller errors are found as a law. Seconds read as
+/// milliseconds, a decimation that was forgotten, a double rate.
+pub(super) const RATE_FACTORS: [f64; 6] = [0.001, 0.1, 0.5, 2.0, 10.0, 1000.0];
+/// A factor is taken where it leaves this part of the squares of the standard model, in the mean of the joints' logarithms.
+/// Judgement: no other physics is imitated so well by a time that runs otherwise.
+pub(super) const RATE_LEAVES: f64 = 0.5;
+/// No joint may be left with so many times its squares. Which rows stand still differs between rates, and noise with them;
+/// on recordings whose times are right, a factor leaves some joint with ten times its squares and more.
+pub(super) const RATE_WORSENS: f64 = 1.25;
+/// Around the best of the factors it is refined within this, in the logarithm: a factor of five. Numerics.
+pub(super) const RATE_SPAN: f64 = 1.6;
+/// Golden sections of that: to a thousandth. Numerics.
+pub(super) const RATE_REFINED: usize = 16;
+/// Most rounds in which it is then refined by its law. Numerics: one is enough where the rest fits.
+pub(super) const RATE_ROUNDS: usize = 3;
 /// Largest error, in units of its number, along the way to which derivatives are taken: an exponential factor of two.
 /// Judgement.
 pub(super) const LARGEST_ERROR: f64 = 0.7;

@@ -8,6 +8,7 @@ use super::explanation::standard_model::StandardModelFit;
 use super::explanation::standstill;
 use super::outcome::{Diagnosis, Sampling};
 use super::preparation::{Prepared, nothing_moves};
+use super::rate::LAW;
 use super::rows::fit::Fit;
 use super::search::extended_model::ExtendedModel;
 use super::search::state::Search;
@@ -49,6 +50,7 @@ pub(super) fn run(
     let mut pushes = Pushes::found(model, &prepared, change)?;
 
     let mut settings = prepared.motions.settings().clone();
+    settings.excluded.extend(prepared.rate.iter().map(|_| LAW));
     'rows: loop {
         // 3. Rows outside of these windows; all candidates on them; effects join the model while one holds.
         progress.at(0.1, "candidates");
@@ -75,6 +77,7 @@ pub(super) fn run(
                 contacts: contacts.as_ref(),
                 report,
                 delay: prepared.delay,
+                rate: prepared.rate.as_ref(),
                 sampling: sampling.clone(),
             };
             let small = small(&search, &settings);

@@ -42,7 +42,7 @@ pub use joint_law::{At, AtRest, JointLaw, Scale};
 pub use place::Place;
 pub use quantity::{Parameter, Quantities};
 pub use rigid_body::{BodyEstimate, BodyOnLink, body_columns};
-pub use sensitivity::{Direction, Seeds, Sensitivity, Variant, derivable, derivative};
+pub use sensitivity::{Direction, Distortion, Seeds, Sensitivity, Variant, derivable, derivative};
 pub use shape::{Move, ShapeSearch, Step};
 pub use term::{EffectTerm, TermScale};
 

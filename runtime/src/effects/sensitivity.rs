@@ -39,6 +39,15 @@ pub struct Seeds<'a> {
     pub gravity: &'a mut [Dual; 3],
 }
 
+/// What is wrong with a recording rather than with a robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Distortion {
+    /// Torques were recorded at other instants than positions. By how much, a model knows as a number of its own.
+    Skew,
+    /// The robot moved so many times faster than the times of the recording say.
+    Faster(f64),
+}
+
 /// An effect whose torque is, for a small error e, e times the derivative of the model.
 pub trait Sensitivity: Sync {
     /// The numbers that may be wrong.
@@ -58,6 +67,12 @@ pub trait Sensitivity: Sync {
     fn uncovered(&self, robot: &crate::model::Robot, q: &[Vec<f64>]) -> Vec<(usize, Vec<f64>)> {
         let _ = (robot, q);
         Vec::new()
+    }
+
+    /// What an error of this length is, where it is in how the motion was recorded and not in the robot.
+    fn in_recording(&self, amplitude: &[f64]) -> Option<Distortion> {
+        let _ = amplitude;
+        None
     }
 
     /// Sets the slopes for one number.

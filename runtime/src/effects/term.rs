@@ -6,6 +6,7 @@ use super::contact::ContactForce;
 use super::form::Form;
 use super::joint_law::Scale;
 use super::place::Place;
+use super::sensitivity::Distortion;
 use serde::{Deserialize, Serialize};
 
 /// An effect that has become part of a model.
@@ -31,6 +32,14 @@ pub struct EffectTerm {
 }
 
 impl EffectTerm {
+    /// What is wrong with a recording, where the term is that and nothing of the robot.
+    pub fn distortion(&self) -> Option<Distortion> {
+        match self.effect.form() {
+            Form::Sensitivity(law) => law.in_recording(&self.amplitude),
+            Form::Joint(_) | Form::Compliance(_) | Form::Body(_) | Form::Coupled | Form::Window => None,
+        }
+    }
+
     /// The joint and the transmission of a compliant joint; `None` for every other effect.
     pub fn transmission(&self) -> Option<(usize, Transmission)> {
         match self.effect.form() {

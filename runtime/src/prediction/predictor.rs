@@ -1,7 +1,7 @@
 //! What predicts: parameters, effects, and how late the torques are.
 
-use crate::diagnosis::{DiagnosisError, term_torques};
-use crate::effects::EffectTerm;
+use crate::diagnosis::{Diagnosis, DiagnosisError, term_torques};
+use crate::effects::{Distortion, EffectTerm};
 use crate::estimation::observe::ObserveError;
 use crate::model::{Model, StateSlices, torques};
 use crate::signal::{Motion, SignalError};
@@ -40,10 +40,22 @@ pub enum PredictionError {
     },
 }
 
-impl Predictor<'_> {
+impl<'a> Predictor<'a> {
+    /// The standard model and the model with the findings of a diagnosis, whose terms are `terms`. A skew that was taken
+    /// out of the recording belongs to both where it is too small to be a finding.
+    pub fn before_and_after(diagnosis: &'a Diagnosis, terms: &'a [EffectTerm]) -> [Self; 2] {
+        let named = terms.iter().any(|t| t.distortion() == Some(Distortion::Skew));
+        let delay = if named { 0.0 } else { diagnosis.delay };
+        [
+            Self { chi: &diagnosis.standard.chi, effects: &[], delay },
+            Self { chi: &diagnosis.model.chi, effects: terms, delay: diagnosis.delay },
+        ]
+    }
+
     /// Torques on a motion at its full rate, as the torque channel would have recorded them: `[j][t]`, N.m or N.
     ///
-    /// Joints that are said to stand still have no speed. Contacts belong to the recording they were seen in and add
+    /// Where the times of the recording are wrong, the motion that the model sees is faster than they say. Joints that
+    /// are said to stand still have no speed. Contacts belong to the recording they were seen in and add
     /// nothing.
     ///
     /// # Errors
@@ -53,6 +65,9 @@ impl Predictor<'_> {
         if self.chi.len() != expected {
             return Err(PredictionError::Parameters { found: self.chi.len(), expected });
         }
+        let factor: f64 = self.effects.iter().filter_map(EffectTerm::distortion).map(times_faster).product();
+        let corrected = (factor != 1.0).then(|| motion.faster(factor));
+        let motion = corrected.as_ref().unwrap_or(motion);
         let still = |signal: &[Vec<f64>]| -> Vec<Vec<f64>> {
             let of_joint = |(j, x): (usize, &Vec<f64>)| match motion.fixed.contains(&j) {
                 true => vec![0.0; x.len()],
@@ -76,6 +91,13 @@ impl Predictor<'_> {
             all.iter_mut().for_each(|torque| *torque = later(torque, self.delay * motion.rate));
         }
         Ok(all)
+    }
+}
+
+fn times_faster(distortion: Distortion) -> f64 {
+    match distortion {
+        Distortion::Skew => 1.0,
+        Distortion::Faster(factor) => factor,
     }
 }
 

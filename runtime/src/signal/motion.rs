@@ -26,6 +26,20 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// The same motion in a time that runs so many times faster.
+    pub fn faster(&self, factor: f64) -> Self {
+        let scaled = |x: &[Vec<f64>], by: f64| -> Vec<Vec<f64>> {
+            x.iter().map(|of_joint| of_joint.iter().map(|v| by * v).collect()).collect()
+        };
+        Self {
+            rate: factor * self.rate,
+            start: self.start / factor,
+            dq: scaled(&self.dq, factor),
+            ddq: scaled(&self.ddq, factor * factor),
+            ..self.clone()
+        }
+    }
+
     /// Positions, velocities and accelerations as a model takes them.
     pub fn state_slices(&self) -> StateSlices<'_> {
         StateSlices::new(&self.q, &self.dq, &self.ddq)

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use dynid_runtime::diagnosis::Diagnosis;
-use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::Model;
 use dynid_runtime::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate};
 
@@ -52,8 +51,7 @@ pub(super) fn tested(test: &Test, path: &Path, diagnosis: &Diagnosis) -> Result<
     Ok(Tested { name: test.measured.title.clone(), evaluation })
 }
 
-/// The standard model and the model with the findings, on the same rows. The skew that the diagnosis took out of the
-/// recording belongs to both.
+/// The standard model and the model with the findings, on the same rows.
 fn before_and_after(
     model: &dyn Model,
     diagnosis: &Diagnosis,
@@ -61,8 +59,11 @@ fn before_and_after(
     windows: &[(&str, [f64; 2])],
 ) -> Result<Evaluation, PredictionError> {
     let terms = diagnosis.terms();
-    let predictor = |chi, effects| Predictor { chi, effects, delay: diagnosis.delay };
-    let none: &[EffectTerm] = &[];
-    let models = [predictor(&diagnosis.standard.chi, none), predictor(&diagnosis.model.chi, &terms)];
-    evaluate(model, &models, &prepared.motions, &prepared.settings, windows)
+    evaluate(
+        model,
+        &Predictor::before_and_after(diagnosis, &terms),
+        &prepared.motions,
+        &prepared.settings,
+        windows,
+    )
 }

@@ -156,7 +156,7 @@ pub(in crate::diagnosis) fn mismatch(
 
 /// Standard deviation of what changes from row to row: noise, whatever slow effects remain. Rows of a Hann window
 /// half a window apart correlate by 1/6, so that r - (before + after) / 2 has 7/6 of the variance.
-fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
+pub(in crate::diagnosis) fn noise_floor(design: &Design, fit: &Fit, joint: usize) -> f64 {
     let residual = fit.residual(design);
     let (mut sum, mut count) = (0.0, 0.0);
     for range in &design.ranges[joint] {

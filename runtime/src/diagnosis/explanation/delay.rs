@@ -1,10 +1,11 @@
 //! The skew of the torques behind the positions: measured before anything else, and named where it explains enough.
 
 use crate::diagnosis::candidates::trial::delay_columns;
-use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::error::{DiagnosisError, SingularDesign};
 use crate::diagnosis::explanation::finding::unit_term;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
+use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::outcome::{Finding, ParameterValue};
 use crate::diagnosis::rows::context::Context;
@@ -48,7 +49,7 @@ pub(in crate::diagnosis) fn finding(
     let slow = &model.slow;
     let p = slow.design.parameters;
     let with = slow.held_out(false)?;
-    let unaware = HeldOutSquares::of(&with_skew(model, skew), &slow.sigma, false)?;
+    let unaware = HeldOutSquares::of(&with_skew(slow, skew), &slow.sigma, false)?;
     let all: Vec<usize> = (0..slow.design.joints).collect();
     let weigh =
         |h: &HeldOutSquares| -> f64 { h.left.iter().zip(&slow.sigma).map(|(l, s)| l / (s * s)).sum() };
@@ -78,15 +79,29 @@ pub(in crate::diagnosis) fn finding(
     Ok(Some(finding))
 }
 
-/// The slow rows as they would be with the skew left in the torques: the torque's own rate of change, as much of it as
-/// the skew moved, and no column for it.
-fn with_skew(model: &ExtendedModel<'_>, skew: f64) -> Design {
-    let slow = &model.slow;
-    let p = slow.design.parameters;
-    let taken = skew - slow.fit.chi[p];
-    let mut design = slow.design.clone();
+/// Errors of the standard model on held-out motion, fast rows, with the skew left in the torques.
+///
+/// # Errors
+/// [`DiagnosisError`] where a split has no fit.
+pub(in crate::diagnosis) fn unaware(
+    model: &ExtendedModel<'_>,
+    skew: f64,
+) -> Result<HeldOutSquares, DiagnosisError> {
+    let mut standard = model.copy()?;
+    standard.terms.clear();
+    standard.refit()?;
+    let fast = &standard.fast;
+    Ok(HeldOutSquares::of(&with_skew(fast, skew), &fast.sigma, model.change)?)
+}
+
+/// The rows as they would be with the skew left in the torques: the torque's own rate of change, as much of it as the
+/// skew moved, and no column for it.
+fn with_skew(regression: &Regression, skew: f64) -> Design {
+    let p = regression.design.parameters;
+    let taken = skew - regression.fit.chi[p];
+    let mut design = regression.design.clone();
     let column = design.columns.remove(p);
-    design.y = slow.design.y.iter().zip(&column).map(|(y, c)| y + taken * c).collect();
+    design.y = regression.design.y.iter().zip(&column).map(|(y, c)| y + taken * c).collect();
     design.refresh();
     design
 }

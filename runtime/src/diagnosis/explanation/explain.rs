@@ -4,12 +4,13 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
-use crate::diagnosis::explanation::{curves, delay, line, words};
+use crate::diagnosis::explanation::{curves, delay, line, rate, words};
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::outcome::{
-    CannotTell, Diagnosis, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling, SearchOutcome,
-    Small,
+    CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling,
+    SearchOutcome, Small,
 };
+use crate::diagnosis::rate::WrongRate;
 use crate::diagnosis::rules::{SHIFTED, TOLD_APART};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
@@ -26,6 +27,8 @@ pub(in crate::diagnosis) struct Ended<'a> {
     pub report: SearchReport,
     /// Skew of the torques that was taken out of the signals, s.
     pub delay: f64,
+    /// Times that were wrong by a factor, and were corrected.
+    pub rate: Option<&'a WrongRate>,
     pub sampling: Sampling,
 }
 
@@ -50,10 +53,15 @@ pub(in crate::diagnosis) fn explain(
     let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
     findings.extend(effects);
     findings.extend(line::findings(search));
-    findings.extend(delay::finding(model, skew, settings)?);
+    let late = delay::finding(model, skew, settings)?;
+    let named = late.is_some();
+    findings.extend(late);
 
     // 2. What it gains on motion that was held out.
-    let held_out = held_out(model, standard, &model.fast.held_out(false)?, ended.contacts.is_some());
+    let held = model.fast.held_out(false)?;
+    findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
+    let before = before(model, &ended, named.then_some(skew))?;
+    let held_out = held_out(model, standard, &held, before);
 
     // 3. What it changes, and what it leaves.
     let after = estimated(&model.slow);
@@ -75,7 +83,7 @@ pub(in crate::diagnosis) fn explain(
         small: Vec::new(),
         unexplained: curves::unexplained(model),
         shifts: shifts(robot, &standard.estimated, &after),
-        standard: standard.estimated.clone(),
+        standard: ended.rate.map_or(&standard.estimated, |wrong| &wrong.declared).clone(),
         model: after,
         delay: skew,
         spectra,
@@ -138,15 +146,32 @@ pub(in crate::diagnosis) fn small(search: &Search<'_>, settings: &Settings) -> V
     .collect()
 }
 
+/// Errors on held-out motion of the standard model on the recording as it is. What was found is not taken out of it: a
+/// wrong rate, a skew that is named, and the windows of contacts, which are predicted too.
+fn before(
+    model: &ExtendedModel<'_>,
+    ended: &Ended<'_>,
+    named_skew: Option<f64>,
+) -> Result<Errors, DiagnosisError> {
+    if let Some(wrong) = ended.rate {
+        return Ok(wrong.errors.clone());
+    }
+    if ended.contacts.is_some() {
+        return Ok(ended.standard.held_with_windows.clone());
+    }
+    match named_skew {
+        Some(skew) => Ok(delay::unaware(model, skew)?.errors()),
+        None => Ok(ended.standard.held.errors()),
+    }
+}
+
 /// Errors on held-out motion of the standard model and of the model with its terms.
 fn held_out(
     model: &ExtendedModel<'_>,
     standard: &StandardModelFit,
     held: &HeldOutSquares,
-    contacts: bool,
+    before: Errors,
 ) -> HeldOut {
-    // Contacts are part of what was found: before, their windows are predicted too.
-    let before = if contacts { standard.held_with_windows.clone() } else { standard.held.errors() };
     let after = held.errors();
     HeldOut {
         how: how(model),

@@ -6,6 +6,7 @@ pub(in crate::diagnosis) mod explain;
 pub(in crate::diagnosis) mod finding;
 pub(in crate::diagnosis) mod line;
 pub(in crate::diagnosis) mod quantities;
+pub(in crate::diagnosis) mod rate;
 pub(in crate::diagnosis) mod standard_model;
 pub(in crate::diagnosis) mod standstill;
 pub(in crate::diagnosis) mod words;

@@ -7,6 +7,7 @@ use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
 
 /// One motion: positions filtered and differentiated three times, torques through the same filter. `[j][t]`.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct Signals {
     pub name: String,
     /// Whether it belongs to the recording that is diagnosed; otherwise to the baseline.
@@ -25,6 +26,7 @@ pub(in crate::diagnosis) struct Signals {
 }
 
 /// Torques as recorded, on the uniform grid.
+#[derive(Clone)]
 struct Recorded {
     torque: Vec<Vec<f64>>,
     rate: f64,
@@ -100,6 +102,24 @@ impl Signals {
             edge_samples: motion.edge_samples.div_ceil(stride),
             recorded: Some(recorded),
         })
+    }
+
+    /// The same motion in a time that runs so many times faster, to evaluate a model on: its torques are not made anew
+    /// from the recording.
+    pub fn faster(&self, factor: f64) -> Self {
+        let scaled = |x: &[Vec<f64>], power: i32| -> Vec<Vec<f64>> {
+            let by = factor.powi(power);
+            x.iter().map(|of_joint| of_joint.iter().map(|v| by * v).collect()).collect()
+        };
+        Self {
+            rate: factor * self.rate,
+            start: self.start / factor,
+            dq: scaled(&self.dq, 1),
+            ddq: scaled(&self.ddq, 2),
+            jerk: scaled(&self.jerk, 3),
+            recorded: None,
+            ..self.clone()
+        }
     }
 
     /// Takes another skew of the torques out; nothing else changes.

@@ -1,8 +1,8 @@
 //! Torque and position channels that are not simultaneous: the derivative of the model with respect to time.
 
 use crate::effects::{
-    Abscissa, Effect, Form, Properties, Quantities, Seeds, Sensitivity, SmoothingWindow, Sought, Variant,
-    Words,
+    Abscissa, Distortion, Effect, Form, Properties, Quantities, Seeds, Sensitivity, SmoothingWindow, Sought,
+    Variant, Words,
 };
 use crate::model::Robot;
 
@@ -61,6 +61,10 @@ impl Sensitivity for TimeDelay {
 
     fn together(&self) -> bool {
         false
+    }
+
+    fn in_recording(&self, _: &[f64]) -> Option<Distortion> {
+        Some(Distortion::Skew)
     }
 
     /// torque(t - delay) = torque(t) - delay · d torque / dt.

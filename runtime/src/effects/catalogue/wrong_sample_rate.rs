@@ -1,8 +1,8 @@
 //! A declared time base that is wrong: the derivative of the model with respect to the scale of time.
 
 use crate::effects::{
-    Abscissa, Effect, Form, Parameter, Properties, Quantities, Seeds, Sensitivity, SmoothingWindow, Sought,
-    Variant, Words,
+    Abscissa, Distortion, Effect, Form, Parameter, Properties, Quantities, Seeds, Sensitivity,
+    SmoothingWindow, Sought, Variant, Words,
 };
 use crate::model::Robot;
 
@@ -61,6 +61,10 @@ impl Sensitivity for WrongSampleRate {
 
     fn together(&self) -> bool {
         false
+    }
+
+    fn in_recording(&self, amplitude: &[f64]) -> Option<Distortion> {
+        amplitude.first().map(|a| Distortion::Faster(a.exp()))
     }
 
     /// The true rate is (1 + e) times the declared one: dq (1 + e), ddq (1 + e)².

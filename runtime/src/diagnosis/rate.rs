@@ -1,0 +1,132 @@
+//! Times that are wrong by a factor, scanned over factors before anything else.
+//!
+//! Where the robot moved f times faster than the times say, speeds are f and accelerations f² times those that are
+//! differentiated. Inertias can take a part of this over, but not where the same first moments make gravity torques
+//! and inertial ones. The model is linear in its parameters at every f, so that each factor is one fit; a law that is
+//! linearised at f = 1 sees nothing of a factor of two, and less of one of a thousand.
+
+use super::candidates::trial::dense_columns;
+use super::error::SingularDesign;
+use super::explanation::curves::noise_floor;
+use super::judging::held_out::HeldOutSquares;
+use super::outcome::{Errors, Estimated};
+use super::preparation::Motions;
+use super::rows::context::Context;
+use super::rows::design::Design;
+use super::rows::fit::Fit;
+use super::rules::{RATE_FACTORS, RATE_LEAVES, RATE_REFINED, RATE_ROUNDS, RATE_SPAN, RATE_WORSENS};
+use crate::effects::{EffectKind, Place};
+use crate::model::Model;
+use crate::recording::Trajectory;
+
+/// The law of an error that is small.
+pub(super) const LAW: (EffectKind, Place) = (EffectKind::WrongSampleRate, Place::Variant(0));
+
+/// Times that were found to be wrong, and were corrected.
+#[derive(Debug, Clone)]
+pub(super) struct WrongRate {
+    /// Logarithm of how many times faster the robot moved.
+    pub logarithm: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// The standard model at the times as they were declared.
+    pub declared: Estimated,
+    /// Its errors on held-out motion.
+    pub errors: Errors,
+    refined: usize,
+}
+
+impl WrongRate {
+    /// A factor, and what the standard model was at the declared rate.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where a split has no fit.
+    pub fn new(factor: f64, design: &Design, fit: &Fit) -> Result<Self, SingularDesign> {
+        let p = design.parameters;
+        let declared = Estimated {
+            chi: fit.chi.iter().take(p).copied().collect(),
+            sigma: fit.variances().iter().take(p).map(|v| v.max(0.0).sqrt()).collect(),
+        };
+        let errors = HeldOutSquares::of(design, &fit.sigma, false)?.errors();
+        Ok(Self { logarithm: factor.ln(), sigma: 0.0, declared, errors, refined: 0 })
+    }
+
+    /// Estimates what is still wrong on rows at nearly the right rate; whether that is no more than its own standard
+    /// deviation.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn refine(&mut self, context: &Context<'_>, mut design: Design) -> Result<bool, SingularDesign> {
+        let (effect, place) = LAW;
+        for column in dense_columns(context, &design, effect, place, &[], false) {
+            design.push(column);
+        }
+        design.refresh();
+        let fit = Fit::weighted(&design, &vec![1.0; design.joints])?;
+        let last = design.columns.len() - 1;
+        let more = fit.chi[last];
+        self.sigma = fit.variances()[last].max(0.0).sqrt();
+        if more.abs() <= self.sigma || self.refined >= RATE_ROUNDS {
+            return Ok(true);
+        }
+        self.logarithm += more;
+        self.refined += 1;
+        Ok(false)
+    }
+}
+
+/// The trajectories in a time that runs so many times faster.
+pub(super) fn corrected(trajectories: &[Trajectory], factor: f64) -> Vec<Trajectory> {
+    let mut corrected = trajectories.to_vec();
+    for motion in &mut corrected {
+        motion.time.iter_mut().for_each(|t| *t /= factor);
+        // What was written beside the positions belongs to the time that was declared.
+        motion.velocity = None;
+    }
+    corrected
+}
+
+/// The factor by which the robot moved faster than the times say, where one other than 1 leaves less than half of what
+/// the standard model leaves, on no joint more.
+///
+/// # Errors
+/// [`SingularDesign`] where there is no fit.
+pub(super) fn factor(
+    model: &dyn Model,
+    motions: &Motions,
+    declared: (&Design, &Fit),
+) -> Result<Option<f64>, SingularDesign> {
+    let (design, fit) = declared;
+    let noise = |j: usize| noise_floor(design, fit, j) / fit.sigma[j].max(f64::MIN_POSITIVE);
+    if (0..design.joints).all(|j| design.of_joint(j).is_empty() || noise(j).powi(2) > RATE_LEAVES) {
+        return Ok(None);
+    }
+    // Squares of each joint relative to those at the declared rate.
+    let left = |logarithm: f64| -> Result<Vec<f64>, SingularDesign> {
+        let rows = motions.faster(logarithm.exp()).aligned(model);
+        let sigma = Fit::weighted(&rows, &fit.sigma)?.sigma;
+        Ok(sigma.iter().zip(&fit.sigma).map(|(s, s0)| (s / s0.max(f64::MIN_POSITIVE)).powi(2)).collect())
+    };
+    let mean = |squares: &[f64]| squares.iter().map(|s| s.ln()).sum::<f64>() / squares.len().max(1) as f64;
+    let mut best = (0.0, 0.0);
+    for factor in RATE_FACTORS {
+        let value = mean(&left(factor.ln())?);
+        if value < best.1 {
+            best = (factor.ln(), value);
+        }
+    }
+    if best.0 == 0.0 {
+        return Ok(None);
+    }
+    // Golden sections around the best of them.
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let (mut low, mut high) = (best.0 - RATE_SPAN, best.0 + RATE_SPAN);
+    for _ in 0..RATE_REFINED {
+        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+        if mean(&left(a)?) < mean(&left(b)?) { high = b } else { low = a }
+    }
+    let found = 0.5 * (low + high);
+    let squares = left(found)?;
+    let certain = mean(&squares) < RATE_LEAVES.ln() && squares.iter().all(|s| *s < RATE_WORSENS);
+    Ok(certain.then(|| found.exp()))
+}
