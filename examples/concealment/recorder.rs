@@ -1,7 +1,7 @@
 //! How the torques and positions of a run get into its recording.
 
 use clap::ValueEnum;
-use dynid_runtime::model::Robot;
+use dynid_runtime::model::{JointKind, Robot};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::signal::Butterworth;
 
@@ -20,11 +20,6 @@ pub enum Recorder {
     Filtered,
     /// Torques from motor currents: noise in proportion to the torque, 0.5 to 2 %, that lasts some 20 ms, and steps.
     Current,
-}
-
-/// Encoder counts per radian (or per metre) of the given bits a turn.
-fn counts(bits: f64) -> f64 {
-    bits.exp2() / std::f64::consts::TAU
 }
 
 impl Recorder {
@@ -54,8 +49,10 @@ impl Recorder {
             }
             Self::Quantised => {
                 let (bits, steps) = (14.0 + device.below(5) as f64, device.within(1.0, 5.0));
-                for position in &mut motion.position {
-                    round(position, 1.0 / counts(bits));
+                let of_joint = robot.frames.iter().filter(|f| f.kind != JointKind::Fixed);
+                for (position, frame) in motion.position.iter_mut().zip(of_joint) {
+                    let whole = if frame.kind == JointKind::Prismatic { 0.1 } else { std::f64::consts::TAU };
+                    round(position, whole / bits.exp2());
                 }
                 for (j, torque) in motion.torque.iter_mut().enumerate() {
                     round(torque, steps * nominal(j));

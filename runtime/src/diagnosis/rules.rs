@@ -23,6 +23,9 @@ pub(super) const STANDSTILL: f64 = 0.015;
 pub(super) const LEAST_EXPLAINED_FRACTION: f64 = 0.12;
 /// Least confidence. Statistics: one false naming in a hundred rounds; false namings in both concealment pages.
 pub(super) const LEAST_CONFIDENCE: f64 = 0.99;
+/// Searches of their own that a recording goes through: laws, lines, contacts, skew. The chance of a false naming is shared
+/// among them. Statistics.
+pub(super) const SEARCHES: f64 = 4.0;
 /// Most effects that are named. Judgement: more than any recording of the evidence has; stops a search that
 /// would fit what no law describes.
 pub(super) const MOST_EFFECTS: usize = 12;

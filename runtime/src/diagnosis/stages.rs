@@ -6,7 +6,7 @@ use super::error::DiagnosisError;
 use super::explanation::explain::{Ended, explain, small};
 use super::explanation::standard_model::StandardModelFit;
 use super::explanation::standstill;
-use super::outcome::{Diagnosis, Sampling};
+use super::outcome::{Diagnosis, Finding, Sampling};
 use super::preparation::{Prepared, nothing_moves};
 use super::rate::LAW;
 use super::rows::fit::Fit;
@@ -56,8 +56,8 @@ pub(super) fn run(
         progress.at(0.1, "candidates");
         let Begun { mut search, standard, sampling } =
             begin(model, &prepared, pushes.set_aside().as_ref(), change, (&settings, progress))?;
-        // Where there may be objections, the search can go on from here.
-        let without_effects = objections.is_some().then(|| search.model.copy()).transpose()?;
+        // Where something is said against what was found, the search goes on from here.
+        let without_effects = known.is_none().then(|| search.model.copy()).transpose()?;
         loop {
             let report = match known {
                 Some(known) => search.force(known)?,
@@ -85,8 +85,11 @@ pub(super) fn run(
             let mut diagnosis = Diagnosis { small, ..explain(&search, ended, &settings)? };
             standstill::name_not_judged(&mut diagnosis, model, &prepared.moving);
 
-            // 6. What other evidence speaks against is left out, and the search goes on.
-            let objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
+            // 6. What harms, or other evidence speaks against, is left out, and the search goes on.
+            let mut objected = harmful(&diagnosis);
+            if objected.is_empty() {
+                objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
+            }
             match &without_effects {
                 Some(model) if !objected.is_empty() => search.go_on_without(&objected, model.copy()?)?,
                 _ => {
@@ -97,6 +100,12 @@ pub(super) fn run(
             settings.excluded.extend(objected);
         }
     }
+}
+
+/// Laws that make motion which was held out worse, once nothing is fitted beside them that is never named.
+fn harmful(diagnosis: &Diagnosis) -> Vec<(EffectKind, Place)> {
+    let harms = |f: &&Finding| f.without.is_some() && f.held_out_after > f.held_out_before;
+    diagnosis.findings.iter().filter(harms).map(|f| (f.term.effect, f.term.place)).collect()
 }
 
 /// Windows in which something outside seems to have pushed the robot.

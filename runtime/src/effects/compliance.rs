@@ -70,10 +70,14 @@ pub(in crate::effects) fn shape_search() -> ShapeSearch {
     let any = [f64::NEG_INFINITY, f64::INFINITY];
     ShapeSearch {
         steps: vec![Step::Times(1.12), Step::Times(1.9), Step::Add(0.15), Step::Times(1.4)],
-        bounds: vec![any, any, [0.0, LARGEST_ROTOR], any],
+        bounds: vec![any, [0.0, MOST_DAMPING], [0.0, LARGEST_ROTOR], any],
         together: vec![vec![(0, 0.4), (2, 1.0)], vec![(0, -0.4), (2, -1.0)]],
     }
 }
+
+/// Largest damping ratio that is tried. Transmissions of steel have a few hundredths; what does not ring is no spring that
+/// shows, but a difference of filters or of noise.
+const MOST_DAMPING: f64 = 0.25;
 
 /// Largest rotor that is tried, as a fraction of the least inertia.
 const LARGEST_ROTOR: f64 = 0.95;

@@ -52,7 +52,7 @@ pub(in crate::diagnosis) fn explain(
     cannot_tell.extend(search.ties.iter().map(|tie| tied(robot, tie)));
     let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
     findings.extend(effects);
-    findings.extend(line::findings(search));
+    findings.extend(line::findings(search, settings.least_confidence));
     let late = delay::finding(model, skew, settings)?;
     let named = late.is_some();
     findings.extend(late);

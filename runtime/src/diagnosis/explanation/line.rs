@@ -4,7 +4,7 @@ use crate::diagnosis::candidates::order_line::Line;
 use crate::diagnosis::explanation::finding::{named_on, unit_term};
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::Finding;
-use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, LINE_COVERED};
+use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, LINE_COVERED, SEARCHES};
 use crate::diagnosis::search::line::JointLines;
 use crate::diagnosis::search::state::Search;
 use crate::effects::{EffectKind, EffectTerm, Form, Place};
@@ -12,9 +12,11 @@ use crate::effects::{EffectKind, EffectTerm, Form, Place};
 /// One finding per joint with lines that are not in the model already, with all of their orders.
 ///
 /// The amplitudes are those of the full rate: rows may be smoothed or filtered more than the wave can take.
-pub(in crate::diagnosis) fn findings(search: &Search<'_>) -> Vec<Finding> {
+pub(in crate::diagnosis) fn findings(search: &Search<'_>, least_confidence: f64) -> Vec<Finding> {
     let tried: usize = search.lines.iter().map(|l| l.tried).sum();
-    let of_joint = |(j, found): (usize, &JointLines)| finding(search, j, found, tried);
+    let least = 1.0 - (1.0 - least_confidence) / SEARCHES;
+    let of_joint =
+        |(j, found): (usize, &JointLines)| finding(search, j, found, tried).filter(|f| f.confidence >= least);
     search.lines.iter().enumerate().filter_map(of_joint).collect()
 }
 
