@@ -14,7 +14,9 @@ use super::preparation::Motions;
 use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
-use super::rules::{RATE_FACTORS, RATE_LEAVES, RATE_REFINED, RATE_ROUNDS, RATE_SPAN, RATE_WORSENS};
+use super::rules::{
+    RATE_FACTORS, RATE_LEAST, RATE_LEAVES, RATE_REFINED, RATE_ROUNDS, RATE_SPAN, RATE_WORSENS,
+};
 use crate::effects::{EffectKind, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
@@ -127,6 +129,8 @@ pub(super) fn factor(
     }
     let found = 0.5 * (low + high);
     let squares = left(found)?;
-    let certain = mean(&squares) < RATE_LEAVES.ln() && squares.iter().all(|s| *s < RATE_WORSENS);
+    let certain = found.abs() > RATE_LEAST
+        && mean(&squares) < RATE_LEAVES.ln()
+        && squares.iter().all(|s| *s < RATE_WORSENS);
     Ok(certain.then(|| found.exp()))
 }

@@ -207,6 +207,9 @@ pub(super) const LEVEL_TO_STAY: f64 = 5.0;
 /// Factors on the rate that are tried before anything else; smaller errors are found as a law. Seconds read as
 /// milliseconds, a decimation that was forgotten, a double rate.
 pub(super) const RATE_FACTORS: [f64; 6] = [0.001, 0.1, 0.5, 2.0, 10.0, 1000.0];
+/// Least logarithm of a factor that is taken. Judgement: a smaller error is a law among others, which other lengths of the
+/// table may imitate.
+pub(super) const RATE_LEAST: f64 = 0.4;
 /// A factor is taken where it leaves this part of the squares of the standard model, in the mean of the joints' logarithms.
 /// Judgement: no other physics is imitated so well by a time that runs otherwise.
 pub(super) const RATE_LEAVES: f64 = 0.5;
