@@ -120,9 +120,9 @@ pub struct DiagnosisOptions {
         value_name = ranges::STANDSTILL,
     )]
     pub standstill: Vec<f64>,
-    /// Look for pushes that a single joint sees while it moves, too; what a law leaves near a reversal may look like one
+    /// Do not look for pushes that a single joint sees while it moves
     #[arg(long)]
-    pub single_joint_contacts: bool,
+    pub no_single_joint_contacts: bool,
     /// Threads; the result is the same for every number [default: all cores]
     #[arg(
         long,

@@ -2,8 +2,12 @@
 
 use dynid_runtime::effects::EffectKind;
 
+use crate::options::Pushed;
 use crate::recorder::Recorder;
 use crate::size::SIZES;
+
+/// How long a contact lasts where nothing else is asked for, s.
+pub const USUAL_PUSH: [f64; 2] = [0.4, 0.7];
 
 /// One simulation and one diagnosis.
 #[derive(Debug, Clone)]
@@ -22,6 +26,8 @@ pub struct Case {
     pub baseline: bool,
     /// How it is recorded.
     pub recorder: Recorder,
+    /// What a contact pushes, and how long, s.
+    pub push: (Pushed, [f64; 2]),
 }
 
 impl Case {
@@ -30,12 +36,22 @@ impl Case {
         let hidden: Vec<&str> = self.effects.iter().map(|e| e.id()).collect();
         let hidden = if hidden.is_empty() { "none".to_owned() } else { hidden.join("+") };
         let length = self.seconds.map_or_else(String::new, |s| format!("_{s}s"));
+        let push = match self.push {
+            _ if !self.effects.contains(&EffectKind::Contact) => String::new(),
+            (Pushed::Link, USUAL_PUSH) => String::new(),
+            (pushed, [least, most]) => format!("_{pushed:?}_{least}_{most}").to_lowercase(),
+        };
         let recorder = match self.recorder {
             Recorder::White => String::new(),
             other => format!("_{}", other.name()),
         };
         let baseline = if self.baseline { "_baseline" } else { "" };
-        format!("{}_{hidden}_{}_{}{length}{recorder}{baseline}", self.robot, self.size_name(), self.seed)
+        format!(
+            "{}_{hidden}_{}_{}{length}{recorder}{baseline}{push}",
+            self.robot,
+            self.size_name(),
+            self.seed
+        )
     }
 
     pub fn size_name(&self) -> &'static str {

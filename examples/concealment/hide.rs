@@ -3,6 +3,7 @@
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
+use dynid_runtime::simulation::Reference;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
 use serde::{Deserialize, Serialize};
 
@@ -74,6 +75,9 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
         let taken: Vec<usize> = secrets.iter().filter_map(|(s, _)| s.joint).collect();
         let mut secret = Secret::draw(effect, model, &taken, &mut random)
             .ok_or_else(|| format!("{} has no joint that can hide {}", case.robot, effect.id()))?;
+        if effect == EffectKind::Contact {
+            secret.push(model, case.push, motions.first().map_or(0.0, |m| m.duration()));
+        }
         if let (EffectKind::TorqueSaturation, Some(joint)) = (effect, secret.joint) {
             secret.most_torque = most_torque(&recorded(&plain(model)?, &motions, &[], noise)?, joint);
         }
@@ -148,7 +152,7 @@ fn sized(
         let joints = visible(model, &with, &without, is_change(secret.effect))?;
         let most = joints.into_iter().fold(0.0, f64::max);
         // A contact is looked for where it is, not over the whole motion.
-        let [from, to] = secret.window();
+        let [from, to] = secret.window;
         let lasts = without.first().and_then(|m| Some(m.time.last()? - m.time.first()?)).unwrap_or(0.0);
         Ok(if secret.effect == EffectKind::Contact { most * (lasts / (to - from)).sqrt() } else { most })
     };

@@ -77,6 +77,7 @@ mod tests {
             joint: Some(0),
             chance: [0.0; 4],
             most_torque: 4.0,
+            window: [0.0; 2],
         };
         let report = |torque: [f64; 2]| {
             let mut motion = Trajectory {

@@ -62,6 +62,7 @@ mod tests {
     #[test]
     fn a_test_that_was_stopped_goes_on_where_it_was() -> Result<(), Failure> {
         let case = |seed| Case {
+            push: Default::default(),
             robot: "tx40".into(),
             effects: vec![EffectKind::Stribeck],
             size: 1,
@@ -77,7 +78,7 @@ mod tests {
             visible: 2.5,
             numbers: Vec::new(),
         };
-        let outcome = Outcome { detected: true, named: true, cannot_tell: false, small: false };
+        let outcome = Outcome { detected: true, named: true, ..Outcome::default() };
         let score = Score { hidden: vec![(hidden, outcome)], seconds: 2.0, ..Score::default() };
         let path = std::env::temp_dir().join(format!("dynid_journal_{}.jsonl", std::process::id()));
         let first = Journal::open(&path)?;

@@ -19,6 +19,7 @@ mod motions;
 mod options;
 mod page;
 mod places;
+mod pushes;
 mod put;
 mod random;
 mod recorder;
@@ -116,6 +117,14 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
     if effects.is_empty() {
         effects = EffectKind::ALL.into_iter().map(|e| vec![e]).chain([Vec::new()]).collect();
     }
+    let push_seconds = match options.push_seconds[..] {
+        [least, most] if 0.0 < least && least <= most => [least, most],
+        _ => {
+            return Err(
+                "--push-seconds: two durations, the first positive and no longer than the second".into()
+            );
+        }
+    };
     let mut cases = Vec::new();
     for (seed, &recorder) in
         (options.first_seed..options.first_seed + options.seeds).zip(options.recorders.iter().cycle())
@@ -137,7 +146,17 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
                     let seconds = options.seconds;
                     let robot = robot.clone();
                     let baseline = options.baseline;
-                    cases.push(Case { robot, effects: hidden, size, seed, seconds, baseline, recorder });
+                    let push = (options.push, push_seconds);
+                    cases.push(Case {
+                        robot,
+                        effects: hidden,
+                        size,
+                        seed,
+                        seconds,
+                        baseline,
+                        recorder,
+                        push,
+                    });
                 }
             }
         }

@@ -2,9 +2,19 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 
 use crate::recorder::Recorder;
+
+/// What a contact pushes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Pushed {
+    /// The last link, with a force.
+    #[default]
+    Link,
+    /// One joint, with a torque.
+    Joint,
+}
 
 /// What to hide, and where the table goes.
 #[derive(Debug, Parser)]
@@ -36,6 +46,12 @@ pub struct Options {
     /// One motion of this duration, s, instead of one to three of 16 to 24 s together
     #[arg(long)]
     pub seconds: Option<f64>,
+    /// What contacts push: a link, by a force, or one joint, by a torque
+    #[arg(long, value_enum, default_value_t)]
+    pub push: Pushed,
+    /// How long contacts last, s: least and most
+    #[arg(long, value_delimiter = ',', num_args = 2, default_values_t = crate::case::USUAL_PUSH)]
+    pub push_seconds: Vec<f64>,
     /// Threads; the result does not depend on them
     #[arg(long, default_value_t = 2)]
     pub threads: usize,

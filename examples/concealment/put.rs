@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use dynid_runtime::effects::{ContactForce, EffectKind, EffectTerm, Place, TermScale};
-use dynid_runtime::model::{Model, ParameterKind, Robot};
+use dynid_runtime::effects::{ContactForce, EffectKind, EffectTerm, JointTorque, Place, TermScale};
+use dynid_runtime::model::{JointIndex, Model, ParameterKind, Robot};
 use dynid_runtime::simulation::{ElasticJoint, World};
 
 use crate::failure::Failure;
@@ -178,7 +178,8 @@ pub fn spring(
     Ok(vec![("k", stiffness), ("d", damping), ("gap", play)])
 }
 
-/// Only the first motion of a recording is touched by something outside.
+/// Only the first motion of a recording is touched by something outside: its last link by a force, or one joint by a
+/// torque.
 pub fn push(
     world: &mut World<'static>,
     model: &'static dyn Model,
@@ -188,22 +189,26 @@ pub fn push(
     let robot = model.robot();
     let n = robot.joints();
     let mean = (0..n).map(|j| friction(robot, j)).sum::<f64>() / n.max(1) as f64;
+    let window = secret.window;
+    let last = robot.joint_of_frame().iter().rposition(Option::is_some).unwrap_or(0);
+    let motion = crate::motions::name(0);
+    let mut contact = ContactForce { motion, window, link: last + 1, ..ContactForce::default() };
+    let when = [("from", window[0]), ("to", window[1])];
+    if let Some(joint) = secret.joint {
+        let joint = robot.joint_number(JointIndex(joint)).0;
+        let torque = magnitude * mean;
+        contact.joint_torques = vec![JointTorque { joint, mean: 0.5 * torque, largest: torque, sigma: 0.0 }];
+        world.put_push(contact);
+        return Ok([&when[..], &[("pushed_joint", joint as f64), ("torque", torque)]].concat());
+    }
     let size = magnitude * mean / 0.3;
     let around = TAU * secret.chance[0];
     let up = secret.between(1, -0.9, 0.9);
     let flat = (1.0 - up * up).sqrt();
-    let window = secret.window();
-    let last = robot.joint_of_frame().iter().rposition(Option::is_some).unwrap_or(0);
     let force = [size * flat * around.cos(), size * flat * around.sin(), size * up];
-    let motion = crate::motions::name(0);
-    world.put_push(ContactForce {
-        motion,
-        window,
-        link: last + 1,
-        force,
-        mean_force: force,
-        edges: None,
-        joint_torques: Vec::new(),
-    });
-    Ok(vec![("force", size), ("from", window[0]), ("to", window[1])])
+    contact.force = force;
+    contact.mean_force = force.map(|f| 0.5 * f);
+    world.put_push(contact);
+    let force = [("force", size), ("x", force[0]), ("y", force[1]), ("z", force[2])];
+    Ok([&when[..], &force, &[("link", (last + 1) as f64)]].concat())
 }

@@ -4,11 +4,13 @@ use std::time::Instant;
 
 use dynid::models;
 use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings, Silent, diagnose};
+use dynid_runtime::effects::EffectKind;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::failure::Failure;
 use crate::hide::{Hidden, recordings};
+use crate::pushes::{Told, told};
 
 /// How a case ended.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -45,7 +47,7 @@ impl Score {
 }
 
 /// What became of a hidden effect.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Something was found on the joint.
     pub detected: bool,
@@ -55,6 +57,9 @@ pub struct Outcome {
     pub cannot_tell: bool,
     /// The effect is among those that the diagnosis says are there and too small to be named.
     pub small: bool,
+    /// A contact that was found at its time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub push: Option<Told>,
 }
 
 /// Simulates, diagnoses, and only then compares.
@@ -97,9 +102,13 @@ fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
         .into_iter()
         .map(|h| {
             let id = h.effect.id();
+            let push = told(found, &h);
+            // Something outside is not found where it is found at another time.
+            let at_its_time = h.effect != EffectKind::Contact || push.is_some();
             let outcome = Outcome {
+                push,
                 detected: found.findings.iter().any(|f| here(&h, &f.joints)),
-                named: found.findings.iter().any(|f| f.effect == id && here(&h, &f.joints)),
+                named: at_its_time && found.findings.iter().any(|f| f.effect == id && here(&h, &f.joints)),
                 cannot_tell: found
                     .cannot_tell
                     .iter()

@@ -3,6 +3,7 @@
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::Model;
 
+use crate::options::Pushed;
 use crate::places::Places;
 use crate::random::Random;
 
@@ -17,6 +18,8 @@ pub struct Secret {
     pub chance: [f64; 4],
     /// Largest torque of its joint in what is diagnosed, N.m or N; 0 where its law does not count against it.
     pub most_torque: f64,
+    /// When it pushes, s, where it is a contact.
+    pub window: [f64; 2],
 }
 
 impl Secret {
@@ -32,18 +35,27 @@ impl Secret {
                 Some(*joints.get(random.below(joints.len()))?)
             }
         };
-        Some(Self { effect, joint, chance: std::array::from_fn(|_| random.share()), most_torque: 0.0 })
+        let chance = std::array::from_fn(|_| random.share());
+        Some(Self { effect, joint, chance, most_torque: 0.0, window: [0.0; 2] })
+    }
+
+    /// Draws a contact: when in a motion of this duration, s, and which joint it pushes where it pushes one.
+    pub fn push(&mut self, model: &dyn Model, (pushed, [least, most]): (Pushed, [f64; 2]), duration: f64) {
+        let lasts = self.between(3, least, most);
+        let mut from = self.between(2, 1.5, 5.0);
+        if from + lasts > duration - 1.0 {
+            from = self.between(2, 0.2, 0.8) * (duration - lasts);
+        }
+        self.window = [from, from + lasts];
+        if pushed == Pushed::Joint {
+            let joints = model.robot().joints();
+            self.joint = Some(((self.chance[0] * joints as f64) as usize).min(joints.saturating_sub(1)));
+        }
     }
 
     /// The k-th number of chance, uniform in `low..high`.
     pub fn between(&self, k: usize, low: f64, high: f64) -> f64 {
         low + (high - low) * self.chance[k]
-    }
-
-    /// When a contact lasts, s.
-    pub fn window(&self) -> [f64; 2] {
-        let from = self.between(2, 1.5, 5.0);
-        [from, from + self.between(3, 0.4, 0.7)]
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use crate::case::USUAL_PUSH;
 use crate::hide::Hidden;
-use crate::options::Options;
+use crate::options::{Options, Pushed};
 use crate::recorder::Recorder;
 use crate::score::{Outcome, Score};
 use crate::size::VISIBLE;
@@ -26,7 +27,8 @@ pub fn in_a_line(score: &Score) -> String {
         .hidden
         .iter()
         .map(|(h, outcome)| {
-            format!("{} (visible {:.1}) {}", at(h.effect.id(), &joints_of(h)), h.visible, outcome.word())
+            let hidden = at(h.effect.id(), &joints_of(h));
+            format!("{hidden} (visible {:.1}) {}{}", h.visible, outcome.word(), push_in_words(outcome))
         })
         .collect();
     let mut line = hidden.join(", ");
@@ -38,6 +40,18 @@ pub fn in_a_line(score: &Score) -> String {
     }
     let _ = write!(line, " ({:.1} s)", score.seconds);
     line
+}
+
+/// How well a push was told.
+fn push_in_words(outcome: &Outcome) -> String {
+    outcome.push.map_or_else(String::new, |push| {
+        let place = if push.place { "right" } else { "wrong" };
+        let error = push.error.map_or_else(String::new, |e| format!(", off by {e:.1} sigma"));
+        format!(
+            " [overlap {:.2}, {place} place{error}, {} besides, confidence {:.4}]",
+            push.overlap, push.besides, push.confidence
+        )
+    })
 }
 
 impl Outcome {
@@ -110,6 +124,12 @@ pub fn command(options: &Options) -> String {
     }
     if options.baseline {
         command.push_str(" --baseline");
+    }
+    if options.push == Pushed::Joint {
+        command.push_str(" --push joint");
+    }
+    if options.push_seconds != USUAL_PUSH {
+        let _ = write!(command, " --push-seconds {},{}", options.push_seconds[0], options.push_seconds[1]);
     }
     if let Some(seconds) = options.seconds {
         let _ = write!(command, " --seconds {seconds}");

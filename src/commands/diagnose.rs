@@ -129,7 +129,7 @@ fn settings(options: &DiagnosisOptions, joints: usize) -> Settings {
     settings.band = options.band;
     settings.cutoff = options.cutoff;
     settings.standstill_speeds = options.speeds(joints);
-    settings.single_joint_contacts = options.single_joint_contacts;
+    settings.single_joint_contacts = !options.no_single_joint_contacts;
     settings.threads = options.threads;
     settings
 }

@@ -329,15 +329,39 @@ pub(super) const FORCE_STEP_AT_REST: f64 = 0.02;
 /// Window lengths that means of a residual are taken over, s: pushes of 0.15 to 2.4 s, each length covered to 1.5
 /// times. Mechanics; power in the tests of `scan`.
 pub(super) const SCAN_LENGTHS: [f64; 9] = [0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.6, 2.4];
+/// Shortest window, rows. Statistics: a half wave has a beginning, a height and an end.
+pub(super) const SCAN_SHORTEST: usize = 3;
+/// Windows of a length are this part of it apart. Statistics: a half wave beside itself by half of that has lost less than
+/// a hundredth of its square.
+pub(super) const SCAN_STEPS: usize = 8;
+/// Least fraction of a half wave's squares that smooth curves over the joint's own state do not make. Judgement: with less,
+/// what is seen may as well be a law of a state that no other part of the motion visits.
+pub(super) const SCAN_OWN_SHAPE: f64 = 0.4;
+/// Rows for each knot of these curves. Statistics: curves over a state are curves over time, too, and those of so many knots
+/// make a fifth of a half wave.
+pub(super) const SCAN_ROWS_PER_KNOT: usize = 150;
+/// Least and most knots of these curves. Judgement: a line, and a curve that follows what a law of friction does.
+pub(super) const SCAN_KNOTS: [usize; 2] = [2, 8];
 /// Length of the stretches whose largest means the law is fitted to, s. Statistics: a dozen of them in a recording of
 /// half a minute, each with many independent means.
 pub(super) const SCAN_STRETCH: f64 = 2.0;
+/// Least fraction of the rows of a stretch. Statistics: with fewer its largest window is one of too few.
+pub(super) const SCAN_FILLED: f64 = 1.0 / 3.0;
+/// Standard normal deviate that is passed once in ten times. Statistics: what makes the tail of the law longer must be
+/// more than the few largest stretches do by accident.
+pub(super) const ONE_IN_TEN: f64 = 1.281_551_566;
+/// Standard deviation of the edges of a push for its shape, as a part of its length: the half wave that fits a rectangle
+/// best is longer by as much on each side, that of a squared sine shorter. Mechanics.
+pub(super) const SCAN_EDGE: f64 = 0.1;
+/// A push whose half wave is shorter than this, s, is an impact inside of the robot. Mechanics: two thirds of
+/// [`SHORTEST_PUSH`], as a half wave covers that much of a push that begins and ends gently.
+pub(super) const SCAN_IMPACT: f64 = 0.1;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(super) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording. Statistics: size in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 0.01;
 /// Rows that a joint needs to be scanned. Statistics: for the autoregression of its residual.
-pub(super) const SCAN_LEAST_ROWS: usize = 150;
+pub(super) const SCAN_LEAST_ROWS: usize = 60;
 /// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles.
 pub(super) const SCAN_LEAST_STRETCHES: usize = 8;
 /// Stretches that count as much as all joints together for the law of one joint. Statistics: size against power in the
@@ -346,6 +370,20 @@ pub(super) const SCAN_OWN_STRETCHES: f64 = 40.0;
 /// Least scale of the largest squares: that of normal deviates, whose squares fall as exp(-x/2) / sqrt(x), around
 /// x = 10, where the largest of a stretch are. Statistics.
 pub(super) const SCAN_NORMAL_SCALE: f64 = 2.0 / 1.1;
+/// Rows of a joint this close to its own reversals are not looked at, s. Mechanics: presliding, play and the ringing of a
+/// gear die away within two periods of 20 Hz.
+pub(super) const REVERSAL_LEFT_OUT: f64 = 0.1;
+/// A joint feels a push that was found on another one from this many standard deviations of its mean on. Statistics: one
+/// in four hundred by accident.
+pub(super) const FELT: f64 = 3.0;
+/// Squares of the means that the force on another link may leave more than the best one, in units of the noise, and still
+/// be as good. Statistics: the 95 % point of one degree of freedom.
+pub(super) const LINKS_ALIKE: f64 = 3.84;
+/// Most squares that a force may leave for each joint, in units of the noise. Judgement: a push whose joints disagree by
+/// more than three standard deviations is told as their torques.
+pub(super) const FORCE_LEAVES: f64 = 9.0;
+/// Standard deviation of a force, as a part of it, from which on it is not told. Judgement.
+pub(super) const UNDETERMINED_FORCE: f64 = 10.0;
 /// Joints whose windows are this close together see the same push, s. Mechanics.
 pub(super) const SCAN_TOGETHER: f64 = 0.2;
 /// Values beyond so many standard deviations count as no more for the memory of a residual. Statistics.

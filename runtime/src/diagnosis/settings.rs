@@ -43,8 +43,7 @@ pub struct Settings {
     /// Speeds below which the joints count as standing still, one per joint, rad/s or m/s; used for all rows instead of
     /// `standstill`. Speed 0 keeps every row where a joint's speed does not change its sign within the window.
     pub standstill_speeds: Option<Vec<f64>>,
-    /// Whether pushes that a single joint sees while it moves are looked for in what the search leaves. Off unless asked
-    /// for: what a law near a reversal leaves still looks like a push.
+    /// Whether pushes that stand out of what the search leaves are looked for, on single joints or several.
     pub single_joint_contacts: bool,
     /// Laws at places that are not tried, because other evidence speaks against them.
     pub excluded: Vec<(EffectKind, Place)>,
@@ -105,7 +104,7 @@ impl Default for Settings {
             band: None,
             cutoff: None,
             standstill_speeds: None,
-            single_joint_contacts: false,
+            single_joint_contacts: true,
             excluded: Vec::new(),
             threads: 2,
         }

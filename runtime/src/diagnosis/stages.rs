@@ -1,5 +1,6 @@
 //! The stages of a diagnosis, one after the other: signals, contacts, candidates and search, explanations.
 
+use super::contact::felt::Around;
 use super::contact::search::{self as contact_search, Contacts};
 use super::contact::{moving, standing};
 use super::error::DiagnosisError;
@@ -152,18 +153,20 @@ impl Pushes {
                 return true;
             }
         }
-        if settings.single_joint_contacts && (!self.scanned || self.of_single_joints.is_some()) {
-            let found = pushed_in_motion(model, prepared, self.contacts.as_ref(), search);
-            if self.scanned {
-                let before = self.of_single_joints.take();
-                self.of_single_joints = before.and_then(|p| moving::still_there(p, found.as_ref()));
-            } else if found.is_some() {
-                // What was found with the pushes among the rows is looked for again without them.
-                (self.of_single_joints, self.scanned) = (found, true);
-                return true;
-            }
+        if self.scanned && self.of_single_joints.is_none() && self.contacts.is_none() {
+            return false;
         }
-        false
+        let (confirmed, found) = pushed_in_motion(model, prepared, self.contacts.as_ref(), search);
+        let refuted = self.contacts.is_some() && confirmed.is_none();
+        self.contacts = confirmed;
+        if self.scanned || !settings.single_joint_contacts {
+            let before = self.of_single_joints.take();
+            self.of_single_joints = before.and_then(|p| moving::still_there(p, found));
+            return refuted;
+        }
+        // What was found with the pushes among the rows is looked for again without them.
+        (self.of_single_joints, self.scanned) = (found, true);
+        refuted || self.of_single_joints.is_some()
     }
 
     /// All of them, and those at rest.
@@ -189,16 +192,23 @@ fn at_rest(model: &dyn Model, prepared: &Prepared) -> Result<Diagnosis, Diagnosi
     Ok(diagnosis)
 }
 
-/// Pushes on single joints in what the model with its effects leaves, outside of the contacts that are known.
+/// Of the contacts that are known, those that what the model with its effects leaves confirms; and the pushes that stand out
+/// of it besides, on single joints or several.
 fn pushed_in_motion(
     model: &dyn Model,
     prepared: &Prepared,
     contacts: Option<&Contacts>,
     search: &Search<'_>,
-) -> Option<Contacts> {
-    let rows = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
-    let residual = search.model.residual_on(&rows);
-    moving::in_motion(&search.model.context, &rows, &residual, &search.model.fast.sigma)
+) -> (Option<Contacts>, Option<Contacts>) {
+    let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
+    let context = &search.model.context;
+    let look = moving::look(context, &outside, &search.model.residual_on(&outside));
+    let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
+    let design = all.as_ref().unwrap_or(&outside);
+    let residual = search.model.residual_on(design);
+    let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
+    let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
+    (confirmed, moving::seen(&around, &look))
 }
 
 /// What a search begins with.

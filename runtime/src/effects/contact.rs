@@ -4,7 +4,7 @@ use crate::model::{Link, Robot, standard_idm};
 use serde::{Deserialize, Serialize};
 
 /// A force that acted on a link while a window of time lasted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactForce {
     /// Motion it happened in.
     pub motion: String,
@@ -16,6 +16,15 @@ pub struct ContactForce {
     pub force: [f64; 3],
     /// Mean force over the window in frame 0, N.
     pub mean_force: [f64; 3],
+    /// Standard deviations of the mean force, N, where known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_sigma: Option<[f64; 3]>,
+    /// Numbers j of the frames of other links on which a force explains as much.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub or_links: Vec<usize>,
+    /// One minus the probability that any window of the recording comes as far by accident, where it was worked out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<f64>,
     /// Standard deviations of the first and the last instant, s, where known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub edges: Option<[f64; 2]>,

@@ -141,6 +141,7 @@ impl<'m> World<'m> {
     }
 
     /// Adds a push from outside in the motion that it names: `force` is the largest, in the middle of the window.
+    /// Without a force, the largest torques of its joints act.
     pub fn put_push(&mut self, force: ContactForce) {
         self.pushes.push(force);
     }

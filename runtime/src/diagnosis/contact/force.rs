@@ -32,6 +32,11 @@ impl UnitForces {
 
     /// Weighted least-squares force.
     pub fn force(&self, rows: &[JointRow]) -> Vector3<f64> {
+        self.with_covariance(rows).map_or_else(Vector3::zeros, |(force, _)| force)
+    }
+
+    /// Weighted least-squares force and its covariance, where the rows' residuals are independent.
+    pub fn with_covariance(&self, rows: &[JointRow]) -> Option<(Vector3<f64>, Matrix3<f64>)> {
         let unit = &self.0;
         let mut g = Matrix3::zeros();
         let mut b = Vector3::zeros();
@@ -42,7 +47,7 @@ impl UnitForces {
             b += w * c * row.residual;
         }
         g += Matrix3::identity() * (FORCE_RIDGE * g.trace() + FORCE_RIDGE_ABSOLUTE);
-        g.try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * b)
+        g.try_inverse().map(|inverse| (inverse * b, inverse))
     }
 
     /// Squares that a force leaves, in units of the noise.
@@ -114,5 +119,6 @@ pub(in crate::diagnosis) fn as_torques(
             .into_iter()
             .map(|torque| JointTorque { joint: number(torque.joint), ..torque })
             .collect(),
+        ..ContactForce::default()
     }
 }

@@ -2,6 +2,51 @@
 
 use crate::diagnosis::rules::{SCAN_CLIPPED, SCAN_MOST_ORDER, SIGMA_PER_MAD};
 
+/// An autoregression with all of its lower orders.
+#[derive(Debug, Clone)]
+pub(in crate::diagnosis) struct Memory {
+    /// `coefficients[p][i]` is the weight of the value `i + 1` places back in the prediction of order p.
+    coefficients: Vec<Vec<f64>>,
+    /// Standard deviation of the error of each of these predictions, relative to the last.
+    deviations: Vec<f64>,
+    /// Standard deviation of the series itself.
+    sigma: f64,
+    level: f64,
+}
+
+impl Memory {
+    /// From the rows of all motions, `(place, value)`: the level is a median of absolute values, the autoregression is
+    /// fitted to clipped values (Yule and Walker; order by Schwarz's criterion), so that a few pushes hardly change
+    /// either. `None` where there is no spread.
+    pub fn of(motions: &[&[(usize, f64)]]) -> Option<Self> {
+        let mut values: Vec<f64> = motions.iter().flat_map(|m| m.iter().map(|r| r.1)).collect();
+        let level = median(&mut values);
+        let mut absolute: Vec<f64> = values.iter().map(|x| (x - level).abs()).collect();
+        let sigma = SIGMA_PER_MAD * median(&mut absolute);
+        if !(sigma.is_finite() && sigma > 0.0) {
+            return None;
+        }
+        let correlation = autocorrelation(motions, level, sigma);
+        let (coefficients, variances) = autoregression(&correlation, values.len());
+        let last = variances.last().copied().unwrap_or(1.0);
+        let deviations = variances.iter().map(|v| (v / last).sqrt()).collect();
+        Some(Self { coefficients, deviations, sigma, level })
+    }
+
+    /// Order.
+    pub fn order(&self) -> usize {
+        self.coefficients.len() - 1
+    }
+
+    /// What a value differs from its prediction, all orders in the same unit. `behind` values before it are there;
+    /// `value(back)` is the one so many places back, that of zero itself.
+    pub fn innovation(&self, behind: usize, value: impl Fn(usize) -> f64) -> f64 {
+        let order = behind.min(self.order());
+        let predicted: f64 = self.coefficients[order].iter().enumerate().map(|(i, a)| a * value(i + 1)).sum();
+        (value(0) - predicted) / self.deviations[order]
+    }
+}
+
 /// Standard deviation of means over so many rows.
 pub(in crate::diagnosis) struct Spread {
     /// By the number of rows, from one on.
@@ -11,21 +56,13 @@ pub(in crate::diagnosis) struct Spread {
 impl Spread {
     /// From the rows of all motions, `(place, value)`; `lengths` are the windows that means are taken over, in rows.
     ///
-    /// The level is a median of absolute values, the memory an autoregression fitted to clipped values (Yule and
-    /// Walker; order by Schwarz's criterion), and where means over windows themselves spread wider than that, as they
-    /// do where something slow is not in the model, their own spread counts.
+    /// The variance of a mean follows from the autoregression; where means over windows themselves spread wider than
+    /// that, as they do where something slow is not in the model, their own spread counts.
     pub fn of(motions: &[&[(usize, f64)]], lengths: &[usize]) -> Option<Self> {
         let longest = lengths.iter().copied().max()?;
-        let mut values: Vec<f64> = motions.iter().flat_map(|m| m.iter().map(|r| r.1)).collect();
-        let level = median(&mut values);
-        let mut absolute: Vec<f64> = values.iter().map(|x| (x - level).abs()).collect();
-        let sigma = SIGMA_PER_MAD * median(&mut absolute);
-        if !(sigma.is_finite() && sigma > 0.0) {
-            return None;
-        }
-        let correlation = autocorrelation(motions, level, sigma);
-        let model = autoregression(&correlation, values.len());
-        let gamma = continued(&model, longest);
+        let Memory { coefficients, sigma, level, .. } = Memory::of(motions)?;
+        let count: usize = motions.iter().map(|m| m.len()).sum();
+        let gamma = continued(coefficients.last()?, longest);
         let mut of_mean: Vec<f64> = Vec::with_capacity(longest);
         for n in 1..=longest {
             let sum: f64 = n as f64 + 2.0 * (1..n).map(|k| (n - k) as f64 * gamma[k]).sum::<f64>();
@@ -34,15 +71,8 @@ impl Spread {
         let mut wider = vec![1.0_f64; lengths.len()];
         for (wider, &n) in wider.iter_mut().zip(lengths) {
             let mut means = means(motions, n);
-            let independent = values.len() as f64 / n as f64;
-            if independent < 8.0 || means.is_empty() {
-                continue;
-            }
-            means.iter_mut().for_each(|m| *m = (*m - level).abs());
-            let seen = SIGMA_PER_MAD * median(&mut means);
-            // So many means know their spread no better than this.
-            let surely = seen * (1.0 - 1.2 / independent.sqrt());
-            *wider = (surely / of_mean[n - 1]).max(1.0);
+            means.iter_mut().for_each(|m| *m -= level);
+            *wider = widening(&mut means, of_mean[n - 1], count as f64 / n as f64);
         }
         for (n, sigma) in of_mean.iter_mut().enumerate() {
             let above = lengths.iter().position(|l| *l > n);
@@ -57,7 +87,21 @@ impl Spread {
     }
 }
 
-fn median(values: &mut [f64]) -> f64 {
+/// How much wider deviations spread than they should, as far as so many independent ones surely tell; at least 1. They
+/// are left in another order, without their signs.
+pub(in crate::diagnosis) fn widening(deviations: &mut [f64], sigma: f64, independent: f64) -> f64 {
+    if independent < 8.0 || deviations.is_empty() {
+        return 1.0;
+    }
+    deviations.iter_mut().for_each(|m| *m = m.abs());
+    let seen = SIGMA_PER_MAD * median(deviations);
+    // So many know their spread no better than this.
+    let surely = seen * (1.0 - 1.2 / independent.sqrt());
+    (surely / sigma).max(1.0)
+}
+
+/// The upper median; 0 of no values.
+pub(in crate::diagnosis) fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
@@ -98,26 +142,30 @@ fn autocorrelation(motions: &[&[(usize, f64)]], level: f64, sigma: f64) -> Vec<f
     (0..=SCAN_MOST_ORDER).map(|k| mean(k) / mean(0).max(1e-300)).collect()
 }
 
-/// Coefficients of the autoregression by Levinson's recursion, of the order with the least Schwarz criterion.
-fn autoregression(correlation: &[f64], rows: usize) -> Vec<f64> {
-    let mut coefficients: Vec<f64> = Vec::new();
-    let mut left = 1.0_f64;
-    let mut best = (0.0, Vec::new());
+/// Coefficients of the autoregressions by Levinson's recursion up to the order with the least Schwarz criterion, and the
+/// variances that they leave.
+fn autoregression(correlation: &[f64], rows: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let (mut all, mut variances) = (vec![Vec::new()], vec![1.0_f64]);
+    let mut best = (0.0, 0);
     for order in 1..correlation.len() {
-        let made: f64 = coefficients.iter().enumerate().map(|(k, a)| a * correlation[order - 1 - k]).sum();
+        let before: &Vec<f64> = &all[order - 1];
+        let made: f64 = before.iter().enumerate().map(|(k, a)| a * correlation[order - 1 - k]).sum();
+        let left = variances[order - 1];
         let reflection = ((correlation[order] - made) / left.max(1e-12)).clamp(-0.999, 0.999);
-        let before = coefficients.clone();
-        for (k, a) in coefficients.iter_mut().enumerate() {
-            *a -= reflection * before[order - 2 - k];
-        }
-        coefficients.push(reflection);
-        left *= 1.0 - reflection * reflection;
-        let criterion = rows as f64 * left.max(1e-12).ln() + order as f64 * (rows.max(2) as f64).ln();
+        let mut now: Vec<f64> =
+            before.iter().enumerate().map(|(k, a)| a - reflection * before[order - 2 - k]).collect();
+        now.push(reflection);
+        all.push(now);
+        variances.push(left * (1.0 - reflection * reflection));
+        let criterion =
+            rows as f64 * variances[order].max(1e-12).ln() + order as f64 * (rows.max(2) as f64).ln();
         if criterion < best.0 {
-            best = (criterion, coefficients.clone());
+            best = (criterion, order);
         }
     }
-    best.1
+    all.truncate(best.1 + 1);
+    variances.truncate(best.1 + 1);
+    (all, variances)
 }
 
 /// Autocorrelations of an autoregression, lags 0 to `longest`.

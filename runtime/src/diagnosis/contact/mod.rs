@@ -1,5 +1,7 @@
 //! Contact: windows of time in which something outside pushed the robot.
 
+pub(in crate::diagnosis) mod curves;
+pub(in crate::diagnosis) mod felt;
 pub(in crate::diagnosis) mod force;
 pub(in crate::diagnosis) mod memory;
 pub(in crate::diagnosis) mod moving;
@@ -8,4 +10,5 @@ pub(in crate::diagnosis) mod rest;
 pub(in crate::diagnosis) mod scan;
 pub(in crate::diagnosis) mod search;
 pub(in crate::diagnosis) mod standing;
+pub(in crate::diagnosis) mod white;
 pub(in crate::diagnosis) mod windows;

@@ -1,155 +1,154 @@
-//! Pushes against a robot that moves, seen joint by joint: from the rows of a model's residual to forces and windows.
+//! Pushes against a robot that moves: from the rows of a model's residual to windows, forces and how sure they are.
 
-use crate::diagnosis::contact::force::{JointRow, as_torques, best_link};
-use crate::diagnosis::contact::scan::{Pushed, Track, scan, together};
+use crate::diagnosis::contact::curves::curves;
+use crate::diagnosis::contact::felt::{Around, Felt, wrench};
+use crate::diagnosis::contact::scan::{Noise, Pushed, Track, scan, together};
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::contact::windows::duration;
 use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{CONTACT_MARGIN, FORCE_EXPLAINS};
-use crate::effects::{ContactForce, JointTorque};
+use crate::diagnosis::rules::{
+    CONTACT_MARGIN, LARGEST_PUSHED_FRACTION, REVERSAL_LEFT_OUT, SCAN_LEVEL, SETTLING,
+};
+use crate::effects::ContactForce;
 
-/// Looks for pushes in what a model leaves of the torques on the rows of a design; `sigma` is the residual's level on
-/// each joint.
-pub(in crate::diagnosis) fn in_motion(
-    context: &Context<'_>,
-    design: &Design,
-    residual: &[f64],
-    sigma: &[f64],
-) -> Option<Contacts> {
-    let signals = context.signals;
-    let first = signals.iter().position(|s| s.is_target)?;
-    let step = design.spacing(first) as f64 / signals[first].rate;
-    let tracks: Vec<Track> = (0..design.joints)
-        .map(|joint| {
-            let of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
-                (signals[k].is_target, rows.iter().map(|&(place, r)| (place, residual[r])).collect())
-            };
-            Track {
-                joint,
-                motions: Places::of(design, joint).motions().iter().enumerate().map(of_motion).collect(),
-            }
-        })
-        .collect();
-    let groups = together(scan(&tracks, step), step);
-    if groups.is_empty() {
-        return None;
-    }
-    let mut contacts = Contacts {
-        windows: vec![Vec::new(); signals.len()],
-        wrenches: Vec::new(),
-        before: 0.0,
-        after: 0.0,
-        torque: 0.0,
-        doubt: 1.0,
-    };
-    for group in &groups {
-        let wrench = wrench(context, design, &tracks, group);
-        let (from, to) = (wrench.window[0] - CONTACT_MARGIN, wrench.window[1] + CONTACT_MARGIN);
-        contacts.windows[group[0].motion].push([from, to]);
-        for p in group {
-            contacts.doubt = contacts.doubt.min(p.doubt);
-            let weight = 1.0 / (sigma[p.joint] * sigma[p.joint]);
-            let places = Places::of(design, p.joint);
-            let Some(rows) = places.motions().get(p.motion) else { continue };
-            let inside: Vec<usize> = rows
-                .iter()
-                .filter(|(place, _)| (p.places[0]..=p.places[1]).contains(place))
-                .map(|(_, r)| *r)
-                .collect();
-            for (i, &r) in inside.iter().enumerate() {
-                let around = [i.checked_sub(1), Some(i + 1)].into_iter().flatten();
-                let around: Vec<f64> = around.filter_map(|k| inside.get(k)).map(|&k| residual[k]).collect();
-                let mean = around.iter().sum::<f64>() / around.len().max(1) as f64;
-                contacts.before += weight * residual[r].powi(2);
-                contacts.after += weight * (residual[r] - mean).powi(2);
-                contacts.torque += weight * design.y[r].powi(2);
-            }
-        }
-        contacts.wrenches.push(wrench);
-    }
-    Some(contacts)
+/// What a look at a residual finds.
+pub(in crate::diagnosis) struct Look {
+    /// Windows of one or several joints that are one push each.
+    groups: Vec<Vec<Pushed>>,
+    noise: Noise,
 }
 
-/// Keeps the pushes of which another look still finds something.
-pub(in crate::diagnosis) fn still_there(found: Contacts, again: Option<&Contacts>) -> Option<Contacts> {
+/// Looks for pushes in what a model leaves of the torques on the rows of a design that known contacts are left out of.
+pub(in crate::diagnosis) fn look(context: &Context<'_>, design: &Design, residual: &[f64]) -> Look {
+    let signals = context.signals;
+    let first = signals.iter().position(|s| s.is_target).unwrap_or(0);
+    let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
+    let tracks: Vec<Track> =
+        (0..design.joints).map(|joint| track(context, design, residual, joint)).collect();
+    let (pushed, noise) = scan(&tracks, step);
+    Look { groups: together(pushed, step), noise }
+}
+
+/// The rows of a joint, but for those near its own reversals and near the beginning and the end of a motion: what friction,
+/// play and flexible gears do there comes and goes as a push does.
+fn track(context: &Context<'_>, design: &Design, residual: &[f64], joint: usize) -> Track {
+    let signals = context.signals;
+    let places = Places::of(design, joint);
+    let mut at = Vec::new();
+    let mut of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
+        let s = &signals[k];
+        let reach = (REVERSAL_LEFT_OUT * s.rate) as usize;
+        let mut near = near_reversals(&s.dq[joint], reach);
+        let settling = ((SETTLING * s.rate) as usize + s.edge_samples).min(near.len());
+        near[..settling].fill(true);
+        let end = near.len() - settling;
+        near[end..].fill(true);
+        let rows = rows.iter().filter(|(_, r)| !near[design.rows[*r].centre]);
+        let rows: Vec<(usize, usize)> = rows.copied().collect();
+        at.extend(rows.iter().map(|&(_, r)| (k, design.rows[r].centre)));
+        (s.is_target, rows.iter().map(|&(place, r)| (place, residual[r])).collect())
+    };
+    let motions = places.motions().iter().enumerate().map(&mut of_motion).collect();
+    Track { joint, motions, beside: curves(context, joint, &at) }
+}
+
+/// Whether a speed changes its sign within so many samples of each.
+fn near_reversals(dq: &[f64], reach: usize) -> Vec<bool> {
+    let mut near = vec![false; dq.len()];
+    for t in (1..dq.len()).filter(|&t| dq[t] * dq[t - 1] <= 0.0) {
+        near[t.saturating_sub(reach)..(t + reach).min(dq.len())].fill(true);
+    }
+    near
+}
+
+/// The pushes that were seen, with what all joints feel of them on `around`, whose rows leave nothing out. `None` where
+/// there are none, or they take so much of the recording that they are no exception.
+pub(in crate::diagnosis) fn seen(around: &Around<'_>, look: &Look) -> Option<Contacts> {
+    let mut contacts = Contacts::none(around.context.signals.len());
+    for group in &look.groups {
+        // The joint that tells most has the window.
+        let Some(clearest) = group.iter().max_by(|a, b| a.square.total_cmp(&b.square)) else { continue };
+        let doubt = group.iter().map(|p| p.doubt).fold(1.0, f64::min);
+        let joints: Vec<usize> = group.iter().map(|p| p.joint).collect();
+        let felt = Felt::of(around, &look.noise, clearest.motion, clearest.places);
+        let edges = clearest.edges.map(|e| e * around.step(clearest.motion));
+        let Some((wrench, doubt)) = wrench(around, &felt, &joints, &look.noise, (edges, doubt)) else {
+            continue;
+        };
+        if doubt > SCAN_LEVEL {
+            continue;
+        }
+        let window = [wrench.window[0] - CONTACT_MARGIN, wrench.window[1] + CONTACT_MARGIN];
+        contacts.windows[clearest.motion].push(window);
+        contacts.doubt = contacts.doubt.min(doubt);
+        felt.add_squares(around, &joints, &mut contacts);
+        contacts.wrenches.push(wrench);
+    }
+    let targets = around.context.signals.iter().filter(|s| s.is_target);
+    let all: f64 = targets.map(|s| s.len() as f64 / s.rate).sum();
+    let pushed: f64 = contacts.wrenches.iter().map(|w| duration(&[w.window])).sum();
+    (pushed > 0.0 && pushed <= LARGEST_PUSHED_FRACTION * all).then_some(contacts)
+}
+
+/// Of contacts that were found otherwise, those of which a joint feels more than it does by accident, each with how sure
+/// it is.
+pub(in crate::diagnosis) fn confirmed(
+    found: &Contacts,
+    around: &Around<'_>,
+    look: &Look,
+) -> Option<Contacts> {
+    let mut contacts = Contacts { wrenches: Vec::new(), doubt: 1.0, ..found.clone() };
+    for wrench in &found.wrenches {
+        let signals = around.context.signals.iter();
+        let Some(motion) = signals.enumerate().find(|(_, s)| s.is_target && s.name == wrench.motion) else {
+            continue;
+        };
+        let places = wrench.window.map(|t| around.place(motion.0, t));
+        let felt = Felt::of(around, &look.noise, motion.0, places);
+        let doubt = felt.doubt(&look.noise);
+        if doubt <= SCAN_LEVEL {
+            contacts.doubt = contacts.doubt.min(doubt);
+            let force_sigma = felt.force_sigma(around, wrench.link);
+            contacts.wrenches.push(ContactForce {
+                force_sigma,
+                confidence: Some(told(doubt)),
+                ..wrench.clone()
+            });
+        }
+    }
+    (!contacts.wrenches.is_empty()).then_some(contacts)
+}
+
+/// Confidence of a window.
+pub(super) fn told(doubt: f64) -> f64 {
+    (1.0 - doubt).clamp(0.0, crate::diagnosis::rules::HIGHEST_CONFIDENCE)
+}
+
+/// The pushes of another look, whose model was fitted without them, at the times at which they were found.
+pub(in crate::diagnosis) fn still_there(found: Contacts, again: Option<Contacts>) -> Option<Contacts> {
     let again = again?;
-    let seen = |w: &ContactForce| {
-        again
+    let seen = |w: &&ContactForce| {
+        found
             .wrenches
             .iter()
             .any(|a| a.motion == w.motion && a.window[0] <= w.window[1] && w.window[0] <= a.window[1])
     };
-    let wrenches: Vec<ContactForce> = found.wrenches.iter().filter(|w| seen(w)).cloned().collect();
-    (!wrenches.is_empty()).then_some(Contacts { wrenches, ..found })
+    let wrenches: Vec<ContactForce> = again.wrenches.iter().filter(seen).cloned().collect();
+    (!wrenches.is_empty()).then_some(Contacts { wrenches, windows: found.windows, ..again })
 }
 
-/// A push as a force on a link where at least two joints feel it and one force explains them; else as joint torques.
-fn wrench(context: &Context<'_>, design: &Design, tracks: &[Track], group: &[Pushed]) -> ContactForce {
-    let motion = group[0].motion;
-    let s = &context.signals[motion];
-    let spacing = design.spacing(motion);
-    let first = group.iter().min_by_key(|p| p.places[0]).unwrap_or(&group[0]);
-    let last = group.iter().max_by_key(|p| p.places[1]).unwrap_or(&group[0]);
-    let time = |place: usize| s.time(place * spacing);
-    let step = spacing as f64 / s.rate;
-    let felt = group.iter().map(|p| {
-        let largest = largest_mean(&tracks[p.joint].inside(motion, p.places), p.mean);
-        JointTorque { joint: p.joint, mean: p.mean, largest, sigma: p.sigma }
-    });
-    let mut wrench = as_torques(
-        context.model.robot(),
-        &s.name,
-        [time(first.places[0]), time(last.places[1])],
-        [first.edges[0] * step, last.edges[1] * step],
-        felt.collect(),
-    );
-    if group.len() < 2 {
-        return wrench;
-    }
-    let places = [first.places[0], last.places[1]];
-    let rows: Vec<JointRow> =
-        tracks.iter().filter_map(|track| felt_by(track, motion, places, group)).collect();
-    let whole: f64 = rows.iter().map(|row| (row.residual / row.sigma).powi(2)).sum();
-    // Where the robot is in the middle of the push.
-    let middle = ((places[0] + places[1]) / 2 * spacing).min(s.len().saturating_sub(1));
-    let best = best_link(context, s, std::iter::once((middle, rows.as_slice())));
-    if let Some(link) = best.filter(|link| 1.0 - link.left / whole >= FORCE_EXPLAINS) {
-        let mean = link.forces.first().map_or([0.0; 3], |f| [f[0], f[1], f[2]]);
-        // The largest torques against the means tell how much more the push was at its height.
-        let ratio = wrench
-            .joint_torques
-            .iter()
-            .map(|t| t.largest / t.mean)
-            .filter(|r| r.is_finite())
-            .fold(1.0, f64::max);
-        wrench.link = link.frame + 1;
-        wrench.mean_force = mean;
-        wrench.force = mean.map(|f| f * ratio);
-    }
-    wrench
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// The largest mean of five rows of a push, at least its whole mean.
-fn largest_mean(inside: &[f64], mean: f64) -> f64 {
-    let means = inside.chunks(5).map(|c| c.iter().sum::<f64>() / c.len() as f64);
-    means.fold(mean, |a, b| if b.abs() > a.abs() { b } else { a })
-}
-
-/// What a joint feels while others are pushed: joints that feel nothing say so. `None` where it has no rows.
-fn felt_by(track: &Track, motion: usize, places: [usize; 2], group: &[Pushed]) -> Option<JointRow> {
-    let felt = group.iter().find(|p| p.joint == track.joint);
-    let inside = track.inside(motion, places);
-    if inside.is_empty() && felt.is_none() {
-        return None;
+    #[test]
+    fn samples_around_a_change_of_sign_are_near_a_reversal() {
+        let dq: Vec<f64> = (0..20).map(|k| f64::from(k) - 9.5).collect();
+        let near = near_reversals(&dq, 3);
+        assert_eq!((0..20).filter(|&k| near[k]).collect::<Vec<_>>(), vec![7, 8, 9, 10, 11, 12]);
+        assert!(near_reversals(&[1.0; 9], 3).iter().all(|x| !x));
+        assert!(near_reversals(&[], 3).is_empty());
     }
-    let mean = felt.map_or_else(|| inside.iter().sum::<f64>() / inside.len() as f64, |p| p.mean);
-    let spread = || {
-        let squares: f64 = track.motions.iter().flat_map(|m| &m.1).map(|(_, r)| r * r).sum();
-        let count: usize = track.motions.iter().map(|m| m.1.len()).sum();
-        // Of a mean of as many rows, half of them independent.
-        (squares / count.max(1) as f64 * 2.0 / inside.len() as f64).sqrt()
-    };
-    let sigma = felt.map_or_else(spread, |p| p.sigma).max(1e-12);
-    Some(JointRow { joint: track.joint, residual: mean, y: 0.0, sigma })
 }

@@ -1,14 +1,15 @@
 //! Contact with a robot that moves: stretches of 0.15 to 2.4 s in which a joint's residual leans to one side.
 //!
-//! Means of the residual over windows of many lengths are compared with what such means do by themselves: their
-//! variance follows from how long the residual remembers, and how far the largest of them goes in a few seconds is read
-//! off the recording's own stretches, as an extreme value law (Gumbel) of their squares. Squares of normal deviates
+//! Half waves of many lengths are fitted to the white residual (`white`), and how far the largest of their amplitudes, in
+//! standard deviations, goes in a few seconds is read off the recording's own stretches, as an extreme value law (Gumbel) of their squares. Squares of normal deviates
 //! have the exponential tail that this law belongs to, and a heavier tail shows as a larger scale.
 
-use crate::diagnosis::contact::memory::Spread;
+use crate::diagnosis::contact::memory::{Spread, widening};
+use crate::diagnosis::contact::white::{Motion, Scratch, White};
 use crate::diagnosis::rules::{
-    LARGEST_PUSHED_FRACTION, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES, SCAN_LENGTHS, SCAN_LEVEL,
-    SCAN_NORMAL_SCALE, SCAN_OWN_STRETCHES, SCAN_PRESENT, SCAN_STRETCH, SCAN_TOGETHER,
+    LARGEST_PUSHED_FRACTION, ONE_IN_TEN, SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LEAST_ROWS,
+    SCAN_LEAST_STRETCHES, SCAN_LENGTHS, SCAN_LEVEL, SCAN_NORMAL_SCALE, SCAN_OWN_STRETCHES, SCAN_SHORTEST,
+    SCAN_STEPS, SCAN_STRETCH, SCAN_TOGETHER,
 };
 
 /// Rows of one joint: for each motion their places on the grid of rows, increasing, and their residual.
@@ -17,14 +18,8 @@ pub(in crate::diagnosis) struct Track {
     pub joint: usize,
     /// Motion by motion, with whether it belongs to the recording that is diagnosed.
     pub motions: Vec<(bool, Vec<(usize, f64)>)>,
-}
-
-impl Track {
-    /// The residual of a motion from the first of two places to the last.
-    pub fn inside(&self, motion: usize, places: [usize; 2]) -> Vec<f64> {
-        let rows = self.motions[motion].1.iter();
-        rows.filter(|(place, _)| (places[0]..=places[1]).contains(place)).map(|(_, r)| *r).collect()
-    }
+    /// Curves over the joint's own state that the residual is judged beside, over the rows of all motions.
+    pub beside: Vec<Vec<f64>>,
 }
 
 /// A window in which one joint is pushed.
@@ -37,9 +32,8 @@ pub(in crate::diagnosis) struct Pushed {
     pub places: [usize; 2],
     /// Standard deviations of both, in places.
     pub edges: [f64; 2],
-    /// Mean of the residual, and its standard deviation.
-    pub mean: f64,
-    pub sigma: f64,
+    /// Amplitude of the half wave over its standard deviation, squared.
+    pub square: f64,
     /// Probability that one of all windows of the recording comes as far by accident.
     pub doubt: f64,
 }
@@ -52,6 +46,9 @@ struct Law {
 }
 
 impl Law {
+    /// Of normal deviates in a stretch with some thirty independent windows.
+    const NORMAL: Self = Self { location: 8.0, scale: SCAN_NORMAL_SCALE };
+
     /// From the quartiles, which a few pushed stretches hardly move.
     fn of(largest: &mut [f64]) -> Option<Self> {
         if largest.len() < SCAN_LEAST_STRETCHES {
@@ -69,6 +66,18 @@ impl Law {
         Some(Self { location: at(0.5) - scale * place(0.5), scale })
     }
 
+    /// With a longer tail where the larger ones of these surely pass their upper quartile by more than the law has it:
+    /// excesses of an exponential tail have its scale as their mean.
+    fn with_tail(self, largest: &mut [f64]) -> Self {
+        largest.sort_by(f64::total_cmp);
+        let first = largest.len() * 3 / 4;
+        let Some(quartile) = first.checked_sub(1).map(|k| largest[k]) else { return self };
+        let count = (largest.len() - first) as f64;
+        let excess = largest[first..].iter().map(|x| x - quartile).sum::<f64>() / count;
+        let surely = excess > self.scale * (1.0 + ONE_IN_TEN / count.sqrt());
+        Self { scale: if surely { excess } else { self.scale }, ..self }
+    }
+
     fn mean(self, own: f64, other: Self, others: f64) -> Self {
         let mean = |a: f64, b: f64| (own * a + others * b) / (own + others);
         Self { location: mean(self.location, other.location), scale: mean(self.scale, other.scale) }
@@ -80,104 +89,155 @@ impl Law {
     }
 }
 
-/// Sums over the rows of one motion, so that every window's mean is two look-ups.
-struct Sums {
-    motion: usize,
-    /// Count and sum of the rows before each place.
-    count: Vec<usize>,
-    sum: Vec<f64>,
-}
-
-impl Sums {
-    fn new(motion: usize, rows: &[(usize, f64)]) -> Self {
-        let places = rows.last().map_or(0, |r| r.0 + 1);
-        let (mut count, mut sum) = (vec![0; places + 1], vec![0.0; places + 1]);
-        for &(place, x) in rows {
-            count[place + 1] = 1;
-            sum[place + 1] = x;
-        }
-        for k in 0..places {
-            count[k + 1] += count[k];
-            sum[k + 1] += sum[k];
-        }
-        Self { motion, count, sum }
-    }
-
-    fn places(&self) -> usize {
-        self.count.len() - 1
-    }
-
-    /// Mean over `[from, from + length)` in standard deviations, where enough of its rows are there.
-    fn deviation(&self, from: usize, length: usize, spread: &Spread) -> Option<f64> {
-        let to = (from + length).min(self.places());
-        let count = self.count[to] - self.count[from];
-        if (count as f64) < SCAN_PRESENT * length as f64 {
-            return None;
-        }
-        Some((self.sum[to] - self.sum[from]) / count as f64 / spread.of_mean(count))
-    }
-}
-
 /// One joint, ready to be scanned.
 struct Scanned {
     joint: usize,
-    spread: Spread,
-    /// Of the recording that is diagnosed.
-    fresh: Vec<Sums>,
+    /// From one place to the next, s.
+    step: f64,
+    white: White,
+    /// How much wider than one the deviations of each length spread.
+    wider: Vec<f64>,
     law: Law,
 }
 
-/// Windows in which joints are pushed, most certain first, none overlapping another on its joint.
+/// What the residual of every joint does by itself.
+pub(in crate::diagnosis) struct Noise {
+    /// Spread of means and law of the largest of them, by joint; `None` where there are too few rows.
+    joints: Vec<Option<(Spread, Law)>>,
+    /// Stretches of all joints.
+    stretches: usize,
+}
+
+impl Noise {
+    /// Standard deviation of a mean of a joint's residual over so many rows.
+    pub fn sigma(&self, joint: usize, rows: usize) -> Option<f64> {
+        self.joints.get(joint)?.as_ref().map(|(spread, _)| spread.of_mean(rows))
+    }
+
+    /// Probability that a mean as many standard deviations from zero is an accident.
+    pub fn doubt(&self, joint: usize, deviations: f64) -> f64 {
+        let law = self.joints.get(joint).and_then(Option::as_ref).map(|(_, law)| *law);
+        law.map_or(1.0, |law| law.tail(deviations * deviations, self.stretches))
+    }
+}
+
+/// Windows of one motion with their squared deviations: from a place on, by the length's number.
+type Seen = Vec<(f64, usize, usize)>;
+
+/// Windows in which joints are pushed, most certain first, none overlapping another on its joint; and what the residuals
+/// do by themselves.
 ///
 /// `step` is the time from one place to the next, s. With a baseline of at least as many stretches as the recording,
 /// the law comes from the baseline.
-pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> Vec<Pushed> {
-    let lengths: Vec<usize> = SCAN_LENGTHS.iter().map(|l| ((l / step).round() as usize).max(3)).collect();
+pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> (Vec<Pushed>, Noise) {
+    let lengths = lengths(step);
     let mut joints = Vec::new();
     let mut all = Vec::new();
     let mut stretches = 0;
     for track in tracks {
-        let rows: usize = track.motions.iter().map(|m| m.1.len()).sum();
-        if rows < SCAN_LEAST_ROWS {
-            continue;
-        }
-        let motions: Vec<&[(usize, f64)]> = track.motions.iter().map(|m| m.1.as_slice()).collect();
-        let Some(spread) = Spread::of(&motions, &lengths) else { continue };
-        let sums = |wanted: bool| -> Vec<Sums> {
-            let motions = track.motions.iter().enumerate();
-            let chosen = motions.filter(|(_, (fresh, rows))| *fresh == wanted && !rows.is_empty());
-            chosen.map(|(k, (_, rows))| Sums::new(k, rows)).collect()
+        let Some((scanned, seen)) = Scanned::of(track, &lengths, step) else { continue };
+        let largest = |wanted: bool| -> Vec<Stretch> {
+            let motions = scanned.white.motions.iter().zip(&seen);
+            let chosen = motions.filter(|(m, _)| m.is_target == wanted);
+            chosen.flat_map(|(m, seen)| largest(m, seen, &lengths, step)).collect()
         };
-        let (old, fresh) = (sums(false), sums(true));
-        let largest = |sums: &[Sums]| -> Vec<f64> {
-            sums.iter().flat_map(|s| largest(s, &spread, &lengths, step)).collect()
-        };
-        let (before, now) = (largest(&old), largest(&fresh));
+        let (before, now) = (largest(false), largest(true));
         stretches += now.len();
         let from = if before.len() >= now.len().max(SCAN_LEAST_STRETCHES) { before } else { now };
-        all.extend_from_slice(&from);
-        joints.push((track.joint, spread, fresh, from));
+        all.extend(from.iter().map(|s| s.largest));
+        joints.push((scanned, seen, from));
     }
-    let Some(common) = Law::of(&mut all) else { return Vec::new() };
-    let joints: Vec<Scanned> = joints
-        .into_iter()
-        .map(|(joint, spread, fresh, mut from)| {
-            let count = from.len() as f64;
-            let law = Law::of(&mut from).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
-            Scanned { joint, spread, fresh, law }
-        })
-        .collect();
+    let common = Law::of(&mut all);
+    let mut noise = Noise { joints: tracks.iter().map(|_| None).collect(), stretches: stretches.max(1) };
     let mut found: Vec<Pushed> = Vec::new();
-    for scanned in &joints {
-        let mut of_joint = pushes(scanned, &lengths, stretches, step);
-        let pushed: usize = of_joint.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
-        let places: usize = scanned.fresh.iter().map(Sums::places).sum();
-        if pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64 {
-            found.append(&mut of_joint);
+    for (mut scanned, seen, from) in joints {
+        if let Some(common) = common {
+            let mut own: Vec<f64> = from.iter().map(|s| s.largest).collect();
+            let count = own.len() as f64;
+            scanned.law = Law::of(&mut own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
+            let candidates = pushes(&scanned, &seen, &lengths, stretches, step);
+            found.extend(beyond_others(&mut scanned, candidates, &from, stretches, step));
+        }
+        let Some(k) = tracks.iter().position(|t| t.joint == scanned.joint) else { continue };
+        let rows: Vec<&[(usize, f64)]> = tracks[k].motions.iter().map(|m| m.1.as_slice()).collect();
+        noise.joints[k] = Spread::of(&rows, &lengths).map(|spread| (spread, scanned.law));
+    }
+    found.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.square.total_cmp(&a.square)));
+    (found, noise)
+}
+
+/// The candidates of a joint that are beyond what all the rest of its motion does. Where windows that are no push stand
+/// out, as at every knock of a gear with play, the law of the largest has a longer tail; whether it has is told by the
+/// stretches without a push, so that candidates which do not pass are among them the next time.
+fn beyond_others(
+    scanned: &mut Scanned,
+    mut candidates: Vec<Pushed>,
+    from: &[Stretch],
+    stretches: usize,
+    step: f64,
+) -> Vec<Pushed> {
+    let before = scanned.law;
+    let half = (0.5 * SCAN_STRETCH / step) as usize;
+    loop {
+        let pushed = |s: &&Stretch| {
+            candidates.iter().any(|p| {
+                p.motion == s.motion && s.places[0] <= p.places[1] + half && p.places[0] <= s.places[1] + half
+            })
+        };
+        let mut others: Vec<f64> = from.iter().filter(|s| !pushed(s)).map(|s| s.largest).collect();
+        scanned.law = before.with_tail(&mut others);
+        let count = candidates.len();
+        candidates.iter_mut().for_each(|p| p.doubt = scanned.law.tail(p.square, stretches));
+        candidates.retain(|p| p.doubt <= SCAN_LEVEL);
+        if candidates.len() == count {
+            break;
         }
     }
-    found.sort_by(|a, b| a.doubt.total_cmp(&b.doubt));
-    found
+    let pushed: usize = candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
+    let places: usize = scanned.white.motions.iter().filter(|m| m.is_target).map(Motion::length).sum();
+    if pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64 { candidates } else { Vec::new() }
+}
+
+/// Lengths of windows in rows, each once.
+fn lengths(step: f64) -> Vec<usize> {
+    let mut lengths: Vec<usize> =
+        SCAN_LENGTHS.iter().map(|l| ((l / step).round() as usize).max(SCAN_SHORTEST)).collect();
+    lengths.dedup();
+    lengths
+}
+
+impl Scanned {
+    /// With the windows of every motion; the law is not known yet. `None` where there are too few rows.
+    fn of(track: &Track, lengths: &[usize], step: f64) -> Option<(Self, Vec<Seen>)> {
+        let rows: usize = track.motions.iter().map(|m| m.1.len()).sum();
+        if rows < SCAN_LEAST_ROWS {
+            return None;
+        }
+        let white = White::of(&track.motions, &track.beside)?;
+        let mut seen: Vec<Seen> = vec![Vec::new(); white.motions.len()];
+        let mut wider = Vec::with_capacity(lengths.len());
+        let mut scratch = Scratch::default();
+        for (k, &length) in lengths.iter().enumerate() {
+            let mut deviations = Vec::new();
+            let from = seen.iter().map(Vec::len).collect::<Vec<_>>();
+            for (m, seen) in seen.iter_mut().enumerate() {
+                let last = (white.motions[m].length() + 1).saturating_sub(length);
+                for from in (0..last).step_by((length / SCAN_STEPS).max(1)) {
+                    if let Some(wave) = white.half_wave(m, from..from + length, &mut scratch) {
+                        seen.push((wave, from, k));
+                        deviations.push(wave);
+                    }
+                }
+            }
+            let factor = widening(&mut deviations, 1.0, rows as f64 / length as f64);
+            for (seen, from) in seen.iter_mut().zip(from) {
+                seen[from..].iter_mut().for_each(|s| s.0 = (s.0 / factor).powi(2));
+            }
+            wider.push(factor);
+        }
+        let law = Law::NORMAL;
+        Some((Self { joint: track.joint, step, white, wider, law }, seen))
+    }
 }
 
 /// Windows of several joints that are one push, in the order of time.
@@ -199,81 +259,95 @@ pub(in crate::diagnosis) fn together(mut pushed: Vec<Pushed>, step: f64) -> Vec<
     groups
 }
 
-/// Largest squared deviation in each stretch of a motion that has enough rows.
-fn largest(sums: &Sums, spread: &Spread, lengths: &[usize], step: f64) -> Vec<f64> {
+/// A stretch of one motion.
+struct Stretch {
+    motion: usize,
+    /// First and last place.
+    places: [usize; 2],
+    /// Largest squared deviation of a window in it.
+    largest: f64,
+}
+
+/// The stretches of a motion that have enough rows.
+fn largest(motion: &Motion, seen: &Seen, lengths: &[usize], step: f64) -> Vec<Stretch> {
     let stretch = ((SCAN_STRETCH / step).round() as usize).max(1);
-    let count = sums.places() / stretch;
-    let mut out = vec![None::<f64>; count];
-    for &length in lengths {
-        for from in 0..sums.places().saturating_sub(length) {
-            let Some(slot) = out.get_mut((from + length / 2) / stretch) else { continue };
-            if let Some(z) = sums.deviation(from, length, spread) {
-                *slot = Some(slot.map_or(z * z, |x| x.max(z * z)));
-            }
+    let mut out = vec![None::<f64>; motion.length() / stretch];
+    for &(square, from, k) in seen {
+        if let Some(slot) = out.get_mut((from + lengths[k] / 2) / stretch) {
+            *slot = Some(slot.map_or(square, |x| x.max(square)));
         }
     }
-    let filled = |k: usize| sums.count[(k + 1) * stretch] - sums.count[k * stretch];
-    (0..count).filter(|&k| 2 * filled(k) >= stretch).filter_map(|k| out[k]).collect()
+    let before = |place: usize| motion.places.partition_point(|p| *p < place);
+    let filled = |k: usize| before((k + 1) * stretch) - before(k * stretch);
+    (0..out.len())
+        .filter(|&k| filled(k) as f64 >= SCAN_FILLED * stretch as f64)
+        .filter_map(|k| {
+            let places = [k * stretch, (k + 1) * stretch - 1];
+            Some(Stretch { motion: motion.motion, places, largest: out[k]? })
+        })
+        .collect()
 }
 
 /// Windows of one joint beyond the level.
-fn pushes(scanned: &Scanned, lengths: &[usize], stretches: usize, step: f64) -> Vec<Pushed> {
+fn pushes(scanned: &Scanned, seen: &[Seen], lengths: &[usize], stretches: usize, step: f64) -> Vec<Pushed> {
     let mut found: Vec<Pushed> = Vec::new();
-    for sums in &scanned.fresh {
-        let mut beyond: Vec<(f64, usize, usize)> = Vec::new();
-        for &length in lengths {
-            for from in 0..sums.places().saturating_sub(length) {
-                let Some(z) = sums.deviation(from, length, &scanned.spread) else { continue };
-                if scanned.law.tail(z * z, stretches) <= SCAN_LEVEL {
-                    beyond.push((z * z, from, length));
-                }
-            }
-        }
+    let gap = (SCAN_TOGETHER / step) as usize;
+    for (m, seen) in seen.iter().enumerate().filter(|(m, _)| scanned.white.motions[*m].is_target) {
+        let mut beyond: Vec<&(f64, usize, usize)> =
+            seen.iter().filter(|s| scanned.law.tail(s.0, stretches) <= SCAN_LEVEL).collect();
         beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (_, from, length) in beyond {
-            let gap = (SCAN_TOGETHER / step) as usize;
+        for &&(_, from, k) in &beyond {
             let taken = found.iter().any(|p| {
-                p.motion == sums.motion && from <= p.places[1] + gap && p.places[0] <= from + length + gap
+                p.motion == m && from <= p.places[1] + gap && p.places[0] <= from + lengths[k] + gap
             });
             if !taken {
-                found.push(refined(scanned, sums, from, length, stretches));
+                found.extend(refined(scanned, m, (from, k), lengths, stretches));
             }
         }
     }
     found
 }
 
-/// The window of any length near one of the grid in which the residual leans most, with how well its edges are known:
-/// as far as the squared deviation falls by one.
-fn refined(scanned: &Scanned, sums: &Sums, from: usize, length: usize, stretches: usize) -> Pushed {
-    let reach = (length / 2).max(2);
-    let to = from + length;
+/// The window of any length near one of the grid whose half wave fits best, with how well its edges are known: as far
+/// as the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere.
+fn refined(
+    scanned: &Scanned,
+    motion: usize,
+    (from, k): (usize, usize),
+    lengths: &[usize],
+    stretches: usize,
+) -> Option<Pushed> {
+    let (white, length) = (&scanned.white, lengths[k]);
+    let (reach, to) = ((length / 2).max(2), from + length);
+    let fine = (length / (2 * SCAN_STEPS)).max(1);
+    let mut scratch = Scratch::default();
     let mut tried: Vec<(f64, usize, usize)> = Vec::new();
-    for a in from.saturating_sub(reach)..=from + reach {
-        for b in to.saturating_sub(reach)..=(to + reach).min(sums.places()) {
-            if b >= a + length.div_ceil(2).max(3)
-                && let Some(z) = sums.deviation(a, b - a, &scanned.spread)
+    for a in (from.saturating_sub(reach)..=from + reach).step_by(fine) {
+        for b in (to.saturating_sub(reach)..=(to + reach).min(white.motions[motion].length())).step_by(fine) {
+            if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
+                && let Some(wave) = white.half_wave(motion, a..b, &mut scratch)
             {
-                tried.push((z * z, a, b));
+                tried.push(((wave / scanned.wider[k]).powi(2), a, b));
             }
         }
     }
-    let best = tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((0.0, from, to));
+    // What is over sooner is an impact, and none where the rows are too far apart to tell.
+    let shortest = (SCAN_IMPACT / scanned.step) as usize;
+    let best = tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0)).filter(|t| t.2 - t.1 >= shortest)?;
     let near: Vec<&(f64, usize, usize)> = tried.iter().filter(|t| t.0 >= best.0 - 1.0).collect();
     let width = |edge: fn(&(f64, usize, usize)) -> usize| {
         let (low, high) = near.iter().fold((usize::MAX, 0), |(l, h), t| (l.min(edge(t)), h.max(edge(t))));
-        (0.5 * high.saturating_sub(low) as f64).max(0.5)
+        // A push need not be a half wave.
+        (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
     };
-    let count = sums.count[best.2] - sums.count[best.1];
-    Pushed {
+    Some(Pushed {
         joint: scanned.joint,
-        motion: sums.motion,
+        motion: white.motions[motion].motion,
         places: [best.1, best.2.saturating_sub(1)],
         edges: [width(|t| t.1), width(|t| t.2)],
-        mean: (sums.sum[best.2] - sums.sum[best.1]) / count.max(1) as f64,
-        sigma: scanned.spread.of_mean(count.max(1)),
+        square: best.0,
         doubt: scanned.law.tail(best.0, stretches),
-    }
+    })
 }
 
 #[cfg(test)]

@@ -7,8 +7,8 @@ use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{
-    CONTACT_MARGIN, FORCE_EXPLAINS, FORCE_PREDICTS, HIGHEST_CONFIDENCE, LARGEST_PUSHED_FRACTION,
-    LEAST_INSTANTS, PUSHED, PUSHED_TOGETHER, REMAINING_FRACTION,
+    CONTACT_MARGIN, FORCE_EXPLAINS, FORCE_PREDICTS, LARGEST_PUSHED_FRACTION, LEAST_INSTANTS, PUSHED,
+    PUSHED_TOGETHER, REMAINING_FRACTION,
 };
 use crate::effects::ContactForce;
 use nalgebra::Vector3;
@@ -31,6 +31,18 @@ pub(in crate::diagnosis) struct Contacts {
 }
 
 impl Contacts {
+    /// None in so many motions.
+    pub fn none(motions: usize) -> Self {
+        Self {
+            windows: vec![Vec::new(); motions],
+            wrenches: Vec::new(),
+            before: 0.0,
+            after: 0.0,
+            torque: 0.0,
+            doubt: 1.0,
+        }
+    }
+
     /// Both together, where there are both.
     pub fn joined(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         let (mut all, other) = match (one, other) {
@@ -73,19 +85,16 @@ pub(in crate::diagnosis) fn find(
     let robust = RobustResidual::of(design);
     let energies = energies(design, &robust.residual, &robust.sigma);
     let pushed = pushed_windows(&energies, signals, design.joints)?;
-    let mut contacts = Contacts {
-        windows: vec![Vec::new(); signals.len()],
-        wrenches: vec![],
-        before: 0.0,
-        after: 0.0,
-        torque: 0.0,
-        doubt: 1.0 - HIGHEST_CONFIDENCE,
-    };
+    let mut contacts = Contacts::none(signals.len());
     for (k, windows) in pushed.iter().enumerate() {
         for &w in windows {
             if let Some(explained) = explain(context, design, &robust, k, w) {
-                contacts.wrenches.push(explained.wrench);
                 contacts.windows[k].push([w[0] - CONTACT_MARGIN, w[1] + CONTACT_MARGIN]);
+                // What happened before the change is set aside, and is no news.
+                if !signals[k].is_target {
+                    continue;
+                }
+                contacts.wrenches.push(explained.wrench);
                 contacts.before += explained.before;
                 contacts.after += explained.after;
                 contacts.torque += explained.torque;
@@ -177,8 +186,7 @@ fn explain(
         link: frame + 1,
         force: [largest[0], largest[1], largest[2]],
         mean_force: [mean[0], mean[1], mean[2]],
-        edges: None,
-        joint_torques: Vec::new(),
+        ..ContactForce::default()
     };
     Some(Explained { wrench, before, after, torque: squares(&|row| row.y) })
 }
