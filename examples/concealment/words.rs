@@ -26,7 +26,8 @@ pub fn in_a_line(score: &Score) -> String {
         .hidden
         .iter()
         .map(|(h, outcome)| {
-            format!("{} (visible {:.1}) {}", at(h.effect.id(), &joints_of(h)), h.visible, outcome.word())
+            let what = h.outside.as_ref().map_or(h.effect.id(), |outside| outside.what.as_str());
+            format!("{} (visible {:.1}) {}", at(what, &joints_of(h)), h.visible, outcome.word())
         })
         .collect();
     let mut line = hidden.join(", ");
