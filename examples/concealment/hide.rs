@@ -11,6 +11,7 @@ use crate::case::Case;
 use crate::failure::Failure;
 use crate::hiding::{hide, of, plain};
 use crate::motions::{planned, recorded};
+use crate::outside::{Described, Outside};
 use crate::put::Number;
 use crate::random::Random;
 use crate::secret::{Secret, is_change};
@@ -28,6 +29,9 @@ pub struct Hidden {
     pub magnitude: f64,
     /// Its torque relative to the noise, on the joint where it shows most.
     pub visible: f64,
+    /// What it is, where no law of the catalogue describes it.
+    #[serde(default)]
+    pub outside: Option<Described>,
     /// What a person would call it by.
     #[serde(skip)]
     pub numbers: Vec<Number>,
@@ -78,7 +82,7 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
         if effect == EffectKind::Contact {
             secret.push(model, case.push, motions.first().map_or(0.0, |m| m.duration()));
         }
-        if let (EffectKind::TorqueSaturation, Some(joint)) = (effect, secret.joint) {
+        if let (EffectKind::TorqueSaturation | EffectKind::FreeForm, Some(joint)) = (effect, secret.joint) {
             secret.most_torque = most_torque(&recorded(&plain(model)?, &motions, &[], noise)?, joint);
         }
         let (size, seen) = sized(model, &secret, VISIBLE[case.size], &motions[..1], noise)?;
@@ -88,6 +92,7 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
             joint: secret.joint.filter(|_| effect != EffectKind::Payload),
             magnitude: size,
             visible: seen,
+            outside: (effect == EffectKind::FreeForm).then(|| Outside::of(&secret).described(&secret)),
             numbers: hide(&mut plain(model)?, model, &secret, size)?,
         });
         secrets.push((secret, size));

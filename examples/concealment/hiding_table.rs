@@ -10,6 +10,7 @@ use dynid_runtime::simulation::World;
 use crate::failure::Failure;
 use crate::hiding::{Hiding, Put};
 use crate::motions::{RATE, RECORD_EVERY};
+use crate::outside;
 use crate::places::{self, Places};
 use crate::put::{Joint, Number, body, coupled, length, push, spring, tilt};
 use crate::secret::Secret;
@@ -42,7 +43,7 @@ fn nowhere(
 }
 
 /// How each of them is hidden.
-pub const TABLE: [Hiding; 24] = [
+pub const TABLE: [Hiding; 25] = [
     law(EffectKind::Stribeck, "extra level at rest, of the dry friction", 0.3, 2.0, |world, model, s, m| {
         let joint = Joint::of(model, s);
         let (level, vs) = (m * joint.friction, s.between(0, 0.03, 0.12) * joint.speed);
@@ -264,4 +265,12 @@ pub const TABLE: [Hiding; 24] = [
             push,
         )
     },
+    // Physics outside of the catalogue: crosstalk, a cable over two joints and the like.
+    recorded(
+        EffectKind::FreeForm,
+        "torque, of the largest of the joint",
+        [0.05, 0.5],
+        places::every,
+        outside::distort,
+    ),
 ];

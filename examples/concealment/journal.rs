@@ -76,6 +76,7 @@ mod tests {
             joint: Some(2),
             magnitude: 1.5,
             visible: 2.5,
+            outside: None,
             numbers: Vec::new(),
         };
         let outcome = Outcome { detected: true, named: true, ..Outcome::default() };

@@ -17,6 +17,7 @@ mod in_parallel;
 mod journal;
 mod motions;
 mod options;
+mod outside;
 mod page;
 mod places;
 mod pushes;

@@ -87,15 +87,28 @@ fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
     let here = |hidden: &Hidden, joints: &[usize]| {
         joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&(joint + 1)))
     };
+    let here_is = |h: &Hidden, f: &Finding| {
+        let over = h.outside.as_ref().is_none_or(|what| what.is_over(&f.variables));
+        f.effect == h.effect.id() && here(h, &f.joints) && over
+    };
+    let besides = |h: &Hidden, f: &Finding| {
+        let also = h.outside.iter().flat_map(|what| &what.also);
+        also.into_iter().any(|(effect, joint)| *effect == f.effect && f.joints == [*joint])
+    };
     for finding in &found.findings {
         if !score.found.contains(&finding.effect) {
             score.found.push(finding.effect.clone());
         }
-        let truth = hidden.iter().find(|h| finding.effect == h.effect.id() && here(h, &finding.joints));
+        let truth = hidden.iter().find(|h| here_is(h, finding) || besides(h, finding));
         score.told.push((finding.confidence, truth.is_some()));
         match truth {
             Some(truth) => score.numbers.extend(deviations(finding, truth)),
-            None => score.others.push((finding.effect.clone(), finding.joints.clone())),
+            None => {
+                let over = finding.variables.join(" and ");
+                let effect = finding.effect.clone();
+                let what = if over.is_empty() { effect } else { format!("{effect}({over})") };
+                score.others.push((what, finding.joints.clone()));
+            }
         }
     }
     score.hidden = hidden
@@ -108,7 +121,7 @@ fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
             let outcome = Outcome {
                 push,
                 detected: found.findings.iter().any(|f| here(&h, &f.joints)),
-                named: at_its_time && found.findings.iter().any(|f| f.effect == id && here(&h, &f.joints)),
+                named: at_its_time && found.findings.iter().any(|f| here_is(&h, f)),
                 cannot_tell: found
                     .cannot_tell
                     .iter()

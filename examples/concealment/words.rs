@@ -27,7 +27,8 @@ pub fn in_a_line(score: &Score) -> String {
         .hidden
         .iter()
         .map(|(h, outcome)| {
-            let hidden = at(h.effect.id(), &joints_of(h));
+            let what = h.outside.as_ref().map_or(h.effect.id(), |outside| outside.what.as_str());
+            let hidden = at(what, &joints_of(h));
             format!("{hidden} (visible {:.1}) {}{}", h.visible, outcome.word(), push_in_words(outcome))
         })
         .collect();

@@ -236,6 +236,28 @@ pub(super) const MOST_EVALUATIONS: usize = 80;
 /// A refinement ends when its steps are this part of the first ones. Judgement: finer than shapes are known.
 pub(super) const SMALLEST_STEP: f64 = 0.02;
 
+// ---- Laws over any variables --------------------------------------------------------------------------------------
+
+/// A law over any variables explains at least this part of what held-out motion leaves of its joint beyond noise. What it
+/// says: the torque that is missing depends on these variables and on nothing else, which is wrong where it is not most
+/// of it.
+pub(super) const FREE_FORM_SHARE: f64 = 0.5;
+/// Such a law is looked for where this part of what remains of a joint is the same two rows later, and so no noise: twice
+/// the least fraction of a law, of which it must explain half.
+pub(super) const SLOW_PART_OF_REMAINS: f64 = 0.25;
+/// A law of the catalogue that explains this part of what such a law does is not displaced by it: as where a spring
+/// suffices for a curve over the position. Judgement.
+pub(super) const NEARLY_AS_MUCH: f64 = 0.75;
+/// Relative ridge of the amplitudes of such a law. Statistics: where each column may be as large as what remains of a
+/// joint, the ridge of the posterior mean is one over the rows (Hoerl and Kennard 1970), of which a joint has hundreds;
+/// without it, bends that one motion does not determine are predicted for another.
+pub(super) const CURVE_RIDGE: f64 = 1e-3;
+/// Part of a variable's values beyond each end of the interval that curves are over. Statistics: single spikes do not
+/// stretch it.
+pub(super) const FREE_FORM_TAIL: f64 = 0.001;
+/// Most pairs of variables that are judged on held-out motion, and as many with the best variable alone. Times only.
+pub(super) const FREE_FORM_PAIRS: usize = 8;
+
 // ---- Order spectra ------------------------------------------------------------------------------------------------
 
 /// Highest order per motor turn: beyond the sixth harmonic of a motor's torque. Mechanics; torque_ripple.

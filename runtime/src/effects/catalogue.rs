@@ -60,6 +60,7 @@ catalogue! {
     position_offset: PositionOffset,
     geometry_error: GeometryError,
     contact: Contact,
+    free_form: FreeForm,
 }
 
 impl EffectKind {

@@ -53,6 +53,7 @@ fn made_up(kind: EffectKind, place: Place, shape: &[f64]) -> Quantities {
         Form::Body(_) => BodyEstimate::from_parameters(&a[..10], 0.1).parameters(&s),
         Form::Coupled => CoupledRotor { ratio: shape[0] }.parameters(&a[..3], &s[..3], 0.01),
         Form::Window => vec![Parameter::new("largest_force", 20.0, 0.0, "N")],
+        Form::Free => vec![Parameter::new("swing", 2.0, 0.1, "N.m")],
     })
 }
 
@@ -95,7 +96,7 @@ fn a_special_case_is_another_effect_of_the_catalogue_that_is_not_made_special_by
 fn an_effect_that_is_searched_has_places_and_finite_shapes_there() {
     for kind in EffectKind::ALL {
         let places = everywhere(kind);
-        assert_eq!(places.is_empty(), matches!(kind.form(), Form::Window), "{kind:?}");
+        assert_eq!(places.is_empty(), matches!(kind.form(), Form::Window | Form::Free), "{kind:?}");
         for (place, scales, shapes) in places {
             assert!(!shapes.is_empty() && shapes.iter().flatten().all(|x| x.is_finite()), "{kind:?}");
             let named = kind.form().named_joints(&robot(), place);

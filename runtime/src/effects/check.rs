@@ -1,6 +1,6 @@
 //! Whether a term that comes from a file can be evaluated on a robot.
 
-use super::{At, EffectTerm, Form, JointLaw, Place, Scale};
+use super::{At, EffectTerm, Form, FreeLaw, JointLaw, Place, Scale};
 use crate::model::{JointNumber, Robot};
 
 /// What of a term cannot be.
@@ -62,6 +62,13 @@ impl EffectTerm {
                 self.check_shape(&[1])
             }
             Form::Window => self.check_wrenches(robot),
+            Form::Free => {
+                self.check_joint(robot)?;
+                let Some(law) = FreeLaw::from_shape(&self.shape, robot.joints()) else {
+                    return wrong("shape", format!("no {} has {:?}", self.effect.id(), self.shape));
+                };
+                self.check_amplitudes(&[law.amplitudes()])
+            }
         }
     }
 

@@ -24,6 +24,8 @@ pub enum Form {
     Coupled,
     /// An outside force in time windows.
     Window,
+    /// Curves of a joint's torque over any variables.
+    Free,
 }
 
 impl Form {
@@ -38,7 +40,7 @@ impl Form {
             }
             Self::Body(law) => law.links(robot).into_iter().map(Place::Link).collect(),
             Self::Coupled => CoupledRotor::places(robot),
-            Self::Window => Vec::new(),
+            Self::Window | Self::Free => Vec::new(),
         }
     }
 
@@ -51,7 +53,7 @@ impl Form {
             Self::Compliance(law) => law.shapes().iter().map(|s| s.to_vec()).collect(),
             Self::Coupled => CoupledRotor::RATIOS.iter().map(|&ratio| vec![ratio]).collect(),
             Self::Sensitivity(_) | Self::Body(_) => vec![Vec::new()],
-            Self::Window => Vec::new(),
+            Self::Window | Self::Free => Vec::new(),
         }
     }
 
@@ -59,9 +61,12 @@ impl Form {
     pub fn shapes_of_orders(self, orders: &[f64]) -> Vec<Vec<f64>> {
         match self {
             Self::Joint(law) => law.shapes_of_orders(orders),
-            Self::Sensitivity(_) | Self::Compliance(_) | Self::Body(_) | Self::Coupled | Self::Window => {
-                Vec::new()
-            }
+            Self::Sensitivity(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free => Vec::new(),
         }
     }
 
@@ -74,7 +79,7 @@ impl Form {
             },
             Self::Compliance(_) => compliance::shape_search(),
             Self::Coupled => CoupledRotor::shape_search(),
-            Self::Sensitivity(_) | Self::Body(_) | Self::Window => ShapeSearch::none(),
+            Self::Sensitivity(_) | Self::Body(_) | Self::Window | Self::Free => ShapeSearch::none(),
         }
     }
 
@@ -82,7 +87,12 @@ impl Form {
     pub fn fixed_amplitude(self) -> Option<f64> {
         match self {
             Self::Compliance(_) => Some(1.0),
-            Self::Joint(_) | Self::Sensitivity(_) | Self::Body(_) | Self::Coupled | Self::Window => None,
+            Self::Joint(_)
+            | Self::Sensitivity(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free => None,
         }
     }
 
@@ -90,9 +100,12 @@ impl Form {
     pub fn only_positive(self) -> bool {
         match self {
             Self::Joint(law) => law.only_positive(),
-            Self::Sensitivity(_) | Self::Compliance(_) | Self::Body(_) | Self::Coupled | Self::Window => {
-                false
-            }
+            Self::Sensitivity(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free => false,
         }
     }
 
@@ -101,22 +114,37 @@ impl Form {
     pub fn shape_is_amplitude(self) -> bool {
         match self {
             Self::Sensitivity(_) => true,
-            Self::Joint(_) | Self::Compliance(_) | Self::Body(_) | Self::Coupled | Self::Window => false,
+            Self::Joint(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free => false,
         }
+    }
+
+    /// Whether it is a curve of many numbers, of which a motion may determine few.
+    pub fn is_curve(self) -> bool {
+        matches!(self, Self::Free)
     }
 
     /// Whether it rings or bursts faster than any motion, so that only rows that hold such frequencies show it.
     pub fn is_fast_only(self) -> bool {
         match self {
             Self::Compliance(_) => true,
-            Self::Joint(_) | Self::Sensitivity(_) | Self::Body(_) | Self::Coupled | Self::Window => false,
+            Self::Joint(_)
+            | Self::Sensitivity(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free => false,
         }
     }
 
     /// Joints (0-based) that such an effect at a place is named on; empty for the whole robot.
     pub fn named_joints(self, robot: &Robot, place: Place) -> Vec<usize> {
         match self {
-            Self::Joint(_) | Self::Compliance(_) => place.joint().into_iter().collect(),
+            Self::Joint(_) | Self::Compliance(_) | Self::Free => place.joint().into_iter().collect(),
             Self::Coupled => place.pair().into_iter().flatten().collect(),
             Self::Sensitivity(law) if law.together() => Vec::new(),
             Self::Sensitivity(law) => {

@@ -6,7 +6,7 @@
 //! evaluated sample by sample they are columns of an identification, evaluated inside an integrator they are a torque
 //! of a simulation. Errors of the model's own numbers are a [`Sensitivity`]: their columns are exact derivatives of the
 //! model. Compliant transmissions are a [`Compliance`]: their torque is the response of the link that is driven through
-//! them. Bodies on links are a [`BodyOnLink`].
+//! them. Bodies on links are a [`BodyOnLink`]. What no law describes is a [`FreeLaw`]: curves over any variables.
 //!
 //! ```
 //! use dynid_runtime::effects::EffectKind;
@@ -23,13 +23,16 @@ mod contact;
 mod coupled;
 mod effect;
 mod form;
+mod free_law;
 mod joint_law;
 mod place;
 mod quantity;
 mod rigid_body;
 mod sensitivity;
 mod shape;
+mod spline;
 mod term;
+mod variable;
 
 pub use catalogue::EffectKind;
 pub use check::TermError;
@@ -38,6 +41,7 @@ pub use contact::{ContactForce, JointTorque, unit_force_torques};
 pub use coupled::CoupledRotor;
 pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, SpecialCase, Words};
 pub use form::Form;
+pub use free_law::{Axis, FreeLaw, Seen, Together};
 pub use joint_law::{At, AtRest, JointLaw, Scale};
 pub use place::Place;
 pub use quantity::{Parameter, Quantities};
@@ -45,6 +49,7 @@ pub use rigid_body::{BodyEstimate, BodyOnLink, body_columns};
 pub use sensitivity::{Direction, Distortion, Seeds, Sensitivity, Variant, derivable, derivative};
 pub use shape::{Move, ShapeSearch, Step};
 pub use term::{EffectTerm, TermScale};
+pub use variable::{SinceReversal, Variable};
 
 #[cfg(test)]
 mod catalogue_tests;

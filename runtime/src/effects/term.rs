@@ -36,7 +36,12 @@ impl EffectTerm {
     pub fn distortion(&self) -> Option<Distortion> {
         match self.effect.form() {
             Form::Sensitivity(law) => law.in_recording(&self.amplitude),
-            Form::Joint(_) | Form::Compliance(_) | Form::Body(_) | Form::Coupled | Form::Window => None,
+            Form::Joint(_)
+            | Form::Compliance(_)
+            | Form::Body(_)
+            | Form::Coupled
+            | Form::Window
+            | Form::Free => None,
         }
     }
 
@@ -49,7 +54,12 @@ impl EffectTerm {
                 let known = Transmission::from_amplitude(&self.amplitude, frequency, prismatic)?;
                 Some((self.place.joint()?, known))
             }
-            Form::Joint(_) | Form::Sensitivity(_) | Form::Body(_) | Form::Coupled | Form::Window => None,
+            Form::Joint(_)
+            | Form::Sensitivity(_)
+            | Form::Body(_)
+            | Form::Coupled
+            | Form::Window
+            | Form::Free => None,
         }
     }
 }

@@ -17,6 +17,18 @@ pub(super) struct EffectTorque {
     last: Option<f64>,
 }
 
+/// Fv, Fc and offset of a joint in the standard model, from base parameters.
+pub(super) fn friction(robot: &Robot, chi: &[f64], joint: usize) -> [f64; 3] {
+    let joint_of = robot.joint_of_frame();
+    [ParameterKind::Fv, ParameterKind::Fc, ParameterKind::Off].map(|kind| {
+        let own = |k: usize| {
+            let parameter = &robot.standard[robot.base[k].standard];
+            parameter.kind == kind && joint_of[parameter.frame] == Some(joint)
+        };
+        (0..chi.len()).find(|&k| own(k)).map_or(0.0, |k| chi[k])
+    })
+}
+
 /// No law of a joint has as many amplitudes.
 const MOST_COLUMNS: usize = 16;
 
@@ -29,21 +41,13 @@ impl EffectTorque {
         joint: usize,
         term: &EffectTerm,
     ) -> Option<Self> {
-        let joint_of = robot.joint_of_frame();
-        let of = |kind: ParameterKind| -> f64 {
-            let own = |k: usize| {
-                let parameter = &robot.standard[robot.base[k].standard];
-                parameter.kind == kind && joint_of[parameter.frame] == Some(joint)
-            };
-            (0..chi.len()).find(|&k| own(k)).map_or(0.0, |k| chi[k])
-        };
         Some(Self {
             law,
             joint,
             scale: term.scale?.into(),
             shape: term.shape.clone(),
             amplitude: term.amplitude.clone(),
-            friction: [of(ParameterKind::Fv), of(ParameterKind::Fc), of(ParameterKind::Off)],
+            friction: friction(robot, chi, joint),
             memory: 0.0,
             last: None,
         })

@@ -40,6 +40,7 @@ mod error;
 pub mod excitation;
 mod extra;
 mod forward;
+mod free;
 mod integrator;
 mod less_friction;
 mod lu;

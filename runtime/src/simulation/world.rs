@@ -5,10 +5,11 @@ use super::coupled_friction::CoupledFriction;
 use super::effect::EffectTorque;
 use super::elastic::ElasticJoint;
 use super::extra::ExtraTorque;
+use super::free::FreeTorque;
 use super::less_friction::LessFriction;
 use super::plant::Plant;
 use super::push::Push;
-use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, JointLaw};
+use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, FreeLaw, JointLaw};
 use crate::model::{Model, ParameterKind, RecursiveModel, RecursiveModelError, Robot};
 
 /// What is known of the robot's numbers.
@@ -50,6 +51,8 @@ pub struct World<'m> {
     table: Option<RecursiveModel>,
     parameters: Parameters,
     laws: Vec<(&'static dyn JointLaw, usize, EffectTerm)>,
+    /// Laws over any variables, with their joints.
+    free: Vec<(usize, EffectTerm)>,
     /// Elastic joints; the inertia of the rotor where base parameters do not tell it apart.
     elastic: Vec<(ElasticJoint, Option<f64>)>,
     coupled: Vec<CoupledFriction>,
@@ -75,6 +78,7 @@ impl<'m> World<'m> {
             table: None,
             parameters,
             laws: Vec::new(),
+            free: Vec::new(),
             elastic: Vec::new(),
             coupled: Vec::new(),
             pushes: Vec::new(),
@@ -124,6 +128,13 @@ impl<'m> World<'m> {
             Form::Coupled => match (term.place.pair(), term.shape.as_slice(), term.amplitude.as_slice()) {
                 (Some(joints), &[ratio], &[viscous, coulomb, 0.0]) if joints.iter().all(|j| *j < n) => {
                     self.coupled.push(CoupledFriction { joints, ratio, viscous, coulomb });
+                    true
+                }
+                _ => false,
+            },
+            Form::Free => match term.place.joint().filter(|j| *j < n) {
+                Some(j) if FreeLaw::from_shape(&term.shape, n).is_some() => {
+                    self.free.push((j, term.clone()));
                     true
                 }
                 _ => false,
@@ -232,6 +243,11 @@ impl<'m> World<'m> {
         let mut torques: Vec<Box<dyn ExtraTorque + '_>> = Vec::new();
         for (law, joint, term) in &self.laws {
             if let Some(torque) = EffectTorque::new(robot, chi, *law, *joint, term) {
+                torques.push(Box::new(torque));
+            }
+        }
+        for (joint, term) in &self.free {
+            if let Some(torque) = FreeTorque::new(robot, chi, *joint, term) {
                 torques.push(Box::new(torque));
             }
         }

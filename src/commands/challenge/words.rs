@@ -95,7 +95,7 @@ pub(super) fn details(name: &str, found: Option<&Diagnosis>) -> String {
         }
     }
     for c in &found.cannot_tell {
-        text.push_str(&format!("\n  cannot tell {}", label(&c.between.join(" from "), &c.joints)));
+        text.push_str(&format!("\n  cannot tell {}", label(&c.sides().join(" from "), &c.joints)));
     }
     for m in &found.mismatch {
         text.push_str(&format!("\n  joint {}: {} of the mismatch, {}", m.joint, percent(m.share), m.where_));

@@ -19,6 +19,9 @@ pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
     if let Some(curve) = &finding.curve {
         page.plot(&revealing(curve));
     }
+    for curve in &finding.more_curves {
+        page.plot(&revealing(curve));
+    }
     for spectrum in diagnosis.spectra.iter().filter(|s| finding.joints.contains(&s.joint)) {
         if effect.is_some_and(|e| e.properties().abscissa == Abscissa::WaveAngle) {
             page.plot(&orders(spectrum, unit(finding)));

@@ -169,7 +169,7 @@ fn cannot_tell(page: &mut Page, diagnosis: &Diagnosis) {
     }
     page.heading("What this motion cannot tell");
     page.list(diagnosis.cannot_tell.iter().map(|c| {
-        format!("{} on {}. To tell: {}.", c.between.join(" or "), joint_words(&c.joints), c.experiment)
+        format!("{} on {}. To tell: {}.", c.sides().join(" or "), joint_words(&c.joints), c.experiment)
     }));
 }
 

@@ -38,7 +38,7 @@ pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> S
     for c in &diagnosis.cannot_tell {
         text.push_str(&format!(
             "\n\ncannot tell {} on {} apart: {}",
-            c.between.join(" and "),
+            c.sides().join(" and "),
             joint_words(&c.joints),
             c.experiment
         ));

@@ -79,7 +79,13 @@ pub(in crate::diagnosis) fn make(
     let trials: Vec<Trial> = shapes
         .iter()
         .map(|shape| {
-            Trial::new(design, shape.clone(), columns(context, design, effect, place, shape, change))
+            let mut trial =
+                Trial::new(design, shape.clone(), columns(context, design, effect, place, shape, change));
+            if effect.form().is_curve() {
+                // Of a curve, the motion shows what it passes.
+                trial.needed = 1;
+            }
+            trial
         })
         .filter(|t| t.columns.iter().all(|c| c.iter().flat_map(|(_, v)| v).all(|x| x.is_finite())))
         .collect();

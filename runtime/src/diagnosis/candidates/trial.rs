@@ -16,6 +16,8 @@ pub(in crate::diagnosis) struct Trial {
     /// Inner products with the design's columns and y, and with each other: `[joint][segment]`; empty where the
     /// trial does not act on the joint.
     pub products: Vec<Vec<Products>>,
+    /// Columns that must have a part of their own.
+    pub needed: usize,
 }
 
 /// Inner products of a trial on one group of rows.
@@ -89,9 +91,20 @@ fn dense(design: &Design, column: &Sparse) -> Vec<f64> {
     full
 }
 
+/// Columns of k that must have a part of their own. Of the ten columns of a body the standard model makes some, of the
+/// three of a rotor at times its inertia: the others still count. A wave of which only the sine can be seen is none.
+fn columns_needed(k: usize) -> usize {
+    match k {
+        0..3 => k,
+        3..10 => k - 1,
+        _ => 1,
+    }
+}
+
 impl Trial {
     pub fn new(design: &Design, shape: Vec<f64>, columns: Vec<Sparse>) -> Self {
-        let mut trial = Self { shape, columns, products: Vec::new() };
+        let needed = columns_needed(columns.len());
+        let mut trial = Self { shape, columns, products: Vec::new(), needed };
         trial.refresh(design);
         trial
     }

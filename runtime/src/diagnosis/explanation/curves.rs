@@ -1,6 +1,7 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
 use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::explanation::standard_model::StandardModelFit;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
 use crate::diagnosis::rows::design::{Design, RowAt};
@@ -43,6 +44,9 @@ fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
 /// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
 pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, k: usize) -> Option<Curve> {
     let joint = *term.own.first()?;
+    if let Some(curve) = free_form::curves(model, k).into_iter().next() {
+        return Some(curve);
+    }
     let side = model.regression(term.effect.properties().window);
     let design = &side.design;
     let dense = dense_columns(&model.context, design, term.effect, term.place, &term.shape, model.change);
@@ -74,7 +78,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
 }
 
 /// Means over bins with equally many rows; (variable, residual, law).
-fn binned(mut rows: Vec<(f64, f64, f64)>) -> Curve {
+pub(in crate::diagnosis) fn binned(mut rows: Vec<(f64, f64, f64)>) -> Curve {
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut curve = Curve::default();
     let size = rows.len().div_ceil(BINS).max(1);

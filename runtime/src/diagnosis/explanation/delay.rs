@@ -100,7 +100,7 @@ fn with_skew(regression: &Regression, skew: f64) -> Design {
     let p = regression.design.parameters;
     let taken = skew - regression.fit.chi[p];
     let mut design = regression.design.clone();
-    let column = design.columns.remove(p);
+    let column = design.remove(p);
     design.y = regression.design.y.iter().zip(&column).map(|(y, c)| y + taken * c).collect();
     design.refresh();
     design

@@ -4,7 +4,7 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
-use crate::diagnosis::explanation::{curves, delay, line, rate, words};
+use crate::diagnosis::explanation::{curves, delay, free_form, line, rate, words};
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::outcome::{
     CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling,
@@ -106,12 +106,18 @@ pub(in crate::diagnosis) fn explain(
 /// Rivals that explain nearly as much as the effects that were accepted; `effects` are those of the terms, in order.
 fn cannot_tell(model: &ExtendedModel<'_>, effects: &[Finding]) -> Vec<CannotTell> {
     let mut list = Vec::new();
+    let robot = model.context.model.robot();
     for (term, finding) in model.terms.iter().zip(effects) {
         for rival in term.rivals.iter().filter(|r| r.difference_p_value > TOLD_APART) {
             list.push(CannotTell {
                 between: vec![finding.effect.clone(), rival.effect.id().into()],
                 joints: finding.joints.clone(),
                 experiment: term.effect.words().experiment.into(),
+                variables: if rival.shape.is_empty() {
+                    Vec::new()
+                } else {
+                    vec![finding.variables.clone(), free_form::variables(robot, &rival.shape)]
+                },
             });
         }
     }
@@ -128,6 +134,7 @@ fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
         between: tie.effects.iter().map(|e| e.id().to_string()).collect(),
         joints,
         experiment: tie.effects[0].words().experiment.into(),
+        variables: Vec::new(),
     }
 }
 

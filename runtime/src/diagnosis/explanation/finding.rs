@@ -3,6 +3,7 @@
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::curves;
+use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::explanation::quantities::{Quantified, quantified, uncertainty};
 use crate::diagnosis::explanation::standard_model::estimated;
 use crate::diagnosis::explanation::words;
@@ -10,7 +11,7 @@ use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue, WithoutIt}
 use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{EffectKind, EffectTerm, Place};
+use crate::effects::{EffectKind, EffectTerm, Form, Place};
 use crate::model::{JointIndex, Robot};
 
 /// A term without amplitudes: what an effect at a place with a shape is.
@@ -58,6 +59,9 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
         share: 1.0 - (after / before).powi(2),
         alternatives: alternatives(model, k),
         curve: curves::of_term(model, accepted, k),
+        more_curves: free_form::curves(model, k).into_iter().skip(1).collect(),
+        variables: variables(model.context.model.robot(), accepted),
+        proposal: free_form::proposal(model, k),
         without: Some(WithoutIt {
             chi: estimated(&reduced.slow).chi,
             effects: (0..reduced.terms.len()).map(|i| bare_term(&reduced, i)).collect(),
@@ -66,6 +70,14 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     };
     finding.sentence = words::sentence(model.context.model.robot(), accepted.effect, &finding);
     Ok(finding)
+}
+
+/// Variables of a term that its effect does not say.
+fn variables(robot: &Robot, accepted: &Accepted) -> Vec<String> {
+    match accepted.effect.form() {
+        Form::Free => free_form::variables(robot, &accepted.shape),
+        _ => Vec::new(),
+    }
 }
 
 /// Term k of a model with its amplitudes, whose uncertainty nobody asks for.
@@ -98,11 +110,16 @@ fn with_amplitude(
 fn alternatives(model: &ExtendedModel<'_>, k: usize) -> Vec<Alternative> {
     let accepted = &model.terms[k];
     let percent = |fraction: f64| 100.0 * fraction.clamp(0.0, 1.0);
+    let over = |rival: &crate::diagnosis::search::term::Rival| {
+        let variables = free_form::variables(model.context.model.robot(), &rival.shape);
+        if variables.is_empty() { String::new() } else { format!("over {}: ", variables.join(" and ")) }
+    };
     let alternative = |rival: &crate::diagnosis::search::term::Rival| Alternative {
         effect: rival.effect.id().into(),
         joints: named_on(model.context.model.robot(), rival.effect, rival.place),
         why_not: format!(
-            "explains {:.0} % of what held-out motion leaves open, against {:.0} %",
+            "{}explains {:.0} % of what held-out motion leaves open, against {:.0} %",
+            over(rival),
             percent(rival.explained_fraction),
             percent(accepted.explained_fraction)
         ),

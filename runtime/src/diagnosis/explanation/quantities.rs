@@ -2,6 +2,7 @@
 
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
@@ -109,6 +110,7 @@ pub(in crate::diagnosis) fn quantified(
             let ratio_sigma = shape_sigma.first().copied().unwrap_or(0.0);
             CoupledRotor { ratio }.parameters(&amplitude, &sigma, ratio_sigma)
         }),
+        Form::Free => free_form::swing(model, term, &amplitude, &sigma).map(|swing| vec![swing]),
         Form::Window => None,
     };
     Quantified { parameters: parameters.unwrap_or_default(), amplitude, sigma }

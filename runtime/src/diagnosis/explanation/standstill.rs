@@ -84,6 +84,7 @@ fn loads(robot: &Robot, rest: &AtRest) -> Vec<CannotTell> {
         joints,
         experiment: "move each joint slowly back and forth through several poses, so that friction and gravity can be told apart"
             .into(),
+        variables: Vec::new(),
     }]
 }
 

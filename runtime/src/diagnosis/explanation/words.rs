@@ -30,12 +30,31 @@ pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Find
             format!("On joints {}", many.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and "))
         }
     };
+    if !f.variables.is_empty() {
+        return free_form(&place, effect, f);
+    }
     let detail = effect.effect().detail(&f.quantities());
     format!(
         "{place}: {}. {}: {detail}. Held-out error of {} {} from {:.2} % to {:.2} %.",
         words.title.to_lowercase(),
         capital(words.what.trim_end_matches('.')),
         if f.joints.is_empty() { "all joints" } else { "its joints" },
+        falls_or_rises(f.held_out_before, f.held_out_after),
+        100.0 * f.held_out_before,
+        100.0 * f.held_out_after
+    )
+}
+
+/// What depends on variables that the words of its effect do not say.
+fn free_form(place: &str, effect: EffectKind, f: &Finding) -> String {
+    let proposal = f
+        .proposal
+        .as_ref()
+        .map_or_else(String::new, |formula| format!(" A proposal that fits it within its band: {formula}."));
+    format!(
+        "{place}: a torque that depends on {}, and on nothing else; {}.{proposal} Held-out error of its joints {} from {:.2} % to {:.2} %.",
+        f.variables.join(" and "),
+        effect.effect().detail(&f.quantities()),
         falls_or_rises(f.held_out_before, f.held_out_after),
         100.0 * f.held_out_before,
         100.0 * f.held_out_after

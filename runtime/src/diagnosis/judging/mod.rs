@@ -13,7 +13,7 @@ pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod regression;
 pub(in crate::diagnosis) mod significance;
 #[cfg(test)]
-mod testing;
+pub(in crate::diagnosis) mod testing;
 #[cfg(test)]
 mod tests;
 pub(in crate::diagnosis) mod units;

@@ -9,7 +9,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
-use crate::diagnosis::rules::{AMPLITUDE_RIDGE, OWN_FRACTION};
+use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, OWN_FRACTION};
 use nalgebra::{DMatrix, DVector};
 
 /// A trial with the columns of a design projected out.
@@ -20,16 +20,6 @@ pub(in crate::diagnosis) struct Residualised {
     squares: DMatrix<f64>,
     /// Zᵀ M y.
     with_residual: DVector<f64>,
-}
-
-/// Columns of k that must have a part of their own. Of the ten columns of a body the standard model makes some, of the
-/// three of a rotor at times its inertia: the others still count. A wave of which only the sine can be seen is none.
-fn columns_needed(k: usize) -> usize {
-    match k {
-        0..3 => k,
-        3..10 => k - 1,
-        _ => 1,
-    }
 }
 
 impl Fit {
@@ -65,7 +55,7 @@ impl Fit {
             b[a] = 0.0;
         }
         let determined = own.iter().filter(|own| **own).count();
-        (alive > 0 && determined >= columns_needed(k)).then_some(Residualised {
+        (alive > 0 && determined >= trial.needed).then_some(Residualised {
             coefficients: x,
             squares: s,
             with_residual: b,
@@ -96,8 +86,12 @@ impl Residualised {
         }
         let k = b.len();
         let scale = DVector::from_fn(k, |i, _| if s[(i, i)] > 0.0 { 1.0 / s[(i, i)].sqrt() } else { 0.0 });
+        // As [`Design::ridge`].
+        let largest = (0..k).map(|i| s[(i, i)]).fold(0.0, f64::max);
+        let curve = if candidate.effect.form().is_curve() { CURVE_RIDGE * largest } else { 0.0 };
+        let ridge = |i: usize| AMPLITUDE_RIDGE + curve * scale[i] * scale[i];
         let m = DMatrix::from_fn(k, k, |i, j| {
-            s[(i, j)] * scale[i] * scale[j] + if i == j { AMPLITUDE_RIDGE } else { 0.0 }
+            s[(i, j)] * scale[i] * scale[j] + if i == j { ridge(i) } else { 0.0 }
         });
         let a = m.cholesky()?.solve(&b.component_mul(&scale)).component_mul(&scale);
         if candidate.only_positive && a.iter().any(|x| *x < 0.0) {

@@ -31,6 +31,8 @@ pub(in crate::diagnosis) struct Regression {
 pub(in crate::diagnosis) struct TermColumns {
     pub columns: Vec<Vec<f64>>,
     pub fixed: Option<f64>,
+    /// Whether it is a curve of many numbers.
+    pub is_curve: bool,
 }
 
 impl Regression {
@@ -63,6 +65,7 @@ impl Regression {
     ) -> Result<(), SingularDesign> {
         self.design.columns.truncate(self.fixed_columns);
         self.design.y.clone_from(&self.measured);
+        self.design.shrunk.clear();
         self.term_columns.clear();
         for k in 0..count {
             let term = columns(&self.design, k);
@@ -74,6 +77,9 @@ impl Regression {
                 }
             }
             self.term_columns.push(start..self.design.columns.len());
+            if term.is_curve {
+                self.design.shrunk.push(start..self.design.columns.len());
+            }
         }
         self.design.refresh_from(self.fixed_columns);
         self.fit = Fit::weighted(&self.design, &self.sigma)?;
@@ -89,6 +95,7 @@ impl Regression {
             self.design.columns[column].fill(0.0);
         }
         self.design.columns.truncate(self.fixed_columns);
+        self.design.shrunk.clear();
         self.design.refresh();
     }
 

@@ -17,6 +17,9 @@ pub struct Curve {
     pub error: Vec<f64>,
     /// Mean of the fitted law.
     pub law: Vec<f64>,
+    /// Twice the standard deviation of the law itself; empty where it was not worked out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub band: Vec<f64>,
 }
 
 /// Amplitude over order of a joint's residual: periods per radian (or metre) times 2 pi.

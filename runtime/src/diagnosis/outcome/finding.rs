@@ -31,6 +31,15 @@ pub struct Finding {
     pub sentence: String,
     /// What the report draws.
     pub curve: Option<Curve>,
+    /// Curves over further variables, where it depends on several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub more_curves: Vec<Curve>,
+    /// What it depends on, where that is not what its effect says: `q3`, `dq2`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<String>,
+    /// A short formula that fits its curve within the band. Others may do as well.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub proposal: Option<String>,
     /// Its term in the model.
     pub term: EffectTerm,
     /// Where it is a contact.
@@ -80,6 +89,9 @@ impl Finding {
             alternatives: Vec::new(),
             sentence: String::new(),
             curve: None,
+            more_curves: Vec::new(),
+            variables: Vec::new(),
+            proposal: None,
             term,
             contacts: Vec::new(),
             on_test: None,
@@ -127,6 +139,20 @@ pub struct CannotTell {
     pub joints: Vec<usize>,
     /// The motion that would tell.
     pub experiment: String,
+    /// Variables of each, where the effects are laws over variables that go together in this motion.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<Vec<String>>,
+}
+
+impl CannotTell {
+    /// What cannot be told apart: effects, each with the variables that it is over where it has any.
+    pub fn sides(&self) -> Vec<String> {
+        let over = |k: usize| match self.variables.get(k).map(Vec::as_slice) {
+            None | Some([]) => String::new(),
+            Some(variables) => format!(" over {}", variables.join(" and ")),
+        };
+        self.between.iter().enumerate().map(|(k, effect)| format!("{effect}{}", over(k))).collect()
+    }
 }
 
 /// A law that is there, and no larger than what the robot's torques repeat to: no finding.

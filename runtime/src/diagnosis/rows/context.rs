@@ -1,6 +1,7 @@
 //! Everything that columns are made from: the model, the motions, and the current standard parameters.
 
 use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{DRIVING_BAND, LEAST_LINK_INERTIA, RATE_PER_CUTOFF};
 use crate::effects::{
@@ -80,6 +81,7 @@ impl<'a> Context<'a> {
             Form::Compliance(_) => place.joint().map(|j| vec![self.compliant(signal, j, shape)]),
             Form::Body(_) => place.link().map(|frame| self.body(signal, frame)),
             Form::Coupled => place.pair().map(|joints| self.coupled(signal, joints, shape)),
+            Form::Free => place.joint().and_then(|j| free_columns(self, signal, j, shape)),
             Form::Window => None,
         };
         columns.unwrap_or_default()

@@ -7,7 +7,7 @@
 use crate::diagnosis::rows::gram::{Gram, dot};
 use crate::diagnosis::rows::selection::{RowSelection, hann};
 use crate::diagnosis::rows::signals::{Signals, each_block};
-use crate::diagnosis::rules::{ENOUGH_BLOCKS, LONGEST_BLOCK};
+use crate::diagnosis::rules::{CURVE_RIDGE, ENOUGH_BLOCKS, FIT_RIDGE, LONGEST_BLOCK};
 use crate::model::Model;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -39,6 +39,8 @@ pub(in crate::diagnosis) struct Design {
     pub segments: Vec<Segment>,
     /// One value per row.
     pub columns: Vec<Vec<f64>>,
+    /// Columns of curves, whose amplitudes are kept from what no motion determines.
+    pub shrunk: Vec<Range<usize>>,
     pub y: Vec<f64>,
     kernels: Vec<Vec<f64>>,
     /// From one row to the next in a motion, s.
@@ -64,6 +66,7 @@ impl Design {
             ranges: Vec::new(),
             segments: Vec::new(),
             columns: vec![Vec::new(); parameters],
+            shrunk: Vec::new(),
             y: Vec::new(),
             kernels: signals.iter().map(kernel).collect(),
             step: selection.half,
@@ -220,6 +223,27 @@ impl Design {
         self.refresh();
     }
 
+    /// Ridge of a column in a fit, relative to its squares, given the squares of all columns: that of a curve's steps is
+    /// the same for all of them, so that a step which hardly shows stays small.
+    pub fn ridge(&self, column: usize, squares: impl Fn(usize) -> f64) -> f64 {
+        match self.shrunk.iter().find(|r| r.contains(&column)) {
+            Some(range) => {
+                let largest = range.clone().map(&squares).fold(0.0, f64::max);
+                FIT_RIDGE + CURVE_RIDGE * largest / squares(column).max(f64::MIN_POSITIVE)
+            }
+            None => FIT_RIDGE,
+        }
+    }
+
+    /// Takes a column out; those after it move up.
+    pub fn remove(&mut self, column: usize) -> Vec<f64> {
+        for range in &mut self.shrunk {
+            let moved = |k: usize| if k > column { k - 1 } else { k };
+            *range = moved(range.start)..moved(range.end);
+        }
+        self.columns.remove(column)
+    }
+
     /// Adds a column given per row.
     pub fn push(&mut self, column: Vec<f64>) {
         self.columns.push(column);
@@ -268,6 +292,7 @@ impl Design {
             ranges: vec![Vec::new(); joints],
             segments: segments.iter().map(|&(signal, is_target)| Segment { signal, is_target }).collect(),
             columns,
+            shrunk: Vec::new(),
             y,
             kernels: vec![hann(1); signals],
             step: 0.02,

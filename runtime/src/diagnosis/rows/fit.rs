@@ -3,7 +3,7 @@
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::Gram;
-use crate::diagnosis::rules::{FIT_RIDGE, LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
+use crate::diagnosis::rules::{LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
@@ -31,7 +31,7 @@ impl Fit {
         let (g, v) = weighted_sum(design, sigma, &train).normal_equations();
         let scale = DVector::from_fn(p, |k, _| if g[(k, k)] > 0.0 { 1.0 / g[(k, k)].sqrt() } else { 0.0 });
         let mut scaled = DMatrix::from_fn(p, p, |i, k| {
-            g[(i, k)] * scale[i] * scale[k] + if i == k { FIT_RIDGE } else { 0.0 }
+            g[(i, k)] * scale[i] * scale[k] + if i == k { design.ridge(i, |c| g[(c, c)]) } else { 0.0 }
         });
         for k in 0..p {
             if scale[k] == 0.0 {

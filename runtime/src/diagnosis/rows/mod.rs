@@ -3,6 +3,7 @@
 pub(in crate::diagnosis) mod context;
 pub(in crate::diagnosis) mod design;
 pub(in crate::diagnosis) mod fit;
+pub(in crate::diagnosis) mod free;
 pub(in crate::diagnosis) mod gram;
 pub(in crate::diagnosis) mod motion;
 pub(in crate::diagnosis) mod scales;

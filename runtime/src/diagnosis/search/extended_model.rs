@@ -169,6 +169,6 @@ fn put_terms(
     regression.set_terms(terms.len(), |design, k| {
         let term = &terms[k];
         let columns = dense_columns(context, design, term.effect, term.place, &term.shape, change);
-        TermColumns { columns, fixed: term.fixed }
+        TermColumns { columns, fixed: term.fixed, is_curve: term.effect.form().is_curve() }
     })
 }

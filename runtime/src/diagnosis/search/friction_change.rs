@@ -120,6 +120,7 @@ impl Search<'_> {
         let rival = |effect| Rival {
             effect,
             place: Place::Joint(joint),
+            shape: Vec::new(),
             explained_fraction: 0.0,
             difference_p_value: 1.0,
         };

@@ -9,6 +9,7 @@ use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
+use crate::effects::EffectKind;
 
 impl Search<'_> {
     /// Squares that each law of the model alone explains, in units that stay the same when other joints become less noisy;
@@ -51,8 +52,11 @@ impl Search<'_> {
                 }
                 None => {
                     // What no longer holds is left out for good, or it might come and go for ever; those after it move
-                    // up, and all are considered anew.
-                    self.rejected.push(old);
+                    // up, and all are considered anew. A law over any variables is looked for once more in what is then
+                    // left.
+                    if old.effect != EffectKind::FreeForm {
+                        self.rejected.push(old);
+                    }
                     doubted.fill(true);
                     k = 0;
                 }

@@ -63,13 +63,18 @@ impl Search<'_> {
                 Some(winner) => vec![self.accept(&winner)],
                 None => self.pair(settings)?.map_or_else(Vec::new, Vec::from),
             };
-            if found.is_empty() {
-                return Ok(StopReason::NoneAccepted);
+            if !found.is_empty() {
+                let before = self.own_squares();
+                self.model.terms.extend(found);
+                self.refit_and_update()?;
+                self.reconsider(&before, settings)?;
+                continue;
             }
-            let before = self.own_squares();
-            self.model.terms.extend(found);
+            // What the catalogue has no law for.
+            let Some(law) = self.free_form(settings)? else { return Ok(StopReason::NoneAccepted) };
+            self.model.terms.push(law);
             self.refit_and_update()?;
-            self.reconsider(&before, settings)?;
+            self.without_imitators(settings)?;
         }
         Ok(StopReason::EffectLimit(settings.most_effects))
     }

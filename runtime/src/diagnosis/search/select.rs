@@ -183,7 +183,8 @@ impl Search<'_> {
                     0.0
                 };
                 let explained_fraction = other.verdict.explained_fraction;
-                Rival { effect: rival.effect, place: rival.place, explained_fraction, difference_p_value }
+                let (effect, place, shape) = (rival.effect, rival.place, Vec::new());
+                Rival { effect, place, shape, explained_fraction, difference_p_value }
             })
             .collect()
     }

@@ -34,6 +34,8 @@ pub(in crate::diagnosis) struct Search<'a> {
     pub lines: Vec<JointLines>,
     /// Effects at places, with all of their shapes.
     pub tried: usize,
+    /// Laws that were tried beside the candidates, to find some of these.
+    pub more_tries: usize,
     pub threads: usize,
 }
 
@@ -83,6 +85,7 @@ impl<'a> Search<'a> {
             spectra,
             lines,
             tried,
+            more_tries: 0,
             threads,
         }
     }
@@ -158,7 +161,7 @@ impl<'a> Search<'a> {
 
     /// Candidates that are tried, each with all of its shapes.
     pub fn tries(&self) -> usize {
-        self.slow.len() + self.fast.len()
+        self.slow.len() + self.fast.len() + self.more_tries
     }
 
     /// Whether a candidate is in the model already, or has been taken out of it.

@@ -29,6 +29,8 @@ pub(in crate::diagnosis) struct Accepted {
 pub(in crate::diagnosis) struct Rival {
     pub effect: EffectKind,
     pub place: Place,
+    /// Its shape, where that tells it from others; else empty.
+    pub shape: Vec<f64>,
     pub explained_fraction: f64,
     /// Probability that it is only by accident that it explains less, where it holds at all and acts on the same
     /// joints; else 0.

@@ -1,0 +1,169 @@
+//! Laws over any variables on a joint: which are tried, and which explain most.
+
+use crate::diagnosis::candidates::candidate::{Candidate, make};
+use crate::diagnosis::judging::judge::Verdict;
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::free::values;
+use crate::diagnosis::rules::{AIC_PENALTY, CURVE_RIDGE, FREE_FORM_PAIRS, FREE_FORM_TAIL};
+use crate::effects::{Axis, EffectKind, FreeLaw, Place, Seen, Variable};
+use crate::parallel;
+use nalgebra::{DMatrix, DVector};
+
+/// A law that was judged.
+pub(in crate::diagnosis) struct Judged {
+    pub law: FreeLaw,
+    pub candidate: Candidate,
+    pub verdict: Verdict,
+}
+
+/// Laws of a joint that gain on held-out motion, those that gain most first, and how many were tried.
+pub(in crate::diagnosis) struct Screened {
+    /// Over one variable.
+    pub single: Vec<Judged>,
+    /// Over two.
+    pub pairs: Vec<Judged>,
+    pub tried: usize,
+}
+
+/// Judges every law over one variable on a joint, and over two those that gain most at a first look.
+pub(in crate::diagnosis) fn screen(
+    context: &Context<'_>,
+    regression: &Regression,
+    joint: usize,
+    change: bool,
+    threads: usize,
+) -> Screened {
+    let axes = axes(context, regression, joint);
+    let judged = |laws: &[FreeLaw]| {
+        let shapes: Vec<Vec<f64>> = laws.iter().map(FreeLaw::shape).collect();
+        let place = Place::Joint(joint);
+        let candidate = make(context, &regression.design, EffectKind::FreeForm, place, &shapes, change);
+        let verdict = regression.judge(&candidate)?;
+        let law = laws.get(verdict.trial)?.clone();
+        Some(Judged { law, candidate, verdict })
+    };
+    let single = sorted(parallel::map(threads, axes.len(), |k| judged(&[FreeLaw::one(axes[k])])));
+    let pairs: Vec<[usize; 2]> =
+        (0..axes.len()).flat_map(|a| (a + 1..axes.len()).map(move |b| [a, b])).collect();
+    let glance = Glance::new(context, regression, joint, &axes);
+    // Products, and sums with the best variable: it may be half of one.
+    let best = single.first().and_then(|j| axes.iter().position(|a| a.variable == j.law.axes[0].variable));
+    let gains = parallel::map(threads, pairs.len(), |k| {
+        let [product, sum, _] = FreeLaw::two(axes[pairs[k][0]], axes[pairs[k][1]]);
+        let with_best = best.is_some_and(|b| pairs[k].contains(&b));
+        let of = |law: &FreeLaw| glance.gain(law, pairs[k]);
+        [of(&product), if with_best { of(&sum) } else { f64::NEG_INFINITY }]
+    });
+    let mut order: Vec<usize> = Vec::new();
+    for way in 0..2 {
+        let mut ranked: Vec<usize> =
+            (0..pairs.len()).filter(|k| gains[*k][way] > 0.0 && !order.contains(k)).collect();
+        ranked.sort_by(|&a, &b| gains[b][way].total_cmp(&gains[a][way]));
+        order.extend(ranked.into_iter().take(FREE_FORM_PAIRS));
+    }
+    let judge_pair = |k: usize| judged(&FreeLaw::two(axes[pairs[order[k]][0]], axes[pairs[order[k]][1]]));
+    let judged_pairs = sorted(parallel::map(threads, order.len(), judge_pair));
+    Screened { single, pairs: judged_pairs, tried: axes.len() + pairs.len() }
+}
+
+fn sorted(judged: Vec<Option<Judged>>) -> Vec<Judged> {
+    let mut list: Vec<Judged> = judged.into_iter().flatten().filter(|j| j.verdict.total() > 0.0).collect();
+    list.sort_by(|a, b| b.verdict.total().total_cmp(&a.verdict.total()));
+    list
+}
+
+/// Variables that a torque of the joint may depend on, each with the interval that nearly all of its values in the
+/// recording lie in.
+fn axes(context: &Context<'_>, regression: &Regression, joint: usize) -> Vec<Axis> {
+    let design = &regression.design;
+    let moves = |v: &Variable| match v {
+        Variable::Torque(_) | Variable::Time => true,
+        _ => v.joint().is_none_or(|k| !design.of_joint(k).is_empty()),
+    };
+    let interval = |variable: Variable| {
+        let targets = (0..context.signals.len()).filter(|&k| context.signals[k].is_target);
+        let mut all: Vec<f64> = targets.flat_map(|k| values(context, k, variable)).collect();
+        all.retain(|x| x.is_finite());
+        all.sort_by(f64::total_cmp);
+        let cut = (FREE_FORM_TAIL * all.len() as f64) as usize;
+        let (low, high) = (*all.get(cut)?, *all.get(all.len().checked_sub(cut + 1)?)?);
+        (high > low).then_some(Axis { variable, centre: 0.5 * (low + high), half: 0.5 * (high - low) })
+    };
+    Variable::all(joint, design.joints).into_iter().filter(moves).filter_map(interval).collect()
+}
+
+/// A first look: laws at the middles of the rows of the joint alone, beside what the columns of the model make there.
+struct Glance {
+    /// Variables with their directions at the rows, `[axis][row]`.
+    seen: Vec<Vec<Seen>>,
+    /// Orthonormal columns of the model.
+    model: DMatrix<f64>,
+    residual: DVector<f64>,
+    /// One over the variance of the residual.
+    weight: f64,
+}
+
+impl Glance {
+    fn new(context: &Context<'_>, regression: &Regression, joint: usize, axes: &[Axis]) -> Self {
+        let design = &regression.design;
+        let rows: Vec<usize> =
+            design.target_segments().into_iter().flat_map(|g| design.ranges[joint][g].clone()).collect();
+        let of_axis = |axis: &Axis| {
+            let all: Vec<Vec<f64>> =
+                (0..context.signals.len()).map(|k| values(context, k, axis.variable)).collect();
+            let own = axis.variable == Variable::Speed(joint);
+            let at = |&r: &usize| {
+                let value = all[design.rows[r].signal][design.rows[r].centre];
+                axis.seen(value, own.then_some(if value > 0.0 { 1.0 } else { -1.0 }))
+            };
+            rows.iter().map(at).collect()
+        };
+        let live = design.columns.iter().filter(|c| rows.iter().any(|&r| c[r] != 0.0));
+        let mut columns: Vec<DVector<f64>> =
+            live.map(|c| DVector::from_iterator(rows.len(), rows.iter().map(|&r| c[r]))).collect();
+        let mut kept: Vec<DVector<f64>> = Vec::new();
+        for column in &mut columns {
+            let whole = column.norm();
+            // Twice is enough (Giraud, Langou and Rozloznik 2005).
+            for _ in 0..2 {
+                for q in &kept {
+                    let part = q.dot(column);
+                    column.axpy(-part, q, 1.0);
+                }
+            }
+            let left = column.norm();
+            if left > 1e-6 * whole {
+                kept.push(&*column / left);
+            }
+        }
+        let residual = regression.residual();
+        Self {
+            seen: axes.iter().map(of_axis).collect(),
+            model: if kept.is_empty() { DMatrix::zeros(rows.len(), 0) } else { DMatrix::from_columns(&kept) },
+            residual: DVector::from_iterator(rows.len(), rows.iter().map(|&r| residual[r])),
+            weight: regression.sigma[joint].powi(-2),
+        }
+    }
+
+    /// What a law gains in units of the noise variance, after a penalty for its numbers.
+    fn gain(&self, law: &FreeLaw, axes: [usize; 2]) -> f64 {
+        let (rows, k) = (self.residual.len(), law.amplitudes());
+        let mut z = DMatrix::zeros(rows, k);
+        let mut out = Vec::with_capacity(k);
+        for r in 0..rows {
+            law.columns(&axes.map(|a| self.seen[a][r]), &mut out);
+            out.iter().enumerate().for_each(|(c, x)| z[(r, c)] = *x);
+        }
+        let made = self.model.transpose() * &z;
+        z -= &self.model * made;
+        let mut g = z.transpose() * &z;
+        let b = z.transpose() * &self.residual;
+        let largest = (0..k).map(|c| g[(c, c)]).fold(f64::MIN_POSITIVE, f64::max);
+        for c in 0..k {
+            g[(c, c)] += CURVE_RIDGE * largest;
+        }
+        let taken = g.cholesky().map_or(0.0, |factor| b.dot(&factor.solve(&b)));
+        self.weight * taken - AIC_PENALTY * k as f64
+    }
+}

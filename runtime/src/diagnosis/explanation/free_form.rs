@@ -1,0 +1,175 @@
+//! A law over any variables, for a person: its variables, its swing, its curves with their band, a short formula.
+
+use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::explanation::curves::binned;
+use crate::diagnosis::explanation::proposal::{Point, propose};
+use crate::diagnosis::outcome::Curve;
+use crate::diagnosis::rows::free::values;
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::term::Accepted;
+use crate::effects::{Axis, Form, FreeLaw, Parameter, Seen, Together, Variable};
+use crate::model::{JointIndex, Robot};
+
+/// Points of a variable at which a law is evaluated.
+const POINTS: usize = 41;
+
+/// Names of the variables of a term; none for a law of the catalogue.
+pub(in crate::diagnosis) fn variables(robot: &Robot, shape: &[f64]) -> Vec<String> {
+    let law = FreeLaw::from_shape(shape, robot.joints());
+    law.map_or_else(Vec::new, |law| law.axes.iter().map(|a| a.variable.name(robot)).collect())
+}
+
+/// The law of a term, where it is one over any variables.
+fn law_of(model: &ExtendedModel<'_>, term: &Accepted) -> Option<(FreeLaw, usize)> {
+    match term.effect.form() {
+        Form::Free => {
+            let law = FreeLaw::from_shape(&term.shape, model.context.model.robot().joints())?;
+            Some((law, term.place.joint()?))
+        }
+        _ => None,
+    }
+}
+
+/// Values of the columns of a law where its variables have these values.
+fn columns(law: &FreeLaw, joint: usize, at: &[f64]) -> Vec<f64> {
+    let seen = |(axis, value): (&Axis, &f64)| {
+        let own = axis.variable == Variable::Speed(joint);
+        axis.seen(*value, own.then(|| if *value > 0.0 { 1.0 } else { -1.0 }))
+    };
+    let seen: Vec<Seen> = law.axes.iter().zip(at).map(seen).collect();
+    let mut out = Vec::with_capacity(law.amplitudes());
+    law.columns(&seen, &mut out);
+    out
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Values of a variable from one end of its interval to the other, without its middle, where a direction changes.
+fn grid(axis: &Axis) -> impl Iterator<Item = f64> + use<> {
+    let (low, step) = (axis.centre - axis.half, 2.0 * axis.half / (POINTS - 1) as f64);
+    (0..POINTS).map(move |k| low + (k as f64 + 1e-3) * step)
+}
+
+/// Difference between the largest and the smallest torque of a law at the rows of its joint that move in the same
+/// direction: what it adds to all of those, friction and offset of the joint may take over.
+pub(in crate::diagnosis) fn swing(
+    model: &ExtendedModel<'_>,
+    term: &Accepted,
+    amplitude: &[f64],
+    sigma: &[f64],
+) -> Option<Parameter> {
+    let joint = term.place.joint()?;
+    let (design, context) = (&model.slow.design, &model.context);
+    let dense = dense_columns(context, design, term.effect, term.place, &term.shape, model.change);
+    let forward = |r: usize| context.signals[design.rows[r].signal].dq[joint][design.rows[r].centre] > 0.0;
+    let of_direction = |direction: bool| {
+        let rows = design.of_joint(joint).filter(|&r| forward(r) == direction);
+        let all: Vec<Vec<f64>> = rows.map(|r| dense.iter().map(|c| c[r]).collect()).collect();
+        let by_torque =
+            |a: &&Vec<f64>, b: &&Vec<f64>| product(a, amplitude).total_cmp(&product(b, amplitude));
+        let (top, bottom) = (all.iter().max_by(by_torque)?, all.iter().min_by(by_torque)?);
+        let difference: Vec<f64> = top.iter().zip(bottom).map(|(t, b)| t - b).collect();
+        let deviation = difference.iter().zip(sigma).map(|(d, s)| (d * s).powi(2)).sum::<f64>().sqrt();
+        Some((product(&difference, amplitude), deviation))
+    };
+    let both = [true, false].into_iter().filter_map(of_direction);
+    let (swing, deviation) = both.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Parameter::new("swing", swing, deviation, context.scales[joint].torque_unit()))
+}
+
+/// Covariance of the amplitudes of term `k`, row by row.
+fn covariance(model: &ExtendedModel<'_>, k: usize) -> Vec<Vec<f64>> {
+    let fit = &model.slow.fit;
+    let range = model.slow.term_columns[k].clone();
+    let inflation = model.terms[k].inflation.powi(2);
+    let row = |c: usize| {
+        let mut unit = nalgebra::DVector::zeros(fit.chi.len());
+        unit[c] = 1.0;
+        let solved = fit.solve(&unit);
+        range.clone().map(|i| inflation * solved[i]).collect()
+    };
+    range.clone().map(row).collect()
+}
+
+/// A law over each of its variables, with what the rest of the model leaves and the band of twice the law's standard
+/// deviation; none for a law of the catalogue.
+pub(in crate::diagnosis) fn curves(model: &ExtendedModel<'_>, k: usize) -> Vec<Curve> {
+    let term = &model.terms[k];
+    let Some((law, joint)) = law_of(model, term) else { return Vec::new() };
+    let (design, context) = (&model.slow.design, &model.context);
+    let amplitude: Vec<f64> = model.slow.term_columns[k].clone().map(|c| model.slow.fit.chi[c]).collect();
+    let covariance = covariance(model, k);
+    let residual = model.slow.residual();
+    let dense: Vec<&[f64]> =
+        model.slow.term_columns[k].clone().map(|c| design.columns[c].as_slice()).collect();
+    let of_axis = |axis: &Axis| {
+        let over: Vec<Vec<f64>> =
+            (0..context.signals.len()).map(|s| values(context, s, axis.variable)).collect();
+        let mut rows = Vec::new();
+        let mut spread = Vec::new();
+        for r in design.of_joint(joint).filter(|&r| context.signals[design.rows[r].signal].is_target) {
+            let x: Vec<f64> = dense.iter().map(|c| c[r]).collect();
+            let torque = product(&x, &amplitude);
+            let at = over[design.rows[r].signal][design.rows[r].centre];
+            rows.push((at, residual[r] + torque, torque));
+            let made: f64 = x.iter().zip(&covariance).map(|(x_i, row)| x_i * product(row, &x)).sum();
+            spread.push((at, made.max(0.0).sqrt(), 0.0));
+        }
+        let number = |j: usize| context.model.robot().joint_number(JointIndex(j)).0;
+        let prismatic = axis.variable.joint().is_some_and(|j| context.scales[j].prismatic);
+        let name = axis.variable.words(number);
+        let mut curve = binned(rows);
+        curve.variable = format!("{name}, {}", axis.variable.unit(prismatic));
+        curve.unit = context.scales[joint].torque_unit().into();
+        curve.band = binned(spread).residual.iter().map(|s| 2.0 * s).collect();
+        curve
+    };
+    law.axes.iter().map(of_axis).collect()
+}
+
+/// A short formula that stays within the band of a law over one variable, or over one times the direction of the joint;
+/// `None` where none does.
+pub(in crate::diagnosis) fn proposal(model: &ExtendedModel<'_>, k: usize) -> Option<String> {
+    let term = &model.terms[k];
+    let (law, joint) = law_of(model, term)?;
+    let amplitude: Vec<f64> = model.slow.term_columns[k].clone().map(|c| model.slow.fit.chi[c]).collect();
+    let covariance = covariance(model, k);
+    let robot = model.context.model.robot();
+    let own_speed = |a: &&Axis| a.variable == Variable::Speed(joint);
+    let (axis, direction) = match (law.axes.as_slice(), law.together) {
+        ([axis], Together::One) => (axis, None),
+        (axes, Together::Multiplied) => {
+            (axes.iter().find(|a| !own_speed(a))?, Some(axes.iter().find(own_speed)?))
+        }
+        _ => return None,
+    };
+    // Along a direction, the torque without what grows with the speed: that of the middle of the faster half.
+    let at = |x: f64| match direction {
+        None => columns(&law, joint, &[x]),
+        Some(speed) => {
+            let of = |v: f64| {
+                let at: Vec<f64> = law.axes.iter().map(|a| if own_speed(&a) { v } else { x }).collect();
+                columns(&law, joint, &at)
+            };
+            let fast = 0.5 * (speed.centre.abs() + speed.half);
+            of(fast).iter().zip(of(-fast)).map(|(a, b)| 0.5 * (a - b)).collect()
+        }
+    };
+    let points: Vec<Point> = grid(axis)
+        .map(|x| {
+            let c = at(x);
+            let variance: f64 = c.iter().zip(&covariance).map(|(c_i, row)| c_i * product(row, &c)).sum();
+            Point { x, y: product(&c, &amplitude), sigma: variance.max(0.0).sqrt() }
+        })
+        .collect();
+    let name = axis.variable.name(robot);
+    let angle = matches!(axis.variable, Variable::Position(j) if !model.context.scales[j].prismatic);
+    let formula = propose(&points, &name, angle)?;
+    let unit = model.context.scales[joint].torque_unit();
+    Some(match direction {
+        None => format!("{formula} {unit}"),
+        Some(speed) => format!("sign({})·({formula}) {unit}", speed.variable.name(robot)),
+    })
+}

@@ -1,0 +1,56 @@
+//! Columns of a law over any variables.
+
+use crate::diagnosis::rows::context::{Context, Series};
+use crate::effects::{FreeLaw, Seen, SinceReversal, Variable};
+
+/// The columns of a law on joint `j` with a shape in one motion; `None` where the shape means no law.
+pub(in crate::diagnosis) fn free_columns(
+    context: &Context<'_>,
+    signal: usize,
+    j: usize,
+    shape: &[f64],
+) -> Option<Vec<Series>> {
+    let s = &context.signals[signal];
+    let law = FreeLaw::from_shape(shape, s.q.len())?;
+    let values: Vec<Vec<f64>> = law.axes.iter().map(|a| values(context, signal, a.variable)).collect();
+    let own: Vec<bool> = law.axes.iter().map(|a| a.variable == Variable::Speed(j)).collect();
+    let mut columns = vec![vec![0.0; s.len()]; law.amplitudes()];
+    let (mut at, mut out) = (vec![Seen::default(); law.axes.len()], Vec::with_capacity(columns.len()));
+    for t in 0..s.len() {
+        for (k, axis) in law.axes.iter().enumerate() {
+            let value = values[k][t];
+            at[k] = axis.seen(value, own[k].then_some(if value > 0.0 { 1.0 } else { -1.0 }));
+        }
+        law.columns(&at, &mut out);
+        for (column, &value) in columns.iter_mut().zip(&out) {
+            column[t] = value;
+        }
+    }
+    Some(columns.into_iter().map(|c| vec![(j, c)]).collect())
+}
+
+/// A variable at every sample of a motion.
+pub(in crate::diagnosis) fn values(context: &Context<'_>, signal: usize, variable: Variable) -> Vec<f64> {
+    let s = &context.signals[signal];
+    let torques = &context.torques[signal];
+    let since = |j: usize, of: fn(&SinceReversal) -> f64| {
+        let mut since = SinceReversal::default();
+        (0..s.len())
+            .map(|t| {
+                let travel = if t == 0 { 0.0 } else { s.q[j][t] - s.q[j][t - 1] };
+                since.advance(s.dq[j][t], travel, 1.0 / s.rate);
+                of(&since)
+            })
+            .collect()
+    };
+    match variable {
+        Variable::Position(j) => s.q[j].clone(),
+        Variable::Speed(j) => s.dq[j].clone(),
+        Variable::Acceleration(j) => s.ddq[j].clone(),
+        Variable::Load(j) => torques.rigid[j].clone(),
+        Variable::Torque(j) => torques.total[j].clone(),
+        Variable::Time => (0..s.len()).map(|t| s.time(t)).collect(),
+        Variable::TimeSinceReversal(j) => since(j, |s| s.time),
+        Variable::TravelSinceReversal(j) => since(j, |s| s.travel),
+    }
+}

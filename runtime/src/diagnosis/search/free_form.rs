@@ -1,0 +1,182 @@
+//! What no law of the catalogue explains: a law over the variables that order it.
+//!
+//! It is tried on joints of which much stays unexplained when the catalogue has nothing more to say, and must explain
+//! most of that. The fewest variables that do are taken: a second one must stand out of what blocks of motion differ by.
+//! It passes the same gate as every law, all variables and pairs counted. A law of the catalogue that explains nearly as
+//! much is not displaced by it; one that explains much less was its imitator.
+
+use crate::diagnosis::candidates::free_form::{Judged, Screened, screen};
+use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rules::{
+    FREE_FORM_SHARE, LEVEL_TO_STAY, NEARLY_AS_MUCH, RIVALS, SLOW_PART_OF_REMAINS, TOLD_APART,
+};
+use crate::diagnosis::search::round::Winner;
+use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::{Accepted, Rival};
+use crate::diagnosis::settings::Settings;
+use crate::effects::{EffectKind, Place, SmoothingWindow};
+
+impl Search<'_> {
+    /// A law over any variables that holds, where the catalogue has none.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where a part of the motion has no fit.
+    pub(in crate::diagnosis) fn free_form(
+        &mut self,
+        settings: &Settings,
+    ) -> Result<Option<Accepted>, SingularDesign> {
+        let (model, regression) = (&self.model, &self.model.slow);
+        let residual = regression.residual();
+        let wanted = |j: usize| {
+            let place = Place::Joint(j);
+            !settings.excluded.contains(&(EffectKind::FreeForm, place))
+                && !self.rejected.iter().any(|t| t.effect == EffectKind::FreeForm && t.place == place)
+                && slow_part(regression, &residual, j) >= SLOW_PART_OF_REMAINS
+        };
+        let joints: Vec<usize> = (0..regression.design.joints).filter(|&j| wanted(j)).collect();
+        let (mut chosen, mut tried): (Vec<(Judged, Vec<Rival>)>, usize) = (Vec::new(), 0);
+        for j in joints {
+            let screened = screen(&model.context, regression, j, model.change, self.threads);
+            tried += screened.tried;
+            let best = |list: &[Judged]| list.first().map_or(0.0, |j| j.verdict.total());
+            let most_gained = best(&screened.single).max(best(&screened.pairs));
+            let Some((law, rivals)) = fewest_variables(regression, screened) else { continue };
+            let most = FREE_FORM_SHARE * slow_part(regression, &residual, j);
+            if law.verdict.explained_fraction < most.max(settings.least_share) {
+                continue;
+            }
+            let nearly = NEARLY_AS_MUCH * most_gained;
+            // What the catalogue says with fewer numbers is no new law, even where it is not certain.
+            if !self.ranked(Some(j)).iter().any(|r| r.verdict.total() >= nearly) {
+                chosen.push((law, rivals));
+            }
+        }
+        if chosen.is_empty() {
+            return Ok(None);
+        }
+        let (first, places) = (self.slow.len(), chosen.len());
+        let mut rivals = Vec::new();
+        for (law, others) in chosen {
+            rivals.push(others);
+            self.slow.push(law.candidate);
+        }
+        self.more_tries = tried.saturating_sub(places);
+        let winner = self.best(settings, None, 1).map(|round| round.winner);
+        let found = winner.map(|winner| {
+            winner.filter(|w| w.window == SmoothingWindow::Slow && w.index >= first).map(|w: Winner| {
+                let mut term = self.as_term(&w);
+                term.rivals.splice(0..0, std::mem::take(&mut rivals[w.index - first]));
+                term
+            })
+        });
+        self.more_tries = 0;
+        self.slow.truncate(first);
+        found
+    }
+
+    /// Takes out what the last term of the model, a law over any variables, shows to have been its imitators: laws of
+    /// the catalogue on its joint that explain much less than it and do not hold beside it.
+    ///
+    /// # Errors
+    /// As [`Self::free_form`].
+    pub(in crate::diagnosis) fn without_imitators(
+        &mut self,
+        settings: &Settings,
+    ) -> Result<(), SingularDesign> {
+        let doubt = (LEVEL_TO_STAY * (1.0 - settings.least_confidence)).min(0.5);
+        let lenient = Settings { least_confidence: 1.0 - doubt, ..settings.clone() };
+        let mut k = 0;
+        while k + 1 < self.model.terms.len() {
+            let joint = self.model.terms[self.model.terms.len() - 1].own[0];
+            let old = self.model.terms[k].clone();
+            if !old.own.contains(&joint) || old.effect == EffectKind::FreeForm || self.suffices(k, joint)? {
+                k += 1;
+                continue;
+            }
+            self.model.terms.remove(k);
+            self.refit_and_update()?;
+            let alone = (old.own.len() < self.model.slow.design.joints).then_some(joint);
+            let still = self.best(&lenient, alone, 1)?.winner.is_some_and(|w| {
+                let candidate = &self.candidates(w.window)[w.index];
+                candidate.effect == old.effect && candidate.place == old.place
+            });
+            if still {
+                self.model.terms.insert(k, old);
+                self.refit_and_update()?;
+                k += 1;
+            } else {
+                self.rejected.push(old);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether term `k` alone explains nearly as much of a joint's held-out motion as it and the last term together.
+    fn suffices(&mut self, k: usize, joint: usize) -> Result<bool, SingularDesign> {
+        let terms = self.model.terms.clone();
+        let mut left = |without: &[usize]| -> Result<f64, SingularDesign> {
+            let keep = |i: &usize| !without.contains(i);
+            self.model.terms = (0..terms.len()).filter(keep).map(|i| terms[i].clone()).collect();
+            self.model.refit()?;
+            Ok(self.model.slow.held_out(false)?.left[joint])
+        };
+        let last = terms.len() - 1;
+        let (nothing, alone, both) = (left(&[k, last])?, left(&[last])?, left(&[])?);
+        Ok(nothing - alone >= NEARLY_AS_MUCH * (nothing - both))
+    }
+}
+
+/// The law over the fewest variables that no other is certainly ahead of, and those that cannot be told from it.
+fn fewest_variables(regression: &Regression, screened: Screened) -> Option<(Judged, Vec<Rival>)> {
+    let Screened { single, pairs, tried } = screened;
+    let ahead = |a: &Judged, b: &Judged| {
+        let law = |j: &Judged| j.verdict.trial;
+        let p = regression.difference_p_value((&a.candidate, law(a)), (&b.candidate, law(b)));
+        a.verdict.total() > b.verdict.total() && p * tried as f64 <= TOLD_APART
+    };
+    let two = match (single.first(), pairs.first()) {
+        (Some(one), Some(two)) => ahead(two, one),
+        (one, _) => one.is_none(),
+    };
+    let mut list = if two { pairs } else { single }.into_iter();
+    let best = list.next()?;
+    let rivals = list
+        .take(RIVALS)
+        .filter_map(|other| {
+            let (law, rival) =
+                ((&best.candidate, best.verdict.trial), (&other.candidate, other.verdict.trial));
+            let p = regression.difference_p_value(law, rival);
+            (p > TOLD_APART).then(|| Rival {
+                effect: EffectKind::FreeForm,
+                place: best.candidate.place,
+                shape: other.law.shape(),
+                explained_fraction: other.verdict.explained_fraction,
+                difference_p_value: p,
+            })
+        })
+        .collect();
+    Some((best, rivals))
+}
+
+/// Part of a joint's residual that is the same two rows later, whose windows do not overlap: no more of it can depend on
+/// what changes as slowly as the motion.
+fn slow_part(regression: &Regression, residual: &[f64], joint: usize) -> f64 {
+    let design = &regression.design;
+    let (mut products, mut squares) = (0.0, 0.0);
+    for g in design.target_segments() {
+        let range = design.ranges[joint][g].clone();
+        let spacing = design.spacing(design.segments[g].signal);
+        for t in range.start..range.end.saturating_sub(2) {
+            if design.rows[t + 2].centre - design.rows[t].centre == 2 * spacing {
+                products += residual[t] * residual[t + 2];
+                squares += residual[t] * residual[t];
+            }
+        }
+    }
+    if squares > 0.0 { products / squares } else { 0.0 }
+}
+
+#[cfg(test)]
+#[path = "free_form_tests.rs"]
+mod tests;
