@@ -375,13 +375,17 @@ pub(super) const ONE_IN_TEN: f64 = 1.281_551_566;
 /// Standard deviation of the edges of a push for its shape, as a part of its length: the half wave that fits a rectangle
 /// best is longer by as much on each side, that of a squared sine shorter. Mechanics.
 pub(super) const SCAN_EDGE: f64 = 0.1;
-/// A push whose half wave is shorter than this, s, is an impact inside of the robot. Mechanics: two thirds of
-/// [`SHORTEST_PUSH`], as a half wave covers that much of a push that begins and ends gently.
-pub(super) const SCAN_IMPACT: f64 = 0.1;
+/// A push whose half wave is shorter than this, s, is an impact inside of the robot. Mechanics: four fifths of
+/// [`SHORTEST_PUSH`], as a half wave is shorter than a push that begins and ends gently by [`SCAN_EDGE`] on each side.
+pub(super) const SCAN_IMPACT: f64 = 0.12;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(super) const SCAN_PRESENT: f64 = 0.7;
-/// False alarms per recording. Statistics: size in the tests of `scan`.
-pub(super) const SCAN_LEVEL: f64 = 0.01;
+/// False alarms per recording in which nothing else was found. Statistics: the share of this search in
+/// 1 - [`LEAST_CONFIDENCE`], see [`SEARCHES`]; size and power in the tests of `scan`.
+pub(super) const SCAN_LEVEL: f64 = 0.0025;
+/// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
+/// largest means knows nothing of; pushes of a hand are mostly far beyond.
+pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-4;
 /// Rows that a joint needs to be scanned. Statistics: for the autoregression of its residual.
 pub(super) const SCAN_LEAST_ROWS: usize = 60;
 /// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles.

@@ -11,6 +11,7 @@ use super::outcome::{Diagnosis, Finding, Sampling};
 use super::preparation::{Prepared, nothing_moves};
 use super::rate::LAW;
 use super::rows::fit::Fit;
+use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
 use super::search::extended_model::ExtendedModel;
 use super::search::state::Search;
 use super::settings::{Progress, Settings};
@@ -202,7 +203,8 @@ fn pushed_in_motion(
 ) -> (Option<Contacts>, Option<Contacts>) {
     let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
     let context = &search.model.context;
-    let look = moving::look(context, &outside, &search.model.residual_on(&outside));
+    let level = if search.model.terms.is_empty() { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
+    let look = moving::look(context, &outside, &search.model.residual_on(&outside), level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
     let design = all.as_ref().unwrap_or(&outside);
     let residual = search.model.residual_on(design);

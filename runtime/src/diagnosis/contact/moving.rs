@@ -8,9 +8,7 @@ use crate::diagnosis::contact::windows::duration;
 use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{
-    CONTACT_MARGIN, LARGEST_PUSHED_FRACTION, REVERSAL_LEFT_OUT, SCAN_LEVEL, SETTLING,
-};
+use crate::diagnosis::rules::{CONTACT_MARGIN, LARGEST_PUSHED_FRACTION, REVERSAL_LEFT_OUT, SETTLING};
 use crate::effects::ContactForce;
 
 /// What a look at a residual finds.
@@ -18,17 +16,24 @@ pub(in crate::diagnosis) struct Look {
     /// Windows of one or several joints that are one push each.
     groups: Vec<Vec<Pushed>>,
     noise: Noise,
+    /// Probability that one of all windows of the recording comes as far by accident, up to which it is a push.
+    level: f64,
 }
 
 /// Looks for pushes in what a model leaves of the torques on the rows of a design that known contacts are left out of.
-pub(in crate::diagnosis) fn look(context: &Context<'_>, design: &Design, residual: &[f64]) -> Look {
+pub(in crate::diagnosis) fn look(
+    context: &Context<'_>,
+    design: &Design,
+    residual: &[f64],
+    level: f64,
+) -> Look {
     let signals = context.signals;
     let first = signals.iter().position(|s| s.is_target).unwrap_or(0);
     let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
     let tracks: Vec<Track> =
         (0..design.joints).map(|joint| track(context, design, residual, joint)).collect();
-    let (pushed, noise) = scan(&tracks, step);
-    Look { groups: together(pushed, step), noise }
+    let (pushed, noise) = scan(&tracks, step, level);
+    Look { groups: together(pushed, step), noise, level }
 }
 
 /// The rows of a joint, but for those near its own reversals and near the beginning and the end of a motion: what friction,
@@ -77,7 +82,7 @@ pub(in crate::diagnosis) fn seen(around: &Around<'_>, look: &Look) -> Option<Con
         let Some((wrench, doubt)) = wrench(around, &felt, &joints, &look.noise, (edges, doubt)) else {
             continue;
         };
-        if doubt > SCAN_LEVEL {
+        if doubt > look.level {
             continue;
         }
         let window = [wrench.window[0] - CONTACT_MARGIN, wrench.window[1] + CONTACT_MARGIN];
@@ -108,7 +113,7 @@ pub(in crate::diagnosis) fn confirmed(
         let places = wrench.window.map(|t| around.place(motion.0, t));
         let felt = Felt::of(around, &look.noise, motion.0, places);
         let doubt = felt.doubt(&look.noise);
-        if doubt <= SCAN_LEVEL {
+        if doubt <= look.level {
             contacts.doubt = contacts.doubt.min(doubt);
             let force_sigma = felt.force_sigma(around, wrench.link);
             contacts.wrenches.push(ContactForce {

@@ -8,8 +8,8 @@ use crate::diagnosis::contact::memory::{Spread, widening};
 use crate::diagnosis::contact::white::{Motion, Scratch, White};
 use crate::diagnosis::rules::{
     LARGEST_PUSHED_FRACTION, ONE_IN_TEN, SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LEAST_ROWS,
-    SCAN_LEAST_STRETCHES, SCAN_LENGTHS, SCAN_LEVEL, SCAN_NORMAL_SCALE, SCAN_OWN_STRETCHES, SCAN_SHORTEST,
-    SCAN_STEPS, SCAN_STRETCH, SCAN_TOGETHER,
+    SCAN_LEAST_STRETCHES, SCAN_LENGTHS, SCAN_NORMAL_SCALE, SCAN_OWN_STRETCHES, SCAN_SHORTEST, SCAN_STEPS,
+    SCAN_STRETCH, SCAN_TOGETHER,
 };
 
 /// Rows of one joint: for each motion their places on the grid of rows, increasing, and their residual.
@@ -129,7 +129,7 @@ type Seen = Vec<(f64, usize, usize)>;
 ///
 /// `step` is the time from one place to the next, s. With a baseline of at least as many stretches as the recording,
 /// the law comes from the baseline.
-pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> (Vec<Pushed>, Noise) {
+pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64, level: f64) -> (Vec<Pushed>, Noise) {
     let lengths = lengths(step);
     let mut joints = Vec::new();
     let mut all = Vec::new();
@@ -155,8 +155,11 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> (Vec<Pushed>, N
             let mut own: Vec<f64> = from.iter().map(|s| s.largest).collect();
             let count = own.len() as f64;
             scanned.law = Law::of(&mut own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
-            let candidates = pushes(&scanned, &seen, &lengths, stretches, step);
-            found.extend(beyond_others(&mut scanned, candidates, &from, stretches, step));
+            let (law, look) = (scanned.law, Beyond { stretches, step, level });
+            let candidates = look.pushes(&scanned, &seen, &lengths);
+            let (candidates, law) = look.and_others(&scanned, law, candidates, &from);
+            scanned.law = law;
+            found.extend(candidates);
         }
         let Some(k) = tracks.iter().position(|t| t.joint == scanned.joint) else { continue };
         let rows: Vec<&[(usize, f64)]> = tracks[k].motions.iter().map(|m| m.1.as_slice()).collect();
@@ -166,36 +169,71 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64) -> (Vec<Pushed>, N
     (found, noise)
 }
 
-/// The candidates of a joint that are beyond what all the rest of its motion does. Where windows that are no push stand
-/// out, as at every knock of a gear with play, the law of the largest has a longer tail; whether it has is told by the
-/// stretches without a push, so that candidates which do not pass are among them the next time.
-fn beyond_others(
-    scanned: &mut Scanned,
-    mut candidates: Vec<Pushed>,
-    from: &[Stretch],
+/// What counts as a push.
+struct Beyond {
+    /// Stretches of all joints.
     stretches: usize,
+    /// From one place to the next, s.
     step: f64,
-) -> Vec<Pushed> {
-    let before = scanned.law;
-    let half = (0.5 * SCAN_STRETCH / step) as usize;
-    loop {
-        let pushed = |s: &&Stretch| {
-            candidates.iter().any(|p| {
-                p.motion == s.motion && s.places[0] <= p.places[1] + half && p.places[0] <= s.places[1] + half
-            })
-        };
-        let mut others: Vec<f64> = from.iter().filter(|s| !pushed(s)).map(|s| s.largest).collect();
-        scanned.law = before.with_tail(&mut others);
-        let count = candidates.len();
-        candidates.iter_mut().for_each(|p| p.doubt = scanned.law.tail(p.square, stretches));
-        candidates.retain(|p| p.doubt <= SCAN_LEVEL);
-        if candidates.len() == count {
-            break;
+    /// Least probability that one of all windows of the recording comes as far by accident.
+    level: f64,
+}
+
+impl Beyond {
+    /// Windows of one joint beyond the level.
+    fn pushes(&self, scanned: &Scanned, seen: &[Seen], lengths: &[usize]) -> Vec<Pushed> {
+        let mut found: Vec<Pushed> = Vec::new();
+        let gap = (SCAN_TOGETHER / self.step) as usize;
+        for (m, seen) in seen.iter().enumerate().filter(|(m, _)| scanned.white.motions[*m].is_target) {
+            let passes = |s: &&(f64, usize, usize)| scanned.law.tail(s.0, self.stretches) <= self.level;
+            let mut beyond: Vec<&(f64, usize, usize)> = seen.iter().filter(passes).collect();
+            beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
+            for &&(_, from, k) in &beyond {
+                let taken = found.iter().any(|p| {
+                    p.motion == m && from <= p.places[1] + gap && p.places[0] <= from + lengths[k] + gap
+                });
+                if !taken {
+                    found.extend(refined(scanned, m, (from, k), lengths, self.stretches));
+                }
+            }
         }
+        found
     }
-    let pushed: usize = candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
-    let places: usize = scanned.white.motions.iter().filter(|m| m.is_target).map(Motion::length).sum();
-    if pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64 { candidates } else { Vec::new() }
+
+    /// The candidates of a joint that are beyond what all the rest of its motion does, and its law. Where windows that
+    /// are no push stand out, as at every knock of a gear with play, the law of the largest has a longer tail; whether it
+    /// has is told by the stretches without a push, so that candidates which do not pass are among them the next time.
+    fn and_others(
+        &self,
+        scanned: &Scanned,
+        before: Law,
+        mut candidates: Vec<Pushed>,
+        from: &[Stretch],
+    ) -> (Vec<Pushed>, Law) {
+        let half = (0.5 * SCAN_STRETCH / self.step) as usize;
+        let mut law;
+        loop {
+            let pushed = |s: &&Stretch| {
+                candidates.iter().any(|p| {
+                    p.motion == s.motion
+                        && s.places[0] <= p.places[1] + half
+                        && p.places[0] <= s.places[1] + half
+                })
+            };
+            let mut others: Vec<f64> = from.iter().filter(|s| !pushed(s)).map(|s| s.largest).collect();
+            law = before.with_tail(&mut others);
+            let count = candidates.len();
+            candidates.iter_mut().for_each(|p| p.doubt = law.tail(p.square, self.stretches));
+            candidates.retain(|p| p.doubt <= self.level);
+            if candidates.len() == count {
+                break;
+            }
+        }
+        let pushed: usize = candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
+        let places: usize = scanned.white.motions.iter().filter(|m| m.is_target).map(Motion::length).sum();
+        let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64;
+        (if few { candidates } else { Vec::new() }, law)
+    }
 }
 
 /// Lengths of windows in rows, each once.
@@ -286,26 +324,6 @@ fn largest(motion: &Motion, seen: &Seen, lengths: &[usize], step: f64) -> Vec<St
             Some(Stretch { motion: motion.motion, places, largest: out[k]? })
         })
         .collect()
-}
-
-/// Windows of one joint beyond the level.
-fn pushes(scanned: &Scanned, seen: &[Seen], lengths: &[usize], stretches: usize, step: f64) -> Vec<Pushed> {
-    let mut found: Vec<Pushed> = Vec::new();
-    let gap = (SCAN_TOGETHER / step) as usize;
-    for (m, seen) in seen.iter().enumerate().filter(|(m, _)| scanned.white.motions[*m].is_target) {
-        let mut beyond: Vec<&(f64, usize, usize)> =
-            seen.iter().filter(|s| scanned.law.tail(s.0, stretches) <= SCAN_LEVEL).collect();
-        beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for &&(_, from, k) in &beyond {
-            let taken = found.iter().any(|p| {
-                p.motion == m && from <= p.places[1] + gap && p.places[0] <= from + lengths[k] + gap
-            });
-            if !taken {
-                found.extend(refined(scanned, m, (from, k), lengths, stretches));
-            }
-        }
-    }
-    found
 }
 
 /// The window of any length near one of the grid whose half wave fits best, with how well its edges are known: as far

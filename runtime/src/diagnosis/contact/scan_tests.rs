@@ -1,10 +1,13 @@
 use super::*;
+use crate::diagnosis::rules::SCAN_LEVEL;
 use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// Time between rows, s.
 const STEP: f64 = 0.02;
+/// That of a recording in which nothing else was found.
+const LEVEL: f64 = SCAN_LEVEL;
 /// Rows of 24 s.
 const ROWS: usize = 1200;
 const JOINTS: usize = 4;
@@ -42,7 +45,7 @@ fn push(track: &mut Track, from: f64, lasts: f64, visible: f64) {
 fn about_one_recording_in_a_hundred_has_a_push_that_is_none() {
     let mut rng = Pcg64::seed_from_u64(11);
     let runs = 600;
-    let false_alarms = (0..runs).filter(|_| !scan(&noise(&mut rng), STEP).0.is_empty()).count();
+    let false_alarms = (0..runs).filter(|_| !scan(&noise(&mut rng), STEP, LEVEL).0.is_empty()).count();
     println!("{false_alarms} of {runs}");
     assert!(false_alarms <= 12, "{false_alarms} of {runs}");
 }
@@ -57,7 +60,7 @@ fn found(lasts: f64, visible: f64, seed: u64) -> (f64, usize) {
         let joint = rng.random_range(0..JOINTS);
         let from = rng.random_range(1.0..22.0);
         push(&mut tracks[joint], from, lasts, visible);
-        let pushed = scan(&tracks, STEP).0;
+        let pushed = scan(&tracks, STEP, LEVEL).0;
         let right = |p: &Pushed| {
             let [a, b] = p.places.map(|k| k as f64 * STEP);
             p.joint == joint && a < from + lasts && b > from
@@ -97,7 +100,7 @@ fn a_joint_whose_residual_always_wanders_is_not_pushed() {
         for (place, x) in &mut tracks[1].motions[0].1 {
             *x += 2.0 * (2.0 * *place as f64 * STEP + phase).sin();
         }
-        assert!(scan(&tracks, STEP).0.iter().all(|p| p.joint != 1));
+        assert!(scan(&tracks, STEP, LEVEL).0.iter().all(|p| p.joint != 1));
     }
 }
 
@@ -107,7 +110,7 @@ fn pushes_of_several_joints_at_a_time_are_one() {
     push(&mut tracks[0], 10.0, 0.6, 4.0);
     push(&mut tracks[2], 10.05, 0.6, 4.0);
     push(&mut tracks[3], 17.0, 0.6, 4.0);
-    let groups = together(scan(&tracks, STEP).0, STEP);
+    let groups = together(scan(&tracks, STEP, LEVEL).0, STEP);
     let joints: Vec<Vec<usize>> = groups
         .iter()
         .map(|g| {
@@ -131,7 +134,7 @@ fn edges_are_as_uncertain_as_they_say() {
                 *x += 3.0;
             }
         }
-        let pushed = scan(&tracks, STEP).0;
+        let pushed = scan(&tracks, STEP, LEVEL).0;
         let Some(p) = pushed.iter().find(|p| p.joint == 0) else { continue };
         let error = (p.places[0] as f64 * STEP - from).abs();
         outside += usize::from(error > 2.0 * p.edges[0].max(1.0) * STEP + STEP);
@@ -143,6 +146,6 @@ fn edges_are_as_uncertain_as_they_say() {
 fn few_rows_are_not_scanned() {
     let short =
         Track { joint: 0, motions: vec![(true, (0..50).map(|k| (k, 1.0)).collect())], beside: vec![] };
-    assert!(scan(&[short], STEP).0.is_empty());
-    assert!(scan(&[], STEP).0.is_empty());
+    assert!(scan(&[short], STEP, LEVEL).0.is_empty());
+    assert!(scan(&[], STEP, LEVEL).0.is_empty());
 }
