@@ -61,7 +61,7 @@ pub(super) fn run(
         // Where something is said against what was found, the search goes on from here.
         let without_effects = known.is_none().then(|| search.model.copy()).transpose()?;
         loop {
-            let report = match known {
+            let mut report = match known {
                 Some(known) => search.force(known)?,
                 None => search.run(&settings, progress)?,
             };
@@ -69,6 +69,17 @@ pub(super) fn run(
             // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
             if pushes.differ_beside(model, &prepared, &search, &settings) {
                 continue 'rows;
+            }
+            // What something outside did is no law over some variable: those are looked for without it.
+            if known.is_none() && !search.beyond_catalogue {
+                search.beyond_catalogue = true;
+                let found = search.model.terms.len();
+                report = search.run(&settings, progress)?;
+                if search.model.terms.len() > found
+                    && pushes.differ_beside(model, &prepared, &search, &settings)
+                {
+                    continue 'rows;
+                }
             }
 
             // 5. Numbers, errors, curves, sentences.

@@ -26,6 +26,9 @@ impl Search<'_> {
         &mut self,
         settings: &Settings,
     ) -> Result<Option<Accepted>, SingularDesign> {
+        if !self.beyond_catalogue {
+            return Ok(None);
+        }
         let (model, regression) = (&self.model, &self.model.slow);
         let residual = regression.residual();
         let wanted = |j: usize| {

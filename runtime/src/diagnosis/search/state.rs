@@ -27,6 +27,8 @@ pub(in crate::diagnosis) struct Search<'a> {
     pub rejected: Vec<Accepted>,
     /// Laws that the last round could not tell from one on another joint.
     pub ties: Vec<Tie>,
+    /// Whether laws over any variables are tried where the catalogue has none.
+    pub beyond_catalogue: bool,
     /// Friction that has certainly changed, by less than is named.
     pub small_friction: Vec<SmallLaw>,
     pub spectra: Vec<OrderSpectrum>,
@@ -81,6 +83,7 @@ impl<'a> Search<'a> {
             fast,
             rejected: Vec::new(),
             ties: Vec::new(),
+            beyond_catalogue: false,
             small_friction: Vec::new(),
             spectra,
             lines,
