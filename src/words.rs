@@ -1,6 +1,7 @@
 //! Joints and confidences in words.
 
-use dynid_runtime::diagnosis::OnTest;
+use dynid_runtime::diagnosis::{CannotTell, OnTest, Small};
+use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::{Frame, JointIndex, Robot};
 use dynid_runtime::report::significant;
 
@@ -19,6 +20,38 @@ pub fn joint_words(joints: &[usize]) -> String {
             format!("joints {} and {last}", first.join(", "))
         }
     }
+}
+
+/// What an effect is called, in the middle of a sentence.
+pub fn effect_words(id: &str) -> String {
+    EffectKind::from_id(id).map_or_else(|| id.to_owned(), |effect| effect.words().title.to_lowercase())
+}
+
+/// The words with a capital letter first.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}
+
+/// Effects that cannot be told apart.
+pub fn side_words(cannot_tell: &CannotTell) -> Vec<String> {
+    let sides = cannot_tell.sides().into_iter().zip(&cannot_tell.between);
+    sides.map(|(side, id)| side.replacen(id.as_str(), &effect_words(id), 1)).collect()
+}
+
+/// An effect that is there and too small to be named.
+pub fn small_words(small: &Small) -> String {
+    format!(
+        "{} on {} ({} {} of the torque; from {} {} on it would be named)",
+        effect_words(&small.effect),
+        joint_words(&small.joints),
+        significant(small.torque, 2),
+        small.unit,
+        significant(small.least, 2),
+        small.unit
+    )
 }
 
 /// The confidence in words.

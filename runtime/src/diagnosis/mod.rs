@@ -1,8 +1,8 @@
 //! Diagnosis: locate the mismatch between a model and a recording, name the physics that was left out, add it, and
 //! show on motion that was held out that the fit got better.
 //!
-//! 1. The band is chosen, the motions are filtered, recordings that cannot be diagnosed are refused, and a skew between
-//!    torques and positions is taken out.
+//! 1. The band is chosen, the motions are filtered, recordings that cannot be diagnosed are refused, times that run
+//!    at another rate are corrected, and a skew between torques and positions is taken out.
 //! 2. Windows in which something outside pushed the robot are found and set aside.
 //! 3. Every effect of the catalogue, at every place and with a grid of shapes, is tried together with all standard
 //!    parameters, and judged on motion that was held out; the best that holds becomes part of the model; then again.

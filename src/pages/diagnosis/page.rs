@@ -8,7 +8,7 @@ use super::extras::Extras;
 use super::finding::found;
 use super::forward::forward;
 use crate::errors::noise_words;
-use crate::words::joint_words;
+use crate::words::{capital, joint_words, side_words, small_words};
 
 /// The whole page.
 pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {
@@ -27,6 +27,7 @@ pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String
     mismatch(&mut page, diagnosis);
     shifts(&mut page, diagnosis);
     cannot_tell(&mut page, diagnosis);
+    small(&mut page, diagnosis);
     unexplained(&mut page, diagnosis, extras);
     page.heading("How this was done");
     page.paragraph(&format!(
@@ -169,8 +170,16 @@ fn cannot_tell(page: &mut Page, diagnosis: &Diagnosis) {
     }
     page.heading("What this motion cannot tell");
     page.list(diagnosis.cannot_tell.iter().map(|c| {
-        format!("{} on {}. To tell: {}.", c.sides().join(" or "), joint_words(&c.joints), c.experiment)
+        format!("{} on {}. To tell: {}.", side_words(c).join(" or "), joint_words(&c.joints), c.experiment)
     }));
+}
+
+fn small(page: &mut Page, diagnosis: &Diagnosis) {
+    if diagnosis.small.is_empty() {
+        return;
+    }
+    page.heading("Also there, and too small to be named");
+    page.list(diagnosis.small.iter().map(|s| format!("{}.", capital(&small_words(s)))));
 }
 
 fn unexplained(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {

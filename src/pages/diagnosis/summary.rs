@@ -9,7 +9,9 @@ use crate::errors::noise_words;
 use crate::output::table;
 use crate::recorded::{Measured, left_out_words};
 
-use crate::words::{confidence_words, joint_words, part_words};
+use crate::words::{
+    capital, confidence_words, effect_words, joint_words, part_words, side_words, small_words,
+};
 
 /// The verdict, the errors and the findings for a terminal.
 pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> String {
@@ -24,9 +26,11 @@ pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> S
     text.push('\n');
     let header = ["<relative error of the torques", "<band", "before", "after"];
     text.push_str(&table(&header, error_rows(diagnosis, extras)));
-    for evaluation in extras.fitted.iter().chain(extras.tested.iter().map(|t| &t.evaluation)) {
+    let fitted = extras.fitted.iter().map(|evaluation| ("fitted motion", evaluation));
+    let tested = extras.tested.iter().map(|t| ("test recording", &t.evaluation));
+    for (which, evaluation) in fitted.chain(tested) {
         if let Some(words) = noise_words(evaluation) {
-            text.push_str(&format!("\n{words}"));
+            text.push_str(&format!("\n{which}: {words}"));
         }
     }
     if let Some(Err(reason)) = &extras.forward {
@@ -38,17 +42,25 @@ pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> S
     for c in &diagnosis.cannot_tell {
         text.push_str(&format!(
             "\n\ncannot tell {} on {} apart: {}",
-            c.sides().join(" and "),
+            side_words(c).join(" and "),
             joint_words(&c.joints),
             c.experiment
         ));
+    }
+    if !diagnosis.small.is_empty() {
+        let small: Vec<String> = diagnosis.small.iter().map(small_words).collect();
+        text.push_str(&format!("\n\nalso there, and too small to be named: {}", small.join("; ")));
     }
     text
 }
 
 fn found(finding: &Finding) -> String {
     let mut text = String::new();
-    text.push_str(&format!("\n\n{} on {}\n", finding.effect, joint_words(&finding.joints)));
+    text.push_str(&format!(
+        "\n\n{} on {}\n",
+        capital(&effect_words(&finding.effect)),
+        joint_words(&finding.joints)
+    ));
     text.push_str(&format!("  {}\n", finding.sentence));
     let numbers: Vec<String> = finding
         .parameters

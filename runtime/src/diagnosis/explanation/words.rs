@@ -110,18 +110,32 @@ pub(in crate::diagnosis) fn not_judged(joints: &[NotJudged]) -> Option<String> {
     }
 }
 
+/// Where what is missing lies, where nothing names it.
+fn something_missing(d: &Diagnosis) -> String {
+    let Some(most) = d.mismatch.first() else {
+        return "Something is missing that cannot be named".to_owned();
+    };
+    let how = most.where_.trim_start_matches("while moving; ");
+    let how = if how.starts_with("changes") || how.starts_with("has") {
+        format!("it {how}")
+    } else {
+        how.to_owned()
+    };
+    format!("Something is missing that cannot be named, most of it on joint {}: {how}", most.joint)
+}
+
 /// The verdict first.
 pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
     let mut lines = Vec::new();
     let unexplained = d.unexplained.share > rules::UNEXPLAINED;
     if d.findings.is_empty() {
         let head = if unexplained {
-            "Something is missing that cannot be named"
+            something_missing(d)
         } else {
-            "Nothing is missing that this recording can show"
+            "Nothing is missing that this recording can show".to_owned()
         };
         lines.push(format!(
-            "{head}: the held-out error of the standard model is {:.2} %, and none of {} things tried improves it reliably.",
+            "{head}. The held-out error of the standard model is {:.2} %, and none of {} things tried improves it reliably.",
             100.0 * d.held_out.before,
             d.tried
         ));
