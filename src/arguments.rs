@@ -123,6 +123,9 @@ pub struct DiagnosisOptions {
     /// Do not look for pushes that a single joint sees while it moves
     #[arg(long)]
     pub no_single_joint_contacts: bool,
+    /// It is done anyway
+    #[arg(long, hide = true, conflicts_with = "no_single_joint_contacts")]
+    pub single_joint_contacts: bool,
     /// Threads; the result is the same for every number [default: all cores]
     #[arg(
         long,

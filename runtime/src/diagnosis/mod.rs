@@ -85,6 +85,7 @@ mod contact;
 mod error;
 mod explanation;
 mod judging;
+mod motions;
 mod outcome;
 mod predict;
 mod preparation;

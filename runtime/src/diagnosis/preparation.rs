@@ -1,170 +1,19 @@
-//! What a diagnosis starts from: band, windows, filtered motions, speeds of standstill, the skew of the torques; and
-//! the recordings that it refuses.
+//! What a diagnosis starts from: motions whose times run as the robot did, the standard model on them, the skew of the
+//! torques; and the recordings that it refuses.
 
 use super::error::DiagnosisError;
 use super::explanation::delay::skew_of;
-use super::outcome::Sampling;
+use super::motions::Motions;
 use super::rate::{WrongRate, corrected, factor};
 use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rows::motion::{Moving, left_over};
-use super::rows::scales::{scales, top_speeds};
-use super::rows::selection::RowSelection;
-use super::rows::signals::{Signals, directions};
+use super::rows::scales::scales;
 use super::rules;
-use super::settings::{Settings, fitted_to, given_speeds};
+use super::settings::Settings;
 use crate::model::{JointIndex, Model};
 use crate::recording::Trajectory;
-
-/// The motions with everything that decides where rows are.
-#[derive(Clone)]
-pub(super) struct Motions {
-    /// Motions of the baseline, then those of the recording that is diagnosed.
-    pub signals: Vec<Signals>,
-    /// Settings with the windows of this recording's band.
-    settings: Settings,
-    /// Cut-off of the filter of positions and torques, Hz.
-    cutoff: f64,
-    /// Speeds of standstill for slow rows, per joint.
-    pub slowest: Vec<f64>,
-    /// The same for fast rows.
-    slowest_fast: Vec<f64>,
-    /// Those that the outcome tells: also of joints that hold still.
-    standstill_speeds: Vec<f64>,
-    /// Base parameters that nothing determines, and that are left out.
-    left_over: Vec<usize>,
-    /// Linear forms of dq whose sign enters each joint's row.
-    directions: Vec<Vec<Vec<f64>>>,
-    /// Segments per motion of the recording that is diagnosed.
-    segments: usize,
-    /// Whether the recording has no rows to spare: slow effects are then smoothed no more than fast ones.
-    short: bool,
-}
-
-/// The rows of both windows.
-pub(super) struct Rows {
-    pub slow: Design,
-    pub fast: Design,
-}
-
-impl Motions {
-    /// Chooses the band, filters the motions, and finds the speeds of standstill.
-    fn new(
-        model: &dyn Model,
-        trajectories: &[Trajectory],
-        baseline: &[Trajectory],
-        settings: &Settings,
-    ) -> Result<Self, DiagnosisError> {
-        let n = model.robot().joints();
-        let (cutoff, settings) = fitted_to(settings, trajectories)?;
-        let given = given_speeds(&settings, n)?;
-        let old = baseline.iter().map(|t| Signals::new(t, false, 0.0, cutoff));
-        let new = trajectories.iter().map(|t| Signals::new(t, true, 0.0, cutoff));
-        let signals: Vec<Signals> = old.chain(new).collect::<Result<_, _>>()?;
-        let (slowest, slowest_fast) = match given {
-            Some(speeds) => (speeds.clone(), speeds),
-            None => {
-                let slow: Vec<f64> =
-                    top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
-                let fast = slow.iter().map(|v| v / rules::FAST_STANDSTILL_DIVISOR).collect();
-                (slow, fast)
-            }
-        };
-        let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
-        let count = trajectories.len();
-        let few = count < rules::ENOUGH_MOTIONS;
-        Ok(Self {
-            signals,
-            settings,
-            cutoff,
-            standstill_speeds: slowest.clone(),
-            left_over: Vec::new(),
-            slowest,
-            slowest_fast,
-            directions: directions(model.robot()),
-            segments: if few { rules::SEGMENTS_OF_FEW_MOTIONS / count } else { 1 },
-            short: duration < rules::SHORT_RECORDING,
-        })
-    }
-
-    /// Rows of a window of this half-width, s, outside of the excluded times of each motion.
-    fn design(&self, model: &dyn Model, half: f64, excluded: Option<&[Vec<[f64; 2]>]>) -> Design {
-        let nothing = vec![Vec::new(); self.signals.len()];
-        let fast = half < self.settings.slow_window;
-        let selection = RowSelection {
-            half,
-            slowest: if fast { &self.slowest_fast } else { &self.slowest },
-            directions: &self.directions,
-            segments: self.segments,
-            excluded: excluded.unwrap_or(&nothing),
-        };
-        let mut design = Design::new(model, &self.signals, &selection);
-        if !self.left_over.is_empty() {
-            design.leave_out(&self.left_over);
-        }
-        design
-    }
-
-    /// The same motions in a time that runs so many times faster.
-    pub fn faster(&self, factor: f64) -> Self {
-        let speeds = |slowest: &[f64]| slowest.iter().map(|v| factor * v).collect();
-        Self {
-            signals: self.signals.iter().map(|s| s.faster(factor)).collect(),
-            slowest: speeds(&self.slowest),
-            slowest_fast: speeds(&self.slowest_fast),
-            settings: Settings {
-                slow_window: self.settings.slow_window / factor,
-                fast_window: self.settings.fast_window / factor,
-                ..self.settings.clone()
-            },
-            ..self.clone()
-        }
-    }
-
-    /// Leaves out all rows of joints that do not move: what such a joint seems to do is noise.
-    fn hold_still(&mut self, moving: &[bool]) {
-        for speeds in [&mut self.slowest, &mut self.slowest_fast] {
-            for (speed, _) in speeds.iter_mut().zip(moving).filter(|(_, moving)| !**moving) {
-                *speed = f64::INFINITY;
-            }
-        }
-    }
-
-    /// Slow rows that leave nothing out but standstills.
-    pub fn aligned(&self, model: &dyn Model) -> Design {
-        self.design(model, self.settings.slow_window, None)
-    }
-
-    /// The rows of both windows, outside of the excluded times of each motion.
-    pub fn rows(&self, model: &dyn Model, excluded: Option<&[Vec<[f64; 2]>]>) -> Rows {
-        let fast = self.design(model, self.settings.fast_window, excluded);
-        let slow =
-            if self.short { fast.clone() } else { self.design(model, self.settings.slow_window, excluded) };
-        Rows { slow, fast }
-    }
-
-    /// Settings with the windows of this recording's band.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// What the outcome tells of band, windows and rows.
-    pub fn sampling(&self, rows: &Rows) -> Sampling {
-        let fast_window = self.settings.fast_window;
-        let slow_window = if self.short { fast_window } else { self.settings.slow_window };
-        Sampling {
-            band: 0.5 / fast_window,
-            slow_band: 0.5 / slow_window,
-            cutoff: self.cutoff,
-            fast_window,
-            slow_window,
-            standstill_speeds: self.standstill_speeds.clone(),
-            fast_rows: rows.fast.rows.len(),
-            slow_rows: rows.slow.rows.len(),
-        }
-    }
-}
 
 /// Everything that is computed once, before contacts and effects are looked for.
 pub(super) struct Prepared {

@@ -4,12 +4,12 @@
 //! standard deviations, goes in a few seconds is read off the recording's own stretches, as an extreme value law (Gumbel) of their squares. Squares of normal deviates
 //! have the exponential tail that this law belongs to, and a heavier tail shows as a larger scale.
 
+use crate::diagnosis::contact::largest::Law;
 use crate::diagnosis::contact::memory::{Spread, widening};
 use crate::diagnosis::contact::white::{Motion, Scratch, White};
 use crate::diagnosis::rules::{
-    LARGEST_PUSHED_FRACTION, ONE_IN_TEN, SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LEAST_ROWS,
-    SCAN_LEAST_STRETCHES, SCAN_LENGTHS, SCAN_NORMAL_SCALE, SCAN_OWN_STRETCHES, SCAN_SHORTEST, SCAN_STEPS,
-    SCAN_STRETCH, SCAN_TOGETHER,
+    LARGEST_PUSHED_FRACTION, SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES,
+    SCAN_LENGTHS, SCAN_OWN_STRETCHES, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH, SCAN_TOGETHER,
 };
 
 /// Rows of one joint: for each motion their places on the grid of rows, increasing, and their residual.
@@ -36,57 +36,6 @@ pub(in crate::diagnosis) struct Pushed {
     pub square: f64,
     /// Probability that one of all windows of the recording comes as far by accident.
     pub doubt: f64,
-}
-
-/// How far the largest squared mean of a stretch goes: Gumbel's law.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Law {
-    location: f64,
-    scale: f64,
-}
-
-impl Law {
-    /// Of normal deviates in a stretch with some thirty independent windows.
-    const NORMAL: Self = Self { location: 8.0, scale: SCAN_NORMAL_SCALE };
-
-    /// From the quartiles, which a few pushed stretches hardly move.
-    fn of(largest: &mut [f64]) -> Option<Self> {
-        if largest.len() < SCAN_LEAST_STRETCHES {
-            return None;
-        }
-        largest.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let x = share * (largest.len() - 1) as f64;
-            let low = x.floor() as usize;
-            let high = (low + 1).min(largest.len() - 1);
-            largest[low] + (x - low as f64) * (largest[high] - largest[low])
-        };
-        let place = |share: f64| -(-share.ln()).ln();
-        let scale = ((at(0.75) - at(0.25)) / (place(0.75) - place(0.25))).max(SCAN_NORMAL_SCALE);
-        Some(Self { location: at(0.5) - scale * place(0.5), scale })
-    }
-
-    /// With a longer tail where the larger ones of these surely pass their upper quartile by more than the law has it:
-    /// excesses of an exponential tail have its scale as their mean.
-    fn with_tail(self, largest: &mut [f64]) -> Self {
-        largest.sort_by(f64::total_cmp);
-        let first = largest.len() * 3 / 4;
-        let Some(quartile) = first.checked_sub(1).map(|k| largest[k]) else { return self };
-        let count = (largest.len() - first) as f64;
-        let excess = largest[first..].iter().map(|x| x - quartile).sum::<f64>() / count;
-        let surely = excess > self.scale * (1.0 + ONE_IN_TEN / count.sqrt());
-        Self { scale: if surely { excess } else { self.scale }, ..self }
-    }
-
-    fn mean(self, own: f64, other: Self, others: f64) -> Self {
-        let mean = |a: f64, b: f64| (own * a + others * b) / (own + others);
-        Self { location: mean(self.location, other.location), scale: mean(self.scale, other.scale) }
-    }
-
-    /// Probability that the largest of so many stretches passes a square.
-    fn tail(self, square: f64, stretches: usize) -> f64 {
-        -(-(stretches as f64) * (-(square - self.location) / self.scale).exp()).exp_m1()
-    }
 }
 
 /// One joint, ready to be scanned.
