@@ -23,5 +23,6 @@ pub mod signal;
 pub mod simulation;
 
 mod parallel;
+mod statistics;
 #[cfg(test)]
 mod testing;

@@ -3,8 +3,8 @@
 
 use super::observe::{EquationFactor, Observation};
 use super::solve::{back_substitute, inverse_gram};
-use super::uncertainty::{Prior, Squares};
 use super::{Factor, RANK_TOLERANCE};
+use crate::statistics::moderation::{Prior, Variance};
 use nalgebra::DMatrix;
 
 /// Largest relative change of a sigma at which the weights have converged.
@@ -59,7 +59,7 @@ pub(super) fn from_own_fits(observation: &Observation) -> Weights {
         for (&l, x) in independent.iter().zip(solved) {
             chi[l] = x;
         }
-        let squares: Vec<Squares> = own
+        let squares: Vec<Variance> = own
             .iter()
             .map(|&g| {
                 let factor = &observation.groups[g].factor;
@@ -103,7 +103,7 @@ pub(super) fn iterate(observation: &Observation, active: &[usize], start: &Weigh
         }
         let before = weights.sigma.clone();
         for own in &equations {
-            let squares: Vec<Squares> = own
+            let squares: Vec<Variance> = own
                 .iter()
                 .map(|&g| {
                     let group = &observation.groups[g];
@@ -170,19 +170,19 @@ fn leverage(gram: &DMatrix<f64>, places: &[(usize, usize)], inverse: &DMatrix<f6
     trace
 }
 
-fn squares(factor: &Factor, residual: f64, leverage: f64) -> Squares {
+fn squares(factor: &Factor, residual: f64, leverage: f64) -> Variance {
     let rows = factor.rows() as f64;
-    Squares { sum: residual * residual, freedom: (rows - leverage).clamp(0.0, rows) }
+    Variance::of_squares(residual * residual, (rows - leverage).clamp(0.0, rows))
 }
 
 /// The standard deviations of the groups of one equation from their squares, never so small that their inverse means
 /// nothing.
-fn settle(observation: &Observation, own: &[usize], squares: &[Squares], weights: &mut Weights) {
-    let prior = Prior::of(squares);
+fn settle(observation: &Observation, own: &[usize], squares: &[Variance], weights: &mut Weights) {
+    let prior = Prior::of_groups(squares);
     for (&g, &squares) in own.iter().zip(squares) {
         let factor = &observation.groups[g].factor;
         let floor = FLOOR * factor.norm_y() / (factor.rows().max(1) as f64).sqrt();
-        let sigma = prior.map_or(0.0, |prior| prior.moderate(squares).sqrt()).max(floor);
+        let sigma = prior.map_or(0.0, |prior| prior.moderate(squares).value.sqrt()).max(floor);
         weights.sigma[g] = if sigma > 0.0 { sigma } else { 1.0 };
         weights.freedom[g] = squares.freedom;
     }

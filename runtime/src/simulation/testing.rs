@@ -2,6 +2,7 @@
 //! Small robots for the tests of this module. Equation numbers are those of Gautier and Briot.
 
 use crate::model::{Drive, Frame, JointKind, Limits, ParameterKind, RecursiveModel, Robot};
+use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 
 fn frame(kind: JointKind, alpha: f64, d: f64, r: f64, parent: Option<usize>) -> Frame {
@@ -112,7 +113,6 @@ pub fn random_state(n: usize, random: &mut rand_pcg::Pcg64) -> [Vec<f64>; 3] {
 /// on those before it is regrouped into them. An oracle of its own, for tests that need a small base.
 pub fn with_numeric_base(robot: &Robot) -> Robot {
     use crate::model::{BaseParameter, Model};
-    use nalgebra::{DMatrix, DVector};
     let model = RecursiveModel::new(robot.clone()).unwrap();
     let (n, columns) = (robot.joints(), robot.standard.len());
     let pattern = model.pattern();
@@ -129,24 +129,7 @@ pub fn with_numeric_base(robot: &Robot) -> Robot {
             }
         }
     }
-    let mut kept: Vec<usize> = Vec::new();
-    let mut basis: Vec<DVector<f64>> = Vec::new();
-    let mut dropped = Vec::new();
-    for c in 0..columns {
-        let mut rest: DVector<f64> = w.column(c).into();
-        let size = rest.norm();
-        for _ in 0..2 {
-            for b in &basis {
-                rest -= b * b.dot(&rest);
-            }
-        }
-        if rest.norm() > 1e-9 * size.max(1e-9) {
-            basis.push(&rest / rest.norm());
-            kept.push(c);
-        } else {
-            dropped.push(c);
-        }
-    }
+    let (kept, dropped) = independent_columns(&w);
     let small = DMatrix::from_columns(&kept.iter().map(|&c| w.column(c)).collect::<Vec<_>>());
     let svd = small.svd(true, true);
     let mut combinations: Vec<Vec<(usize, f64)>> = kept.iter().map(|&c| vec![(c, 1.0)]).collect();
@@ -176,6 +159,29 @@ pub fn with_numeric_base(robot: &Robot) -> Robot {
         .collect::<Vec<_>>()
         .into();
     robot
+}
+
+/// The columns that do not depend on those before them, and the others.
+fn independent_columns(w: &DMatrix<f64>) -> (Vec<usize>, Vec<usize>) {
+    let mut kept: Vec<usize> = Vec::new();
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut dropped = Vec::new();
+    for c in 0..w.ncols() {
+        let mut rest: DVector<f64> = w.column(c).into();
+        let size = rest.norm();
+        for _ in 0..2 {
+            for b in &basis {
+                rest -= b * b.dot(&rest);
+            }
+        }
+        if rest.norm() > 1e-9 * size.max(1e-9) {
+            basis.push(&rest / rest.norm());
+            kept.push(c);
+        } else {
+            dropped.push(c);
+        }
+    }
+    (kept, dropped)
 }
 
 /// The TX-40 of Table I without payload, with parameters of published order, limits, gains and noise.

@@ -10,7 +10,7 @@ use dynid_runtime::model_file::SimulatedStates;
 use dynid_runtime::report::{percent, significant};
 use dynid_runtime::signal::Motion;
 use dynid_runtime::simulation::{
-    DidimError, DidimSettings, Planned, Reference, apart, didim, simulated_motions,
+    DidimError, DidimEstimate, DidimSettings, Experiment, Planned, Reference, apart, didim, simulated_motions,
 };
 
 use super::method::Identification;
@@ -97,46 +97,85 @@ pub(super) fn identify(
     let mut motions = first.map_err(|error| refused(format!("its motions cannot be simulated: {error}")))?;
     let rows =
         ObserveSettings { acceleration_noise: Vec::new(), keep_rows: true, ..recorded.settings.clone() };
+    let by = BySimulation { recorded, recording, rows: &rows, refused: &refused };
     let (estimate, changes) = match method {
         Identification::Didim => {
-            let estimate = EstimateSettings { r_sigma: Some(r_sigma), ..EstimateSettings::default() };
-            let settings = DidimSettings { observe: rows, estimate, ..DidimSettings::default() };
-            let found = didim(model, &experiments, &start, &settings).map_err(|error| match error {
-                DidimError::Observe(error) => observe_failure(recording, &error),
-                other => refused(format!("its motions cannot be simulated: {other}")),
-            })?;
-            if let Some(why) = &found.stopped {
-                warnings.push(format!(
-                    "DIDIM stopped after {} iterations, because the next parameters cannot be simulated ({why}): these are \
-                     the last ones, and they are not converged",
-                    found.changes.len()
-                ));
-            } else if !found.converged {
-                warnings.push(format!(
-                    "DIDIM has not converged in {} iterations: the last one changed the parameters by {} of their size",
-                    found.changes.len(),
-                    percent(found.changes.last().copied().unwrap_or(f64::NAN))
-                ));
-            }
+            let found = by.didim(&experiments, &start, r_sigma)?;
+            warnings.extend(not_converged(&found));
             if let Ok(last) = simulated_motions(model, &experiments, &found.estimate.chi()) {
                 motions = last;
             }
             (found.estimate, found.changes)
         }
-        _ => {
-            let instruments = Instruments::new(model, &motions);
-            let extra = Some(&instruments as &dyn dynid_runtime::estimation::observe::ExtraColumns);
-            let observation = observe(model, &recorded.motions, Equations::Torque, extra, &rows, None)
-                .map_err(|error| observe_failure(recording, &error))?;
-            let errors = errors(&observation, weighted);
-            let found = instrumental_variables(&observation, &errors).map_err(|e| refused(e.to_string()))?;
-            (found.described(torques, weighted), Vec::new())
-        }
+        _ => (by.instrumental_variables(&motions, torques, weighted)?, Vec::new()),
     };
     let apart = apart(&motions, &recorded.motions);
     warnings.extend(far(&apart, recorded, &motions));
     let compared_with = weighted.method.name().to_owned();
     Ok(Outcome { estimate, simulated: SimulatedStates { compared_with, values, apart, changes }, warnings })
+}
+
+/// What both methods work on.
+struct BySimulation<'a> {
+    recorded: &'a Recorded,
+    recording: &'a Path,
+    /// How rows are made of motions.
+    rows: &'a ObserveSettings,
+    /// The failure that a message is.
+    refused: &'a dyn Fn(String) -> Failure,
+}
+
+impl BySimulation<'_> {
+    /// Direct and inverse dynamic identification from a start.
+    fn didim(
+        &self,
+        experiments: &[Experiment<'_>],
+        start: &[f64],
+        r_sigma: f64,
+    ) -> Result<DidimEstimate, Failure> {
+        let estimate = EstimateSettings { r_sigma: Some(r_sigma), ..EstimateSettings::default() };
+        let settings = DidimSettings { observe: self.rows.clone(), estimate, ..DidimSettings::default() };
+        let model = self.recorded.dynamics.model();
+        didim(model, experiments, start, &settings).map_err(|error| match error {
+            DidimError::Observe(error) => observe_failure(self.recording, &error),
+            other => (self.refused)(format!("its motions cannot be simulated: {other}")),
+        })
+    }
+
+    /// Instruments of simulated motions, with the errors that the weighted estimate has of its rows.
+    fn instrumental_variables(
+        &self,
+        simulated: &[Motion],
+        torques: &Observation,
+        weighted: &Estimate,
+    ) -> Result<Estimate, Failure> {
+        let model = self.recorded.dynamics.model();
+        let instruments = Instruments::new(model, simulated);
+        let observation =
+            observe(model, &self.recorded.motions, Equations::Torque, Some(&instruments), self.rows, None)
+                .map_err(|error| observe_failure(self.recording, &error))?;
+        let errors = errors(&observation, weighted);
+        let found =
+            instrumental_variables(&observation, &errors).map_err(|e| (self.refused)(e.to_string()))?;
+        Ok(found.described(torques, weighted))
+    }
+}
+
+/// What is said of an iteration that did not come to its end.
+fn not_converged(found: &DidimEstimate) -> Option<String> {
+    match &found.stopped {
+        Some(why) => Some(format!(
+            "DIDIM stopped after {} iterations, because the next parameters cannot be simulated ({why}): these are the last \
+             ones, and they are not converged",
+            found.changes.len()
+        )),
+        None if !found.converged => Some(format!(
+            "DIDIM has not converged in {} iterations: the last one changed the parameters by {} of their size",
+            found.changes.len(),
+            percent(found.changes.last().copied().unwrap_or(f64::NAN))
+        )),
+        None => None,
+    }
 }
 
 /// The error of each group of an observation, as an estimate has it.

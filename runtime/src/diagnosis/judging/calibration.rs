@@ -8,11 +8,11 @@
 //! has, as a random effect of the units would have it (Laird and Ware 1982). A dozen units know a lambda badly: it is
 //! moderated by those of other laws on the same joint.
 
-use crate::diagnosis::judging::moderation::{Prior, Variance};
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::white_products::{Background, Products, Regressors, factored};
 use crate::diagnosis::rules::{LEAST_EIGENVALUE, OWN_FRACTION};
+use crate::statistics::moderation::{Prior, Variance};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, Normal};
 

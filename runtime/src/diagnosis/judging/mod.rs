@@ -7,7 +7,6 @@ pub(in crate::diagnosis) mod evidence;
 pub(in crate::diagnosis) mod folds;
 pub(in crate::diagnosis) mod held_out;
 pub(in crate::diagnosis) mod judge;
-pub(in crate::diagnosis) mod moderation;
 pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod regression;

@@ -64,32 +64,15 @@ impl Units {
         let cut: Vec<usize> = (0..files).filter(|&f| fresh[f] != change).collect();
         let duration = cut.iter().map(|&f| seconds(f)).sum::<f64>()
             / cut.iter().map(|&f| counts[f]).sum::<usize>().max(1) as f64;
-        let of = |r: usize| {
+        let place = |r: usize| {
             let row = design.rows[r];
             let (first, last) = spans[row.signal];
             let place = row.centre / design.spacing(row.signal);
             let unit = first_unit[row.signal] + (place - first) * counts[row.signal] / (last - first + 1);
             (unit, place)
         };
-        let (mut rows, mut stretches) = (Vec::new(), Vec::new());
-        for j in 0..design.joints {
-            let mut of_units = vec![0..0; units.len()];
-            let mut of_joint: Vec<Range<usize>> = Vec::new();
-            let mut before = None;
-            for r in design.of_joint(j) {
-                let (unit, place) = of(r);
-                let range: &mut Range<usize> = &mut of_units[unit];
-                let start = if range.end == 0 { r } else { range.start };
-                *range = start..r + 1;
-                match of_joint.last_mut() {
-                    Some(last) if before == Some((unit, place.wrapping_sub(1))) => last.end = r + 1,
-                    _ => of_joint.push(r..r + 1),
-                }
-                before = Some((unit, place));
-            }
-            rows.push(of_units);
-            stretches.push(of_joint);
-        }
+        let (rows, stretches) =
+            (0..design.joints).map(|j| of_joint(design.of_joint(j), units.len(), &place)).unzip();
         Self { units, rows, stretches, duration, target_duration }
     }
 
@@ -114,6 +97,30 @@ impl Units {
     pub fn change(&self) -> bool {
         self.units.iter().any(|u| !u.target)
     }
+}
+
+/// The rows of a joint in each unit, and those that follow each other in one; `place` is the unit of a row and where it
+/// lies on the grid of its motion.
+fn of_joint(
+    rows: impl Iterator<Item = usize>,
+    units: usize,
+    place: &dyn Fn(usize) -> (usize, usize),
+) -> (Vec<Range<usize>>, Vec<Range<usize>>) {
+    let mut of_units = vec![0..0; units];
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    let mut before = None;
+    for r in rows {
+        let (unit, place) = place(r);
+        let range: &mut Range<usize> = &mut of_units[unit];
+        let start = if range.end == 0 { r } else { range.start };
+        *range = start..r + 1;
+        match stretches.last_mut() {
+            Some(last) if before == Some((unit, place.wrapping_sub(1))) => last.end = r + 1,
+            _ => stretches.push(r..r + 1),
+        }
+        before = Some((unit, place));
+    }
+    (of_units, stretches)
 }
 
 #[cfg(test)]

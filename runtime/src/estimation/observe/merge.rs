@@ -19,26 +19,39 @@ impl Observation {
         self.append(piece)?;
         self.rows = None;
         // Each trajectory goes to the first of its name.
-        let mut names: Vec<String> = Vec::new();
-        let mut first = Vec::new();
-        let place: Vec<usize> = self
-            .trajectories
-            .iter()
-            .enumerate()
-            .map(|(k, name)| {
-                names.iter().position(|known| known == name).unwrap_or_else(|| {
-                    names.push(name.clone());
+        let mut first: Vec<usize> = Vec::new();
+        let place: Vec<usize> = (0..self.trajectories.len())
+            .map(|k| {
+                let same = |&f: &usize| self.trajectories[f] == self.trajectories[k];
+                first.iter().position(same).unwrap_or_else(|| {
                     first.push(k);
-                    names.len() - 1
+                    first.len() - 1
                 })
             })
             .collect();
-        if names.len() == self.trajectories.len() && self.blocks.len() <= MOST_BLOCKS {
+        if first.len() == self.trajectories.len() && self.blocks.len() <= MOST_BLOCKS {
             return Ok(());
         }
         self.rates = first.iter().map(|&k| self.rates[k]).collect();
         self.bands = first.iter().map(|&k| self.bands[k]).collect();
-        self.trajectories = names;
+        self.trajectories = first.iter().map(|&k| self.trajectories[k].clone()).collect();
+        self.merge_groups(&place);
+        self.merge_counts(&place);
+        for block in &mut self.blocks {
+            block.trajectory = place[block.trajectory];
+            block.equations.iter_mut().for_each(|e| e.trajectory = block.trajectory);
+        }
+        self.blocks.sort_by_key(|b| b.trajectory);
+        for trajectory in 0..self.trajectories.len() {
+            if self.blocks.iter().filter(|b| b.trajectory == trajectory).count() > MOST_BLOCKS {
+                self.lengthen_blocks(trajectory);
+            }
+        }
+        Ok(())
+    }
+
+    /// Merges the factors of trajectories that go to the same place, and what noise adds to them.
+    fn merge_groups(&mut self, place: &[usize]) {
         let mut groups: Vec<EquationFactor> = Vec::with_capacity(self.groups.len());
         let mut noise: Vec<DMatrix<f64>> = Vec::new();
         let added = self.noise_of_columns.take();
@@ -54,6 +67,10 @@ impl Observation {
         }
         self.noise_of_columns = added.is_some().then_some(noise);
         self.groups = groups;
+    }
+
+    /// Adds the counts of trajectories that go to the same place.
+    fn merge_counts(&mut self, place: &[usize]) {
         let mut counts: Vec<LeftOut> = Vec::with_capacity(self.left_out.len());
         for mut piece in self.left_out.drain(..) {
             piece.trajectory = place[piece.trajectory];
@@ -70,17 +87,6 @@ impl Observation {
             }
         }
         self.left_out = counts;
-        for block in &mut self.blocks {
-            block.trajectory = place[block.trajectory];
-            block.equations.iter_mut().for_each(|e| e.trajectory = block.trajectory);
-        }
-        self.blocks.sort_by_key(|b| b.trajectory);
-        for trajectory in 0..self.trajectories.len() {
-            if self.blocks.iter().filter(|b| b.trajectory == trajectory).count() > MOST_BLOCKS {
-                self.lengthen_blocks(trajectory);
-            }
-        }
-        Ok(())
     }
 
     /// Joins neighbouring blocks of a trajectory up to twice the mean length that would leave `MOST_BLOCKS`.

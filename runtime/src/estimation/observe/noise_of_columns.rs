@@ -19,14 +19,11 @@ pub(super) fn noise_of_columns(
     equations: Equations,
     variance: &[f64],
 ) -> Option<Vec<DMatrix<f64>>> {
-    let robot = model.robot();
-    let n = robot.joints();
+    let n = model.robot().joints();
     if variance.len() != n || variance.iter().all(|&v| v == 0.0) {
         return None;
     }
-    let pattern = model.pattern();
-    let base = robot.base.len();
-    let (mut with, mut without) = (vec![0.0; pattern.columns.len()], vec![0.0; pattern.columns.len()]);
+    let mut slopes = Slopes::new(model);
     let mut added = Vec::new();
     for p in prepared {
         let centres: Vec<usize> = p.grid.centres().collect();
@@ -41,36 +38,16 @@ pub(super) fn noise_of_columns(
             }
             let at = centres[row];
             let q: Vec<f64> = p.motion.q.iter().map(|q| q[at]).collect();
-            let rest = vec![0.0; n];
-            model.idm(&q, &rest, &rest, &mut without);
+            let dq: Vec<f64> = p.motion.dq.iter().map(|dq| dq[at]).collect();
+            slopes.at(&q);
             for k in (0..n).filter(|k| variance[*k] > 0.0 && !p.motion.fixed.contains(k)) {
-                let mut unit = vec![0.0; n];
-                unit[k] = 1.0;
-                model.idm(&q, &rest, &unit, &mut with);
-                let slope = |entry: usize| with[entry] - without[entry];
+                slopes.by_acceleration(k);
                 for (equation, sum) in sums.iter_mut().enumerate().filter(|(e, _)| used[*e]) {
-                    let mut slopes = vec![0.0; sum.nrows()];
-                    match equations {
-                        Equations::Torque => {
-                            let entries = pattern.rows[equation]..pattern.rows[equation + 1];
-                            slopes.iter_mut().zip(entries).for_each(|(s, entry)| *s = slope(entry));
-                        }
-                        Equations::Power { .. } => {
-                            for j in 0..n {
-                                let speed = p.motion.dq[j][at];
-                                for entry in pattern.rows[j]..pattern.rows[j + 1] {
-                                    slopes[pattern.columns[entry]] += speed * slope(entry);
-                                }
-                            }
-                        }
-                    }
-                    let moved: Vec<(usize, f64)> =
-                        slopes.into_iter().enumerate().take(base).filter(|(_, s)| *s != 0.0).collect();
-                    for &(a, x) in &moved {
-                        for &(b, y) in &moved {
-                            sum[(a, b)] += variance[k] * x * y;
-                        }
-                    }
+                    let slope = match equations {
+                        Equations::Torque => slopes.of_torque(equation),
+                        Equations::Power { .. } => slopes.of_power(&dq),
+                    };
+                    add_product(sum, variance[k], &slope);
                 }
             }
             used.iter().zip(&mut counts).for_each(|(&used, count)| *count += usize::from(used));
@@ -81,4 +58,74 @@ pub(super) fn noise_of_columns(
         }
     }
     Some(added)
+}
+
+/// How the entries of IDM change with the acceleration of one joint, which they are linear in.
+struct Slopes<'a> {
+    model: &'a dyn Model,
+    q: Vec<f64>,
+    /// Neither speed nor acceleration.
+    rest: Vec<f64>,
+    unit: Vec<f64>,
+    /// Entries of IDM at rest, and with the acceleration 1 of the joint.
+    without: Vec<f64>,
+    with: Vec<f64>,
+}
+
+impl<'a> Slopes<'a> {
+    fn new(model: &'a dyn Model) -> Self {
+        let zeros = |count: usize| vec![0.0; count];
+        let (joints, entries) = (model.robot().joints(), model.pattern().columns.len());
+        Self {
+            model,
+            q: zeros(joints),
+            rest: zeros(joints),
+            unit: zeros(joints),
+            without: zeros(entries),
+            with: zeros(entries),
+        }
+    }
+
+    fn at(&mut self, q: &[f64]) {
+        self.q.copy_from_slice(q);
+        self.model.idm(q, &self.rest, &self.rest, &mut self.without);
+    }
+
+    fn by_acceleration(&mut self, joint: usize) {
+        self.unit.fill(0.0);
+        self.unit[joint] = 1.0;
+        self.model.idm(&self.q, &self.rest, &self.unit, &mut self.with);
+    }
+
+    /// Of a joint's torque, for the base parameters of its row.
+    fn of_torque(&self, joint: usize) -> Vec<f64> {
+        let pattern = self.model.pattern();
+        (pattern.rows[joint]..pattern.rows[joint + 1]).map(|entry| self.slope(entry)).collect()
+    }
+
+    /// Of the power at these speeds, for all base parameters.
+    fn of_power(&self, dq: &[f64]) -> Vec<f64> {
+        let pattern = self.model.pattern();
+        let mut slopes = vec![0.0; self.model.robot().base.len()];
+        for (joint, &speed) in dq.iter().enumerate() {
+            for entry in pattern.rows[joint]..pattern.rows[joint + 1] {
+                slopes[pattern.columns[entry]] += speed * self.slope(entry);
+            }
+        }
+        slopes
+    }
+
+    fn slope(&self, entry: usize) -> f64 {
+        self.with[entry] - self.without[entry]
+    }
+}
+
+/// Adds `factor x xT`; few of x are not zero.
+fn add_product(sum: &mut DMatrix<f64>, factor: f64, x: &[f64]) {
+    let moved: Vec<(usize, f64)> = x.iter().copied().enumerate().filter(|(_, s)| *s != 0.0).collect();
+    for &(a, x) in &moved {
+        for &(b, y) in &moved {
+            sum[(a, b)] += factor * x * y;
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Parameters that differ between motions by more than the noise within them: random effects.
 
-use super::moderation::{Prior, Squares};
+use crate::statistics::moderation::{Prior, Variance};
 use nalgebra::{DMatrix, DVector};
 
 /// Fewer motions do not tell how much they differ.
@@ -64,17 +64,16 @@ pub(super) fn factors(parts: &[MotionPart], unknowns: usize) -> Vec<f64> {
     let squares = |l: usize| {
         let equal = expected[l].powi(2) / squared[l];
         let freedom = equal * (motions - 1.0) / motions;
-        Squares { sum: freedom * found[l] / expected[l], freedom }
+        Variance { value: found[l] / expected[l], freedom }
     };
-    let all: Vec<Squares> = (0..unknowns).map(squares).collect();
-    if all.iter().any(|s| !(s.sum.is_finite() && s.freedom.is_finite())) {
+    let all: Vec<Variance> = (0..unknowns).map(squares).collect();
+    if all.iter().any(|s| !(s.value.is_finite() && s.freedom.is_finite())) {
         return ones;
     }
-    let Some(prior) = Prior::of(&all) else { return ones };
-    let factor = |own: Squares| {
-        let mean = own.sum / own.freedom;
-        let stands_out = mean > rare_mean_square(own.freedom);
-        prior.moderate(own).max(if stands_out { mean } else { 1.0 })
+    let Some(prior) = Prior::of_groups(&all) else { return ones };
+    let factor = |own: Variance| {
+        let stands_out = own.value > rare_mean_square(own.freedom);
+        prior.moderate(own).value.max(if stands_out { own.value } else { 1.0 })
     };
     all.into_iter().map(factor).collect()
 }

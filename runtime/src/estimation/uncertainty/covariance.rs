@@ -44,55 +44,13 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
     let others =
         if same { None } else { Some(Series::of(solved.observation, solved.instruments, solved.errors)?) };
     let scores = others.as_ref().unwrap_or(&series);
-    // The noise of a power is that of the torques times the speeds.
-    let own_variances = solved.observation.equations != Equations::Torque;
-    let mut parts: Vec<MotionPart> = Vec::new();
     let trajectories = series.iter().map(|s| s.trajectory + 1).max().unwrap_or(0);
-    for trajectory in 0..trajectories {
-        let mut information = DMatrix::<f64>::zeros(k, k);
-        let mut spread = DMatrix::<f64>::zeros(k, k);
-        let mut right = DVector::<f64>::zeros(k);
-        let mut innovations: Vec<(usize, &[usize], DMatrix<f64>)> = Vec::new();
-        for (w, z) in series.iter().zip(scores).filter(|(s, _)| s.trajectory == trajectory) {
-            let weight = (solved.errors[w.group] / solved.weights[w.group]).powi(2);
-            add(&mut information, &z.places, &w.places, &(weight * (z.w.transpose() * &w.w)));
-            for (column, &place) in z.w.column_iter().zip(&z.places) {
-                right[place] += weight * column.iter().zip(&w.y).map(|(z, y)| z * y).sum::<f64>();
-            }
-            let model = &noise.equations[w.equation];
-            let before = model.memory(LONGEST_MEMORY);
-            let rows = z.w.nrows() + before;
-            let mut own = DMatrix::zeros(rows, z.places.len());
-            for (column, mut out) in z.w.column_iter().zip(own.column_iter_mut()) {
-                let column: Vec<f64> = column.iter().map(|x| weight * x).collect();
-                out.copy_from(&DVector::from_vec(model.weights_of_innovations(&column, before)));
-            }
-            if own_variances {
-                for (t, square) in noise.own_squares(w).into_iter().enumerate() {
-                    own.row_mut(before + t).scale_mut(square.sqrt());
-                }
-            }
-            innovations.push((w.equation, &z.places, own));
-        }
-        for (k, (a, places_a, x)) in innovations.iter().enumerate() {
-            for (l, (b, places_b, y)) in innovations[..=k].iter().enumerate() {
-                let correlation = noise.correlation[(*a, *b)];
-                if correlation != 0.0 {
-                    // They end at the same time.
-                    let rows = x.nrows().min(y.nrows());
-                    let (x, y) = (x.rows(x.nrows() - rows, rows), y.rows(y.nrows() - rows, rows));
-                    let product = correlation * (x.transpose() * y);
-                    add(&mut spread, places_a, places_b, &product);
-                    if l != k {
-                        add(&mut spread, places_b, places_a, &product.transpose());
-                    }
-                }
-            }
-        }
-        if !innovations.is_empty() {
-            parts.push(MotionPart { information, spread, right });
-        }
-    }
+    let parts: Vec<MotionPart> = (0..trajectories)
+        .filter_map(|t| {
+            let rows: Vec<_> = series.iter().zip(scores).filter(|(s, _)| s.trajectory == t).collect();
+            (!rows.is_empty()).then(|| of_motion(&rows, solved, &noise))
+        })
+        .collect();
     let factors = factors(&parts, k);
     let zero = || DMatrix::<f64>::zeros(k, k);
     let mut information = parts.iter().fold(zero(), |sum, part| sum + &part.information);
@@ -104,6 +62,70 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
     let of = |l: usize| factors[l] * (inverse.row(l) * &spread * inverse.row(l).transpose())[(0, 0)];
     let variances: Vec<f64> = (0..k).map(of).collect();
     variances.iter().all(|v| v.is_finite() && *v >= 0.0).then_some(variances)
+}
+
+/// What one motion adds to the information and to the spread of the scores; `rows` are the series of its equations, each
+/// with that of the instruments.
+fn of_motion(rows: &[(&Series, &Series)], solved: &Solved<'_>, noise: &Noise) -> MotionPart {
+    let k = solved.unknowns.len();
+    let mut part = MotionPart {
+        information: DMatrix::zeros(k, k),
+        spread: DMatrix::zeros(k, k),
+        right: DVector::zeros(k),
+    };
+    let mut innovations = Vec::with_capacity(rows.len());
+    for &(w, z) in rows {
+        let weight = (solved.errors[w.group] / solved.weights[w.group]).powi(2);
+        add(&mut part.information, &z.places, &w.places, &(weight * (z.w.transpose() * &w.w)));
+        for (column, &place) in z.w.column_iter().zip(&z.places) {
+            part.right[place] += weight * column.iter().zip(&w.y).map(|(z, y)| z * y).sum::<f64>();
+        }
+        innovations.push(Innovations::of(w, z, weight, solved, noise));
+    }
+    for (l, x) in innovations.iter().enumerate() {
+        for (m, y) in innovations[..=l].iter().enumerate() {
+            let correlation = noise.correlation[(x.equation, y.equation)];
+            if correlation == 0.0 {
+                continue;
+            }
+            // They end at the same time.
+            let last = x.weights.nrows().min(y.weights.nrows());
+            let end = |i: &Innovations<'_>| i.weights.rows(i.weights.nrows() - last, last).into_owned();
+            let product = correlation * (end(x).transpose() * end(y));
+            add(&mut part.spread, x.places, y.places, &product);
+            if m != l {
+                add(&mut part.spread, y.places, x.places, &product.transpose());
+            }
+        }
+    }
+    part
+}
+
+/// What each innovation of an equation's noise weighs in its scores.
+struct Innovations<'a> {
+    equation: usize,
+    /// The unknowns of the columns of `weights`.
+    places: &'a [usize],
+    weights: DMatrix<f64>,
+}
+
+impl<'a> Innovations<'a> {
+    fn of(w: &Series, z: &'a Series, weight: f64, solved: &Solved<'_>, noise: &Noise) -> Self {
+        let model = &noise.equations[w.equation];
+        let before = model.memory(LONGEST_MEMORY);
+        let mut weights = DMatrix::zeros(z.w.nrows() + before, z.places.len());
+        for (column, mut out) in z.w.column_iter().zip(weights.column_iter_mut()) {
+            let column: Vec<f64> = column.iter().map(|x| weight * x).collect();
+            out.copy_from(&DVector::from_vec(model.weights_of_innovations(&column, before)));
+        }
+        // The noise of a power is that of the torques times the speeds.
+        if solved.observation.equations != Equations::Torque {
+            for (t, square) in noise.own_squares(w).into_iter().enumerate() {
+                weights.row_mut(before + t).scale_mut(square.sqrt());
+            }
+        }
+        Self { equation: w.equation, places: &z.places, weights }
+    }
 }
 
 fn add(to: &mut DMatrix<f64>, rows: &[usize], columns: &[usize], part: &DMatrix<f64>) {

@@ -3,10 +3,7 @@
 mod autoregression;
 mod between;
 mod covariance;
-mod gamma;
-mod moderation;
 mod noise;
 mod series;
 
 pub(super) use covariance::{Solved, variances};
-pub(super) use moderation::{Prior, Squares};

@@ -11,7 +11,7 @@ use statrs::function::gamma::ln_gamma;
 
 /// A variance that is known from few units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::diagnosis) struct Variance {
+pub(crate) struct Variance {
     pub value: f64,
     /// Degrees of freedom that it is known with.
     pub freedom: f64,
@@ -19,13 +19,33 @@ pub(in crate::diagnosis) struct Variance {
 
 /// Where variances of a kind scatter around, and how much.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::diagnosis) struct Prior {
+pub(crate) struct Prior {
     pub variance: f64,
     /// Degrees of freedom that it is worth.
     pub freedom: f64,
 }
 
+impl Variance {
+    /// The mean of squares, with the degrees of freedom that are left in them: rows less the trace of their part of the
+    /// hat matrix. One without freedom counts for nothing.
+    pub fn of_squares(sum: f64, freedom: f64) -> Self {
+        Self { value: if freedom > 0.0 { sum / freedom } else { 0.0 }, freedom: freedom.max(0.0) }
+    }
+}
+
 impl Prior {
+    /// Of independent variances of groups. Where fewer than three can say how much they differ, all together are worth
+    /// one degree of freedom: without it a group that its own rows do not determine would be believed to have no error.
+    /// `None` where nothing is left in any group.
+    pub fn of_groups(groups: &[Variance]) -> Option<Self> {
+        let freedom: f64 = groups.iter().map(|g| g.freedom).sum();
+        let sum: f64 = groups.iter().map(|g| g.freedom * g.value).sum();
+        if !(sum > 0.0 && sum.is_finite() && freedom > 0.0) {
+            return None;
+        }
+        Some(Self::of(groups, &|_, _| 0.0).unwrap_or(Self { variance: sum / freedom, freedom: 1.0 }))
+    }
+
     /// Of variances that were seen, with the correlation of each two of them; none where fewer than three say anything.
     ///
     /// Variances that are correlated scatter less than their number says, and their mean is known as well as that of
@@ -55,7 +75,7 @@ impl Prior {
         all.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(prior, _)| prior)
     }
 
-    /// A variance, moderated.
+    /// A variance: its own and that of its kind, each by its degrees of freedom.
     pub fn moderate(&self, own: Variance) -> Variance {
         let sum = self.freedom + own.freedom;
         Variance { value: (self.freedom * self.variance + own.freedom * own.value) / sum, freedom: sum }
@@ -143,5 +163,30 @@ mod tests {
         let pairs = Prior::of(&seen, &|i, k| f64::from(i / 2 == k / 2)).expect("six");
         assert_relative_eq!(pairs.freedom, 27.0, max_relative = 1e-9);
         assert_eq!(Prior::of(&seen[..2], &|_, _| 0.0), None);
+    }
+
+    #[test]
+    fn a_group_without_freedom_has_the_variance_of_the_others() {
+        let mut groups: Vec<Variance> =
+            [30.0, 52.0, 41.0, 38.0].map(|s| Variance::of_squares(s, 40.0)).to_vec();
+        groups.push(Variance::of_squares(1e-18, 1e-9));
+        groups.push(Variance::of_squares(0.0, 0.0));
+        let prior = Prior::of_groups(&groups).expect("groups");
+        for last in &groups[4..] {
+            assert_relative_eq!(prior.moderate(*last).value, 161.0 / 160.0, max_relative = 0.1);
+        }
+    }
+
+    #[test]
+    fn two_groups_lend_each_other_one_degree_of_freedom() {
+        let groups = [Variance::of_squares(40.0, 40.0), Variance::of_squares(1e-20, 1e-6)];
+        let prior = Prior::of_groups(&groups).expect("groups");
+        assert_relative_eq!(prior.moderate(groups[1]).value, 1.0, max_relative = 1e-5);
+    }
+
+    #[test]
+    fn nothing_left_is_no_variance() {
+        assert_eq!(Prior::of_groups(&[Variance::of_squares(0.0, 3.0)]), None);
+        assert_eq!(Prior::of_groups(&[]), None);
     }
 }

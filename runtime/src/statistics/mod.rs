@@ -1,0 +1,3 @@
+//! Statistics that identification and diagnosis share.
+
+pub(crate) mod moderation;
