@@ -147,7 +147,7 @@ pub(in crate::diagnosis) fn small(search: &Search<'_>, settings: &Settings) -> V
         effect: law.effect.id().into(),
         joints: named_on(context.model.robot(), law.effect, law.place),
         torque: law.size.law,
-        least: law.size.repeats,
+        least: law.size.needed,
         unit: unit(&law.own).into(),
     })
     .collect()

@@ -5,7 +5,7 @@ use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::white_products::Regressors;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::REPEATS;
+use crate::diagnosis::rules::{LEAST_PART_OF_REMAINS, REPEATS};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -75,10 +75,27 @@ impl Bench {
         }
         let slow = (products / pairs.max(1) as f64).max(0.0).sqrt();
         let least = rms(left) / count.sqrt();
-        Size {
-            law: rms(change),
-            repeats: (REPEATS * rms(&design.y)).min(slow.max(least)).max(f64::MIN_POSITIVE),
-        }
+        let needed = if units.change() {
+            // Between days torques differ by more than one day shows.
+            (REPEATS * rms(&design.y)).min(slow.max(least))
+        } else {
+            // One day tells of itself only.
+            let part = LEAST_PART_OF_REMAINS;
+            slow.max((part / (1.0 - part)).sqrt() * rms(left))
+        };
+        Size { law: rms(change), needed: needed.max(f64::MIN_POSITIVE) }
+    }
+
+    /// The size of a law on the joint where it stands out most of these.
+    pub fn largest_size(
+        &self,
+        design: &Design,
+        joints: &[usize],
+        change: &[f64],
+        left: &[f64],
+    ) -> Option<Size> {
+        let sizes = joints.iter().map(|&j| self.size(design, j, change, left));
+        sizes.max_by(|a, b| (a.law / a.needed).total_cmp(&(b.law / b.needed)))
     }
 }
 
@@ -87,6 +104,7 @@ impl Bench {
 pub(in crate::diagnosis) struct Size {
     /// Root mean square of what nothing else can make of it.
     pub law: f64,
-    /// What the joint's torques repeat to.
-    pub repeats: f64,
+    /// How large it must be to be named: what the joint's torques repeat to; without a baseline what stays unexplained of
+    /// them besides noise, and a part of what stays with the noise.
+    pub needed: f64,
 }

@@ -74,12 +74,12 @@ impl Search<'_> {
                 (sure && !excluded).then_some((j, evidence, change))
             })
             .collect();
-        self.small_friction.clear();
+        self.small.clear();
         for (j, evidence, change) in changed {
             let size = self.friction_change(j);
-            if size.law < size.repeats {
+            if size.law < size.needed {
                 let (effect, place) = (EffectKind::FrictionLevelChange, Place::Joint(j));
-                self.small_friction.push(SmallLaw { effect, place, own: vec![j], size });
+                self.small.push(SmallLaw { effect, place, own: vec![j], size });
             } else {
                 self.take(j, change, evidence.significance, evidence.confidence(joints))?;
             }
@@ -205,7 +205,7 @@ impl Search<'_> {
         let design = &regression.design;
         let [viscous, coulomb] = self.friction_of_baseline(joint);
         let own: Vec<f64> = self.own_friction(joint).map(|k| regression.fit.chi[k]).collect();
-        let [by_speed, level] = own[..] else { return Size { law: 0.0, repeats: 0.0 } };
+        let [by_speed, level] = own[..] else { return Size { law: 0.0, needed: 0.0 } };
         let columns = &self.model.bench(SmoothingWindow::Slow).free[joint];
         let (mut changed, mut whole, mut count) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (row, r) in design.of_joint(joint).enumerate() {
@@ -216,7 +216,7 @@ impl Search<'_> {
             }
         }
         let rms = |squares: f64| (squares / count.max(1.0)).sqrt();
-        Size { law: rms(changed), repeats: LEAST_FRICTION_CHANGE * rms(whole) }
+        Size { law: rms(changed), needed: LEAST_FRICTION_CHANGE * rms(whole) }
     }
 
     /// Viscous and Coulomb coefficients that the model has for a joint.

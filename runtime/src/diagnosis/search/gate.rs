@@ -5,6 +5,7 @@ use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::companions::LEVELS;
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::judging::calibration::{Calibrated, Law, calibrate};
+use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::white_products::Background;
 use crate::diagnosis::rules::{LEAST_CARRYING_UNITS, MOST_COMPARED};
 use crate::diagnosis::search::bench::Size;
@@ -83,6 +84,29 @@ impl RoundEvidence {
     }
 }
 
+/// What of a law the design cannot make.
+pub(super) struct OwnPart {
+    /// In-sample gain in units of the noise variance.
+    pub gain: f64,
+    /// Its torque on all rows.
+    pub change: Vec<f64>,
+    /// Residual of the model with it.
+    pub left: Vec<f64>,
+}
+
+/// The part of a candidate with one of its shapes that a regression's design cannot make; `None` where there is none.
+pub(super) fn own_part(regression: &Regression, candidate: &Candidate, trial: usize) -> Option<OwnPart> {
+    let (design, trial) = (&regression.design, &candidate.trials[trial]);
+    let part = regression.fit.project_out(trial)?;
+    let (amplitude, gain) = part.solve(candidate)?;
+    let mut change = vec![0.0; design.rows.len()];
+    for (column, a) in part.columns(design, trial).iter().zip(amplitude.iter()) {
+        change.iter_mut().zip(column).for_each(|(s, c)| *s += a * c);
+    }
+    let left = regression.residual().iter().zip(&change).map(|(r, c)| r - c).collect();
+    Some(OwnPart { gain, change, left })
+}
+
 impl Search<'_> {
     /// Evidence and size of a candidate of a round beside the model as it is, worked out once.
     pub(super) fn gate<'b>(&self, round: &'b RoundEvidence, ranked: &[Ranked], k: usize) -> Option<&'b Gate> {
@@ -92,28 +116,19 @@ impl Search<'_> {
     fn work_out(&self, against: &RoundEvidence, ranked: &Ranked) -> Option<Gate> {
         let (regression, candidate) = self.of(ranked);
         let (bench, design) = (self.model.bench(ranked.window), &regression.design);
-        let trial = &candidate.trials[ranked.verdict.trial];
-        let part = regression.fit.project_out(trial)?;
-        let (amplitude, gain) = part.solve(candidate)?;
-        let before = regression.residual();
-        let mut change = vec![0.0; design.rows.len()];
-        for (column, a) in part.columns(design, trial).iter().zip(amplitude.iter()) {
-            change.iter_mut().zip(column).for_each(|(s, c)| *s += a * c);
-        }
-        let left: Vec<f64> = before.iter().zip(&change).map(|(r, c)| r - c).collect();
+        let OwnPart { gain, change, left } = own_part(regression, candidate, ranked.verdict.trial)?;
         let columns = self.columns(ranked);
         let regressors = bench.regressors(design);
         let background = against
             .of(ranked.window)
-            .get_or_init(|| Background::new(&bench.units, &regressors, &before, self.threads));
+            .get_or_init(|| Background::new(&bench.units, &regressors, &regression.residual(), self.threads));
         let law = self.law(ranked, &columns, &left);
         let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
         // A law of time that shows in few units is an event: whatever else happened then is not told from it.
         if is_trend(candidate) && !self.model.change && calibrated.carrying < LEAST_CARRYING_UNITS {
             return None;
         }
-        let sizes = ranked.verdict.shows_on.iter().map(|&j| bench.size(design, j, &change, &left));
-        let size = sizes.max_by(|a, b| (a.law / a.repeats).total_cmp(&(b.law / b.repeats)))?;
+        let size = bench.largest_size(design, &ranked.verdict.shows_on, &change, &left)?;
         Some(Gate { gain, calibrated, size, left })
     }
 
@@ -152,8 +167,8 @@ impl Search<'_> {
         if confidence < least_confidence {
             return Outcome::Fails;
         }
-        // What one recording shows is there, however little torques repeat from day to day.
-        if self.model.change && gate.size.law < gate.size.repeats {
+        // Without a baseline that is judged beside all laws that were found (`prominence`).
+        if self.model.change && gate.size.law < gate.size.needed {
             return Outcome::Small(gate.size);
         }
         let squares = calibrated.squares / calibrated.lambda;
@@ -167,8 +182,7 @@ impl Search<'_> {
     /// Laws that are certainly there beside the model as it is, and too small to be named.
     pub(in crate::diagnosis) fn small(&self, settings: &Settings) -> Vec<SmallLaw> {
         if !self.model.change {
-            // Nothing of one recording is too small for what differs between days.
-            return Vec::new();
+            return self.small.clone();
         }
         let mut ranked = self.ranked(None);
         ranked.retain(|r| r.verdict.total() > 0.0 && r.verdict.fitted_fraction > 0.0);
@@ -177,7 +191,7 @@ impl Search<'_> {
         let outcomes = parallel::map(self.threads, ranked.len(), |k| {
             self.judged_by_gate(&round, &ranked, k, settings.least_confidence)
         });
-        let mut small = self.small_friction.clone();
+        let mut small = self.small.clone();
         for (r, outcome) in ranked.iter().zip(outcomes) {
             let Outcome::Small(size) = outcome else { continue };
             let candidate = self.of(r).1;

@@ -7,6 +7,7 @@ pub(in crate::diagnosis) mod friction_change;
 pub(in crate::diagnosis) mod gate;
 pub(in crate::diagnosis) mod line;
 pub(in crate::diagnosis) mod pair;
+pub(in crate::diagnosis) mod prominence;
 pub(in crate::diagnosis) mod reconsider;
 pub(in crate::diagnosis) mod refine;
 pub(in crate::diagnosis) mod report;

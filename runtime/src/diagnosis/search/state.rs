@@ -29,8 +29,9 @@ pub(in crate::diagnosis) struct Search<'a> {
     pub ties: Vec<Tie>,
     /// Whether laws over any variables are tried where the catalogue has none.
     pub beyond_catalogue: bool,
-    /// Friction that has certainly changed, by less than is named.
-    pub small_friction: Vec<SmallLaw>,
+    /// What is certainly there and too small to be named: friction that changed, laws that are no larger than what stays
+    /// unexplained.
+    pub small: Vec<SmallLaw>,
     pub spectra: Vec<OrderSpectrum>,
     /// Ripple that stands out as a line, per joint.
     pub lines: Vec<JointLines>,
@@ -84,7 +85,7 @@ impl<'a> Search<'a> {
             rejected: Vec::new(),
             ties: Vec::new(),
             beyond_catalogue: false,
-            small_friction: Vec::new(),
+            small: Vec::new(),
             spectra,
             lines,
             tried,
@@ -110,6 +111,7 @@ impl<'a> Search<'a> {
         self.model.terms = found;
         self.rejected.clear();
         self.ties.clear();
+        self.small.clear();
         for candidates in [&mut self.slow, &mut self.fast] {
             candidates.retain(|c| !excluded.contains(&(c.effect, c.place)));
         }
@@ -177,6 +179,8 @@ impl<'a> Search<'a> {
         }
         !candidate.effect.properties().repeats && self.model.terms.iter().any(same)
             || self.rejected.iter().any(same)
+            || !self.model.change
+                && self.small.iter().any(|s| (s.effect, s.place) == (candidate.effect, candidate.place))
     }
 }
 

@@ -1,0 +1,59 @@
+//! Laws that are no larger than what stays unexplained.
+//!
+//! Where more of a joint's torque stays unexplained than a law explains, and it is no noise, physics of that size is there
+//! which no law of the catalogue describes. Some of them always resemble it: the best of many columns takes a share of
+//! whatever is left. Such a law may pass every test and come back in other motion, because what it resembles does. And a
+//! law that takes less than a third of the squares that are open, noise among them, changes the joint's error by less
+//! than a fifth. Both are told as small, with how large they had to be.
+
+use crate::diagnosis::candidates::candidate::make;
+use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::search::bench::Size;
+use crate::diagnosis::search::gate::{SmallLaw, own_part};
+use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::Accepted;
+
+impl Search<'_> {
+    /// Takes out the laws that are no larger than what stays unexplained on any of their joints, one at a time, first the one
+    /// that the others replace best. With a baseline, what differs between days decides instead.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where the model without a law has no fit.
+    pub(super) fn take_out_small(&mut self) -> Result<(), SingularDesign> {
+        if self.model.change {
+            return Ok(());
+        }
+        loop {
+            let mut least: Option<(usize, Size, f64)> = None;
+            for k in 0..self.model.terms.len() {
+                let Some((size, gain)) = self.size_of(k)? else { continue };
+                if size.law < size.needed && least.is_none_or(|(_, _, g)| gain < g) {
+                    least = Some((k, size, gain));
+                }
+            }
+            let Some((k, size, _)) = least else { return Ok(()) };
+            let Accepted { effect, place, own, .. } = self.model.terms.remove(k);
+            self.small.push(SmallLaw { effect, place, own, size });
+            self.refit_and_update()?;
+        }
+    }
+
+    /// How large a term is beside all others, and what it gains in units of the noise variance.
+    fn size_of(&mut self, k: usize) -> Result<Option<(Size, f64)>, SingularDesign> {
+        let term = self.model.terms.remove(k);
+        self.model.refit()?;
+        let window = term.effect.properties().window;
+        let (context, change) = (&self.model.context, self.model.change);
+        let regression = self.model.regression(window);
+        let design = &regression.design;
+        let shape = std::slice::from_ref(&term.shape);
+        let candidate = make(context, design, term.effect, term.place, shape, change);
+        let size = own_part(regression, &candidate, 0).and_then(|part| {
+            let bench = self.model.bench(window);
+            Some((bench.largest_size(design, &term.shows_on, &part.change, &part.left)?, part.gain))
+        });
+        self.model.terms.insert(k, term);
+        self.model.refit()?;
+        Ok(size)
+    }
+}
