@@ -176,10 +176,6 @@ pub(super) const LEAST_EIGENVALUE: f64 = 1e-6;
 /// they repeat better: a change since a baseline must be larger. Mechanics: temperature and load change friction by as
 /// much (Bittencourt and Axelsson 2014).
 pub(super) const REPEATS: f64 = 0.02;
-/// Without a baseline a law must explain this part of the squares that stay open on its joint, noise among them: the joint's
-/// error is then a fifth smaller with it. Judgement: simulated laws that can just be seen explain half and more (least of
-/// 32 with 0.9 to 1.1 of the noise: 0.53); `docs/concealment.md`, small.
-pub(super) const LEAST_PART_OF_REMAINS: f64 = 1.0 / 3.0;
 /// A law on another joint is a rival from this share of a candidate's gain on. Judgement: saves time; a rival with
 /// less cannot come ahead by what whitening changes. Not measured.
 pub(super) const COMPARABLE: f64 = 0.5;

@@ -5,7 +5,7 @@ use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::white_products::Regressors;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{LEAST_PART_OF_REMAINS, REPEATS};
+use crate::diagnosis::rules::REPEATS;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -55,13 +55,22 @@ impl Bench {
 
     /// What a law's own part (`change`) amounts to on the rows of a joint in the recording that is diagnosed, where it
     /// leaves `left`.
-    pub fn size(&self, design: &Design, j: usize, change: &[f64], left: &[f64]) -> Size {
-        let rows: Vec<usize> =
-            design.target_segments().into_iter().flat_map(|g| design.ranges[j][g].clone()).collect();
+    fn size(&self, design: &Design, j: usize, change: &[f64], left: &[f64]) -> Size {
+        let segments = design.target_segments().into_iter();
+        let rows: Vec<usize> = segments.flat_map(|g| design.ranges[j][g].clone()).collect();
+        let size = if self.units.change() {
+            self.since_baseline(&rows, j, [&design.y, change, left])
+        } else {
+            where_it_acts(&rows, change, left)
+        };
+        Size { needed: size.needed.max(f64::MIN_POSITIVE), ..size }
+    }
+
+    /// Against what the torques `y` repeat to from day to day, or where this shows that they repeat better, to what is left
+    /// that is no noise: what is the same two rows later, whose windows do not overlap.
+    fn since_baseline(&self, rows: &[usize], j: usize, [y, change, left]: [&[f64]; 3]) -> Size {
         let count = rows.len().max(1) as f64;
         let rms = |x: &[f64]| (rows.iter().map(|&r| x[r] * x[r]).sum::<f64>() / count).sqrt();
-        // What is the same two rows later, whose windows do not overlap, is no noise: where little of it is left, the
-        // torques repeat better than usual.
         let units = &self.units;
         let of_target = |r: usize| {
             units.units.iter().zip(&units.rows[j]).any(|(unit, rows)| unit.target && rows.contains(&r))
@@ -75,15 +84,7 @@ impl Bench {
         }
         let slow = (products / pairs.max(1) as f64).max(0.0).sqrt();
         let least = rms(left) / count.sqrt();
-        let needed = if units.change() {
-            // Between days torques differ by more than one day shows.
-            (REPEATS * rms(&design.y)).min(slow.max(least))
-        } else {
-            // One day tells of itself only.
-            let part = LEAST_PART_OF_REMAINS;
-            slow.max((part / (1.0 - part)).sqrt() * rms(left))
-        };
-        Size { law: rms(change), needed: needed.max(f64::MIN_POSITIVE) }
+        Size { law: rms(change), needed: (REPEATS * rms(y)).min(slow.max(least)) }
     }
 
     /// The size of a law on the joint where it stands out most of these.
@@ -99,12 +100,23 @@ impl Bench {
     }
 }
 
+/// Against what is left where the law acts: both are means over rows that count by the law's own squares, so that one which
+/// acts near rest or in bursts is not diluted by all other motion.
+fn where_it_acts(rows: &[usize], change: &[f64], left: &[f64]) -> Size {
+    let squares: f64 = rows.iter().map(|&r| change[r] * change[r]).sum();
+    let mean = |x: &[f64]| {
+        let sum: f64 = rows.iter().map(|&r| (change[r] * x[r]).powi(2)).sum();
+        if squares > 0.0 { (sum / squares).sqrt() } else { 0.0 }
+    };
+    Size { law: mean(change), needed: mean(left) }
+}
+
 /// How large a law is on the joint where it stands out most, N.m or N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::diagnosis) struct Size {
-    /// Root mean square of what nothing else can make of it.
+    /// Root mean square of what nothing else can make of it; without a baseline where it acts.
     pub law: f64,
-    /// How large it must be to be named: what the joint's torques repeat to; without a baseline what stays unexplained of
-    /// them besides noise, and a part of what stays with the noise.
+    /// How large it must be to be named: what the joint's torques repeat to; without a baseline what stays of them where the
+    /// law acts.
     pub needed: f64,
 }

@@ -1,10 +1,10 @@
 //! Laws that are no larger than what stays unexplained.
 //!
-//! Where more of a joint's torque stays unexplained than a law explains, and it is no noise, physics of that size is there
-//! which no law of the catalogue describes. Some of them always resemble it: the best of many columns takes a share of
-//! whatever is left. Such a law may pass every test and come back in other motion, because what it resembles does. And a
-//! law that takes less than a third of the squares that are open, noise among them, changes the joint's error by less
-//! than a fifth. Both are told as small, with how large they had to be.
+//! Where more of a joint's torque stays unexplained than a law explains, physics of that size may be there which no law of
+//! the catalogue describes. Some of them always resemble it: the best of many columns takes a share of whatever is left.
+//! Such a law may pass every test and come back in other motion, because what it resembles does. And a law that is
+//! smaller than noise, where it acts, changes what is predicted by less than that. Both are told as small, with how large
+//! they had to be.
 
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
