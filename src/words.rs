@@ -1,6 +1,6 @@
 //! Joints and confidences in words.
 
-use dynid_runtime::diagnosis::{CannotTell, OnTest, Small};
+use dynid_runtime::diagnosis::{CannotTell, Diagnosis, OnTest, Small, Standing};
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::{Frame, JointIndex, Robot};
 use dynid_runtime::report::significant;
@@ -52,6 +52,12 @@ pub fn small_words(small: &Small) -> String {
         significant(small.least, 2),
         small.unit
     )
+}
+
+/// The laws that a reference has already, in one line.
+pub fn standing_words(diagnosis: &Diagnosis) -> String {
+    let one = |s: &Standing| format!("{} on {}", effect_words(&s.effect), joint_words(&s.joints));
+    diagnosis.standing.iter().map(one).collect::<Vec<_>>().join("; ")
 }
 
 /// The confidence in words.

@@ -24,6 +24,8 @@ pub struct Case {
     pub seconds: Option<f64>,
     /// Whether there is a baseline where no effect asks for one.
     pub baseline: bool,
+    /// Whether a model from before is the reference, of a robot that has laws then already.
+    pub reference: bool,
     /// How it is recorded.
     pub recorder: Recorder,
     /// What a contact pushes, and how long, s.
@@ -45,7 +47,11 @@ impl Case {
             Recorder::White => String::new(),
             other => format!("_{}", other.name()),
         };
-        let baseline = if self.baseline { "_baseline" } else { "" };
+        let baseline = match (self.baseline, self.reference) {
+            (true, _) => "_baseline",
+            (_, true) => "_reference",
+            _ => "",
+        };
         format!(
             "{}_{hidden}_{}_{}{length}{recorder}{baseline}{push}",
             self.robot,

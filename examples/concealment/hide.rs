@@ -18,6 +18,9 @@ use crate::secret::{Secret, is_change};
 use crate::size::VISIBLE;
 use crate::visible::visible;
 
+/// What a robot with a reference has before anything is hidden in it.
+const STANDING: [EffectKind; 2] = [EffectKind::LoadDependentFriction, EffectKind::Spring];
+
 /// An effect as it was hidden.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Hidden {
@@ -54,6 +57,8 @@ pub struct Drawn {
     /// What is hidden.
     pub hidden: Vec<Hidden>,
     secrets: Vec<(Secret, f64)>,
+    /// Laws that are there before and after, where there is a reference.
+    standing: Vec<(Secret, f64)>,
     /// Motions, their number and length, s.
     motions: Vec<ExcitingMotion>,
     count: usize,
@@ -97,19 +102,31 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
         });
         secrets.push((secret, size));
     }
-    Ok(Drawn { hidden, secrets, motions, count, length, noise, random })
+    let mut standing: Vec<(Secret, f64)> = Vec::new();
+    for effect in STANDING.into_iter().filter(|_| case.reference) {
+        let taken: Vec<usize> = secrets.iter().chain(&standing).filter_map(|(s, _)| s.joint).collect();
+        if let Some(secret) = Secret::draw(effect, model, &taken, &mut random) {
+            let (size, _) = sized(model, &secret, VISIBLE[VISIBLE.len() - 1], &motions[..1], noise)?;
+            standing.push((secret, size));
+        }
+    }
+    Ok(Drawn { hidden, secrets, standing, motions, count, length, noise, random })
 }
 
 /// Simulates a case. `with_test`: a motion for a test as well.
 pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Result<Recordings, Failure> {
-    let Drawn { hidden, secrets, motions, count, length, noise, mut random } = draw(model, case)?;
+    let Drawn { hidden, secrets, standing, motions, count, length, noise, mut random } = draw(model, case)?;
+    let mut before = plain(model)?;
+    for (secret, size) in &standing {
+        hide(&mut before, model, secret, *size)?;
+    }
     let mut world = plain(model)?;
-    for (secret, size) in &secrets {
+    for (secret, size) in standing.iter().chain(&secrets) {
         hide(&mut world, model, secret, *size)?;
     }
-    let change = case.baseline || case.effects.iter().any(|&e| is_change(e));
+    let change = case.baseline || case.reference || case.effects.iter().any(|&e| is_change(e));
     let baseline = if change {
-        recorded(&plain(model)?, &planned(model, count, length, &mut random)?, &[], noise.wrapping_add(100))?
+        recorded(&before, &planned(model, count, length, &mut random)?, &standing, noise.wrapping_add(100))?
     } else {
         Vec::new()
     };
@@ -125,7 +142,8 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
         }
         test = recorded(&world, &planned, &lasting, noise.wrapping_add(200))?;
     }
-    let motions = recorded(&world, &motions, &secrets, noise)?;
+    let there: Vec<(Secret, f64)> = standing.into_iter().chain(secrets).collect();
+    let motions = recorded(&world, &motions, &there, noise)?;
     let mut recordings = Recordings { hidden, motions, baseline, test };
     let parts = [&mut recordings.motions, &mut recordings.baseline, &mut recordings.test];
     for (part, motions) in (0..).zip(parts) {

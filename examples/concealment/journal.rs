@@ -69,6 +69,7 @@ mod tests {
             seed,
             seconds: Some(5.0),
             baseline: false,
+            reference: false,
             recorder: Recorder::White,
         };
         let hidden = Hidden {

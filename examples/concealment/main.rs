@@ -155,6 +155,7 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
                         seed,
                         seconds,
                         baseline,
+                        reference: options.reference,
                         recorder,
                         push,
                     });

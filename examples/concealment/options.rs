@@ -43,6 +43,10 @@ pub struct Options {
     /// Record every robot before anything was hidden in it, too, and look for what changed
     #[arg(long)]
     pub baseline: bool,
+    /// Let every robot have load friction and a spring before anything was hidden in it, too; diagnose it then, and judge
+    /// the recording against the model that this gives
+    #[arg(long, conflicts_with_all = ["baseline", "dump", "visible"])]
+    pub reference: bool,
     /// One motion of this duration, s, instead of one to three of 16 to 24 s together
     #[arg(long)]
     pub seconds: Option<f64>,

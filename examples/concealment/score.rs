@@ -1,9 +1,10 @@
 //! A case is simulated and diagnosed, and what was found is compared with what was hidden.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use dynid::models;
-use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings, Silent, diagnose};
+use dynid_runtime::diagnosis::{Diagnosis, Finding, Reference, Settings, Silent, diagnose};
 use dynid_runtime::effects::EffectKind;
 use serde::{Deserialize, Serialize};
 
@@ -70,7 +71,14 @@ pub fn score(case: &Case) -> Result<Score, Failure> {
     let mut settings = Settings::default();
     settings.threads = 1;
     let start = Instant::now();
-    let found = diagnose(model, &recordings.motions, &recordings.baseline, &settings, &Silent);
+    let baseline = if case.reference {
+        let before = diagnose(model, &recordings.baseline, &[], &settings, &Silent)?;
+        settings.reference = Reference::of(&before).map(Arc::new);
+        &[]
+    } else {
+        recordings.baseline.as_slice()
+    };
+    let found = diagnose(model, &recordings.motions, baseline, &settings, &Silent);
     let mut score = Score { seconds: start.elapsed().as_secs_f64(), ..Score::default() };
     match found {
         Ok(found) => compare(&found, recordings.hidden, &mut score),

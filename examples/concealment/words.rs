@@ -126,6 +126,9 @@ pub fn command(options: &Options) -> String {
     if options.baseline {
         command.push_str(" --baseline");
     }
+    if options.reference {
+        command.push_str(" --reference");
+    }
     if options.push == Pushed::Joint {
         command.push_str(" --push joint");
     }

@@ -4,11 +4,12 @@ mod compare;
 mod reference;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
-use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter, difference, doubt};
+use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, NamedParameter, difference, doubt};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
@@ -30,7 +31,8 @@ pub(super) struct Arguments {
     /// A recording of the same robot before it changed: only what changed is looked for
     #[arg(long)]
     baseline: Option<PathBuf>,
-    /// A model of the same robot before it changed, saved by `identify` or `diagnose`: only what changed is looked for
+    /// A model of the same robot before it changed, saved by `identify` or `diagnose`: its parameters and laws, as well as
+    /// it knows them, are no news
     #[arg(long, conflicts_with = "baseline")]
     reference: Option<PathBuf>,
     /// A test recording, which takes no part in the diagnosis: the errors on it are reported before and after
@@ -61,10 +63,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let model = measured.dynamics.model();
     let baseline = match (&arguments.baseline, &arguments.reference) {
         (Some(path), _) => of_the_same_robot(measure(&source.other(path))?, &measured, path)?.trajectories,
-        (None, Some(path)) => reference::as_the_reference(path, source, &arguments.sampling)?,
-        (None, None) => Vec::new(),
+        (None, _) => Vec::new(),
     };
-    let settings = settings(&arguments.sampling, model.robot().joints());
+    let mut settings = settings(&arguments.sampling, model.robot().joints());
+    if let Some(path) = &arguments.reference {
+        settings.reference = Some(Arc::new(reference::read(path, model.robot())?));
+    }
     let test = match &arguments.test {
         Some(path) => {
             let test = of_the_same_robot(measure(&source.other(path))?, &measured, path)?;
@@ -199,6 +203,10 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
     Identified {
         effects: diagnosis.terms(),
         delay: diagnosis.delay,
+        covariance: diagnosis.covariance.clone().and_then(|upper| {
+            let amplitudes: Vec<usize> = diagnosis.terms().iter().map(|t| t.amplitude.len()).collect();
+            Covariance::new(robot, &amplitudes, upper)
+        }),
         ..Identified::with_parameters(robot, &measured.robot, "diagnosis", rows, parameters)
     }
 }

@@ -90,6 +90,7 @@ mod outcome;
 mod predict;
 mod preparation;
 mod rate;
+mod reference;
 mod rows;
 mod rules;
 pub mod scoring;
@@ -101,8 +102,9 @@ pub use error::{DiagnosisError, SingularDesign};
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
     OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
-    StopReason, TorqueSeries, Unexplained, WithoutIt,
+    Standing, StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
+pub use reference::{NoReference, Reference};
 pub use predict::{joint_scales, term_torques};
 pub use settings::{Progress, Settings, Silent};
 

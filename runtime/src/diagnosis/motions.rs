@@ -4,6 +4,7 @@
 use super::error::DiagnosisError;
 use super::outcome::Sampling;
 use super::rows::design::Design;
+use super::rows::prior::Prior;
 use super::rows::scales::top_speeds;
 use super::rows::selection::RowSelection;
 use super::rows::signals::{Signals, directions};
@@ -11,6 +12,7 @@ use super::rules;
 use super::settings::{Settings, fitted_to, given_speeds};
 use crate::model::Model;
 use crate::recording::Trajectory;
+use std::sync::Arc;
 
 /// The motions with everything that decides where rows are.
 #[derive(Clone)]
@@ -29,6 +31,8 @@ pub(super) struct Motions {
     standstill_speeds: Vec<f64>,
     /// Base parameters that nothing determines, and that are left out.
     pub left_over: Vec<usize>,
+    /// What a reference says of the base parameters.
+    prior: Option<Arc<Prior>>,
     /// Linear forms of dq whose sign enters each joint's row.
     directions: Vec<Vec<Vec<f64>>>,
     /// Segments per motion of the recording that is diagnosed.
@@ -56,7 +60,15 @@ impl Motions {
         let given = given_speeds(&settings, n)?;
         let old = baseline.iter().map(|t| Signals::new(t, false, 0.0, cutoff));
         let new = trajectories.iter().map(|t| Signals::new(t, true, 0.0, cutoff));
-        let signals: Vec<Signals> = old.chain(new).collect::<Result<_, _>>()?;
+        let mut signals: Vec<Signals> = old.chain(new).collect::<Result<_, _>>()?;
+        if let Some(reference) = &settings.reference {
+            let known = reference.torques(model, &signals)?;
+            for (motion, known) in signals.iter_mut().zip(known) {
+                motion.set_delay(reference.delay())?;
+                motion.take_out(known);
+            }
+        }
+        let prior = settings.reference.as_ref().and_then(|r| r.prior_of_parameters()).map(Arc::new);
         let (slowest, slowest_fast) = match given {
             Some(speeds) => (speeds.clone(), speeds),
             None => {
@@ -75,6 +87,7 @@ impl Motions {
             cutoff,
             standstill_speeds: slowest.clone(),
             left_over: Vec::new(),
+            prior,
             slowest,
             slowest_fast,
             directions: directions(model.robot()),
@@ -95,6 +108,7 @@ impl Motions {
             excluded: excluded.unwrap_or(&nothing),
         };
         let mut design = Design::new(model, &self.signals, &selection);
+        design.prior.clone_from(&self.prior);
         if !self.left_over.is_empty() {
             design.leave_out(&self.left_over);
         }

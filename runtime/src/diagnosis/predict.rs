@@ -37,7 +37,7 @@ pub fn term_torques(
 }
 
 /// The same for several motions: `[motion][j][t]`.
-fn torques_on(
+pub(super) fn torques_on(
     model: &dyn Model,
     chi: &[f64],
     terms: &[EffectTerm],

@@ -97,7 +97,8 @@ impl Prepared {
         let chi = fit.chi.iter().take(aligned.parameters).copied().collect();
         let chi_sigma = fit.variances().iter().take(aligned.parameters).map(|v| v.max(0.0).sqrt()).collect();
         let (sigma, rate) = (fit.sigma, None);
-        let mut prepared = Self { motions, chi, sigma, delay: 0.0, aligned, chi_sigma, moving, rate };
+        let delay = motions.settings().reference.as_ref().map_or(0.0, |r| r.delay());
+        let mut prepared = Self { motions, chi, sigma, delay, aligned, chi_sigma, moving, rate };
         // Without motion there is no skew to be seen.
         if prepared.moving.judged.contains(&true) {
             prepared.take_out_skew(model)?;
@@ -111,7 +112,8 @@ impl Prepared {
     /// [`DiagnosisError::Model`] where the recursive model cannot be built.
     pub fn context<'a>(&'a self, model: &'a dyn Model) -> Result<Context<'a>, DiagnosisError> {
         let signals = &self.motions.signals;
-        Context::new(model, signals, scales(model, signals, &self.chi), self.chi.clone())
+        let context = Context::new(model, signals, scales(model, signals, &self.chi), self.chi.clone())?;
+        Ok(context.beside(self.motions.settings().reference.clone()))
     }
 
     /// A skew of more than a part of a sample is taken out of the motions themselves.

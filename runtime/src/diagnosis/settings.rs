@@ -1,10 +1,12 @@
 //! What a diagnosis can be told, and what it tells while it works.
 
 use super::error::DiagnosisError;
+use super::reference::Reference;
 use super::rules;
 use crate::effects::{EffectKind, Place};
 use crate::estimation::choose_bandwidth;
 use crate::recording::Trajectory;
+use std::sync::Arc;
 
 /// Settings of a diagnosis. None of them knows a robot: speeds and travels count relative to the joint's own, unless
 /// absolute speeds are given.
@@ -47,6 +49,8 @@ pub struct Settings {
     pub single_joint_contacts: bool,
     /// Laws at places that are not tried, because other evidence speaks against them.
     pub excluded: Vec<(EffectKind, Place)>,
+    /// A model of the robot before it changed, in the place of a baseline: what it explains is not looked for.
+    pub reference: Option<Arc<Reference>>,
     /// Threads; 0: as many as the machine has. The outcome does not depend on them.
     pub threads: usize,
 }
@@ -106,6 +110,7 @@ impl Default for Settings {
             standstill_speeds: None,
             single_joint_contacts: true,
             excluded: Vec::new(),
+            reference: None,
             threads: 2,
         }
     }

@@ -42,7 +42,7 @@ pub(super) fn run(
     // 1. Band, motions, checks, skew.
     progress.at(0.0, "signals");
     let prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
-    let change = !recordings.baseline.is_empty();
+    let change = !recordings.baseline.is_empty() || settings.reference.is_some();
     if !prepared.moving.judged.contains(&true) {
         return at_rest(model, &prepared);
     }

@@ -3,7 +3,8 @@
 use super::attenuation::{Attenuation, UNCERTAINTY};
 use super::observe::Observation;
 use super::outcome::ParameterEstimate;
-use super::uncertainty::{Solved, variances};
+use super::uncertainty::{Solved, covariance};
+use nalgebra::DMatrix;
 use super::weights::{Weights, from_own_fits, iterate};
 
 /// Standard deviations of the parameters that were solved for.
@@ -16,6 +17,8 @@ pub(super) struct Deviations {
     pub blocks: Option<Vec<f64>>,
     /// For noise that lasts as the residuals show it.
     pub lasting: Option<Vec<f64>>,
+    /// How the errors go together: a covariance, whatever its scale.
+    pub together: DMatrix<f64>,
     /// What was added for noise in the columns.
     pub corrections: Option<Vec<f64>>,
 }
@@ -34,6 +37,23 @@ impl Deviations {
         let ratio = self.headline(place) / self.white[place];
         if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 }
     }
+}
+
+/// Upper triangle, row by row, of the covariance of so many unknowns, of which these are `active`: errors that go together
+/// as they do, each with the standard deviation that is told.
+pub(super) fn upper_covariance(unknowns: usize, active: &[usize], deviations: &Deviations) -> Option<Vec<f64>> {
+    let of = &deviations.together;
+    if !deviations.known || of.nrows() != active.len() {
+        return None;
+    }
+    let factor: Vec<f64> = (0..active.len()).map(|p| deviations.headline(p) / of[(p, p)].sqrt()).collect();
+    let place = |l: usize| active.binary_search(&l).ok();
+    let entry = |i: usize, l: usize| match (place(i), place(l)) {
+        (Some(a), Some(b)) => of[(a, b)] * factor[a] * factor[b],
+        _ => 0.0,
+    };
+    let upper: Vec<f64> = (0..unknowns).flat_map(|i| (i..unknowns).map(move |l| entry(i, l)).collect::<Vec<_>>()).collect();
+    upper.iter().all(|x| x.is_finite()).then_some(upper)
 }
 
 /// All unknowns of an observation; those that are not `active` are zero and without deviations.
@@ -72,14 +92,14 @@ pub(super) fn described(
     parameters
 }
 
-/// Standard deviations for noise that lasts as the residuals show it; `None` where the rows were not kept.
+/// Covariance for noise that lasts as the residuals show it; `None` where the rows were not kept.
 pub(super) fn lasting_deviations(
     counted: &Observation,
     active: &[usize],
     weights: &Weights,
     weighted: bool,
     attenuation: Option<&Attenuation>,
-) -> Option<Vec<f64>> {
+) -> Option<DMatrix<f64>> {
     counted.rows.as_ref()?;
     // Equal weights are not those of the noise.
     let own = (!weighted).then(|| iterate(counted, active, &from_own_fits(counted)));
@@ -91,5 +111,5 @@ pub(super) fn lasting_deviations(
         weights: &weights.sigma,
         errors: own.as_ref().map_or(&weights.sigma, |own| &own.sigma),
     };
-    variances(&solved).map(|all| all.iter().map(|v| v.sqrt()).collect())
+    covariance(&solved).filter(|all| all.diagonal().iter().all(|v| v.is_finite() && *v >= 0.0))
 }

@@ -9,6 +9,7 @@ use super::outcome::Essential;
 use super::residuals::relative_error;
 use super::solve::back_substitute;
 use super::weights::{Weights, iterate, spread, stack};
+use nalgebra::DMatrix;
 
 /// The unknowns that are left, and those that were cancelled in their order.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -80,6 +81,7 @@ pub(super) fn simplified(
     let deviations = Deviations {
         known: inflation.iter().all(|i| i.is_finite()),
         lasting: Some(kept.iter().zip(&white).map(|(l, s)| s * inflation_of(l)).collect()),
+        together: DMatrix::zeros(0, 0),
         white,
         blocks: None,
         corrections: attenuation.map(|a| a.missing),

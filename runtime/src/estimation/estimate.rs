@@ -5,7 +5,7 @@ use super::Factor;
 use super::attenuation::{Attenuation, Drowned, corrected};
 use super::blocks::block_sigmas;
 use super::cautions::{describe_dependence, few_rows, joint_of, not_explained, strongest};
-use super::deviations::{Deviations, described, lasting_deviations};
+use super::deviations::{Deviations, described, lasting_deviations, upper_covariance};
 use super::essential::simplified;
 use super::method::{Method, Solver};
 use super::observe::{Equations, Observation};
@@ -13,7 +13,7 @@ use super::outcome::Estimate;
 use super::residuals::{errors_of, per_equation, relative_error};
 use super::robust::{Reweighted, reweight};
 use super::settings::EstimateSettings;
-use super::solve::Solution;
+use super::solve::{Solution, inverse_gram};
 use super::total::{NoGenericSolution, total_least_squares};
 use super::warning::Warning;
 use super::weights::{Weights, equal, from_own_fits, iterate, solve_active, spread, stack};
@@ -46,6 +46,7 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
         let inflation: Vec<f64> = (0..active.len()).map(|p| deviations.inflation(p)).collect();
         simplified(solved.counted(observation), active, weights, r_sigma, settings.weighted, &inflation)
     });
+    let covariance = upper_covariance(observation.unknowns.len(), active, &deviations);
     Estimate {
         method: method_of(observation, settings),
         parameters,
@@ -56,8 +57,9 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
         degrees_of_freedom: solution.degrees_of_freedom,
         condition: solution.condition,
         iterations: weights.iterations,
-        low_blocks: solved.robust.map_or_else(Vec::new, |r| r.low),
+        low_blocks: solved.robust.as_ref().map_or_else(Vec::new, |r| r.low.clone()),
         warnings,
+        covariance,
         essential,
     }
 }
@@ -132,11 +134,13 @@ fn deviations_of(
     let known = settings.solver != Solver::Total;
     let lasting = (known && settings.lasting_noise)
         .then(|| lasting_deviations(counted, active, weights, settings.weighted, attenuation.as_ref()));
+    let lasting = lasting.flatten();
     Deviations {
+        together: lasting.clone().unwrap_or_else(|| inverse_gram(&solved.rows)),
         known,
         white: solution.variance.iter().map(|v| (noise * v).sqrt()).collect(),
         blocks: if settings.block_sigmas { block_sigmas(counted, active, &weights.sigma, chi) } else { None },
-        lasting: lasting.flatten(),
+        lasting: lasting.map(|all| all.diagonal().iter().map(|v| v.sqrt()).collect()),
         corrections: attenuation.as_ref().map(|a| a.missing.clone()),
     }
 }

@@ -92,6 +92,10 @@ pub struct Estimate {
     pub low_blocks: Vec<BlockWeight>,
     /// What to know before believing it.
     pub warnings: Vec<Warning>,
+    /// Upper triangle, row by row, of the covariance of the parameters, with their standard deviations `sigma`; rows of
+    /// what is not determined are zero. `None` where there are no standard deviations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<Vec<f64>>,
     /// The simplified model, where it was asked for.
     pub essential: Option<Essential>,
 }

@@ -56,6 +56,9 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
     if let Some(essential) = &identified.essential_parameters {
         check_parameters("essential_parameters.parameters", &essential.parameters)?;
     }
+    if let Some(covariance) = &identified.covariance {
+        covariance.check()?;
+    }
     let Some(robot) = &identified.table else {
         if identified.schema_version > 0 {
             return wrong("table", "it is not there: the model does not say of which robot it is".to_owned());

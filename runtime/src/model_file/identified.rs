@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::covariance::Covariance;
 use super::fingerprint::fingerprint;
 use super::rows::{EquationRows, EvaluatedRows};
 use crate::effects::EffectTerm;
@@ -67,6 +68,9 @@ pub struct Identified {
     /// Relative error that the noise of the torques makes up, where it matters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<Errors>,
+    /// How parameters and amplitudes vary together, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<Covariance>,
     /// [`fingerprint`] of the table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fingerprint: Option<String>,
@@ -158,6 +162,7 @@ impl Identified {
             power_relative_error: estimate.relative_error.filter(|_| power),
             essential_parameters: essential,
             condition_number: Some(estimate.condition),
+            covariance: estimate.covariance.clone().and_then(|upper| Covariance::new(robot, &[], upper)),
             warnings: estimate.warnings.iter().map(Warning::to_string).collect(),
             ..Self::with_parameters(
                 robot,
@@ -197,6 +202,7 @@ impl Identified {
             effects: Vec::new(),
             delay: 0.0,
             noise: rows.noise,
+            covariance: None,
             fingerprint: Some(fingerprint(robot)),
             table: Some(robot.clone()),
         }

@@ -20,6 +20,7 @@
 //! its `robot` names.
 
 mod check;
+mod covariance;
 mod error;
 mod fingerprint;
 mod identified;
@@ -28,6 +29,7 @@ mod rows;
 mod table;
 
 pub use check::{check, read};
+pub use covariance::Covariance;
 pub use error::FileError;
 pub use fingerprint::{difference, fingerprint};
 pub use identified::{EssentialParameters, Identified, NamedParameter, SCHEMA, SimulatedStates, doubt};

@@ -42,12 +42,14 @@ pub enum PredictionError {
 
 impl<'a> Predictor<'a> {
     /// The standard model and the model with the findings of a diagnosis, whose terms are `terms`. A skew that was taken
-    /// out of the recording belongs to both where it is too small to be a finding.
+    /// out of the recording belongs to both where it is too small to be a finding, and so do the laws of a reference.
     pub fn before_and_after(diagnosis: &'a Diagnosis, terms: &'a [EffectTerm]) -> [Self; 2] {
-        let named = terms.iter().any(|t| t.distortion() == Some(Distortion::Skew));
-        let delay = if named { 0.0 } else { diagnosis.delay };
+        let standing = terms.get(diagnosis.findings.len()..).unwrap_or_default();
+        let named = |t: &&EffectTerm| t.distortion() == Some(Distortion::Skew);
+        let skew: f64 = terms.iter().filter(named).flat_map(|t| t.amplitude.first()).sum();
+        let delay = diagnosis.delay - skew;
         [
-            Self { chi: &diagnosis.standard.chi, effects: &[], delay },
+            Self { chi: &diagnosis.standard.chi, effects: standing, delay },
             Self { chi: &diagnosis.model.chi, effects: terms, delay: diagnosis.delay },
         ]
     }

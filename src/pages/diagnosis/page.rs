@@ -8,7 +8,7 @@ use super::extras::Extras;
 use super::finding::found;
 use super::forward::forward;
 use crate::errors::noise_words;
-use crate::words::{capital, joint_words, side_words, small_words};
+use crate::words::{capital, joint_words, side_words, small_words, standing_words};
 
 /// The whole page.
 pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {
@@ -27,6 +27,7 @@ pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String
     mismatch(&mut page, diagnosis);
     shifts(&mut page, diagnosis);
     cannot_tell(&mut page, diagnosis);
+    standing(&mut page, diagnosis);
     small(&mut page, diagnosis);
     unexplained(&mut page, diagnosis, extras);
     page.heading("How this was done");
@@ -172,6 +173,14 @@ fn cannot_tell(page: &mut Page, diagnosis: &Diagnosis) {
     page.list(diagnosis.cannot_tell.iter().map(|c| {
         format!("{} on {}. To tell: {}.", side_words(c).join(" or "), joint_words(&c.joints), c.experiment)
     }));
+}
+
+fn standing(page: &mut Page, diagnosis: &Diagnosis) {
+    if diagnosis.standing.is_empty() {
+        return;
+    }
+    page.heading("Also missing in both");
+    page.paragraph(&format!("{}.", capital(&standing_words(diagnosis))));
 }
 
 fn small(page: &mut Page, diagnosis: &Diagnosis) {

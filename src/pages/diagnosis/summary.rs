@@ -10,7 +10,7 @@ use crate::output::table;
 use crate::recorded::{Measured, left_out_words};
 
 use crate::words::{
-    capital, confidence_words, effect_words, joint_words, part_words, side_words, small_words,
+    capital, confidence_words, effect_words, joint_words, part_words, side_words, small_words, standing_words,
 };
 
 /// The verdict, the errors and the findings for a terminal.
@@ -46,6 +46,9 @@ pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> S
             joint_words(&c.joints),
             c.experiment
         ));
+    }
+    if !diagnosis.standing.is_empty() {
+        text.push_str(&format!("\n\nalso missing in both: {}", standing_words(diagnosis)));
     }
     if !diagnosis.small.is_empty() {
         let small: Vec<String> = diagnosis.small.iter().map(small_words).collect();

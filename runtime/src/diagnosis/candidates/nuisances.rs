@@ -13,8 +13,14 @@ pub(in crate::diagnosis) const SKEW_COLUMNS: usize = 1;
 /// Nuisances of each joint, which come next.
 pub(in crate::diagnosis) const NUISANCES: usize = 2;
 
-/// All columns that are fitted beside the base parameters and never named: the skew of the torques, the nuisances, and,
-/// against a baseline (`change`), the recording's own friction as the last three of every joint.
+/// Where the columns of a reference's laws begin among those that are always there.
+pub(in crate::diagnosis) fn standing_from(joints: usize) -> usize {
+    SKEW_COLUMNS + NUISANCES * joints
+}
+
+/// All columns that are fitted beside the base parameters and never named: the skew of the torques, the nuisances, the laws
+/// of a reference, and, against a baseline or a reference (`change`), the recording's own friction as the last three of
+/// every joint.
 pub(in crate::diagnosis) fn always_there(
     context: &Context<'_>,
     design: &Design,
@@ -22,8 +28,31 @@ pub(in crate::diagnosis) fn always_there(
 ) -> Vec<Vec<f64>> {
     let mut out = delay_columns(context, design);
     out.extend(nuisance_columns(context, design));
+    out.extend(standing_columns(context, design));
     if change {
         out.extend(target_friction_columns(context, design));
+    }
+    out
+}
+
+/// The laws of a reference on all rows, one column per amplitude, with the scales that they were made with.
+fn standing_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
+    let Some(reference) = &context.reference else { return Vec::new() };
+    let mut out = Vec::new();
+    for term in reference.standing() {
+        let mut own = vec![vec![0.0; design.rows.len()]; term.amplitude.len()];
+        for k in 0..context.signals.len() {
+            for (column, series) in own.iter_mut().zip(context.series_of_term(k, term)) {
+                for (j, values) in series {
+                    for (range, _) in design.of_signal(j, k) {
+                        for r in range {
+                            column[r] = design.smooth(k, &values, design.rows[r].centre);
+                        }
+                    }
+                }
+            }
+        }
+        out.extend(own);
     }
     out
 }

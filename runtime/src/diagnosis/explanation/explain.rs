@@ -4,7 +4,7 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
-use crate::diagnosis::explanation::{curves, delay, free_form, line, rate, words};
+use crate::diagnosis::explanation::{covariance, curves, delay, free_form, line, rate, standing, words};
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::outcome::{
     CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling,
@@ -16,6 +16,7 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
 use crate::effects::Abscissa;
 use crate::model::Robot;
@@ -53,14 +54,15 @@ pub(in crate::diagnosis) fn explain(
     let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
     findings.extend(effects);
     findings.extend(line::findings(search, settings.least_confidence));
-    let late = delay::finding(model, skew, settings)?;
+    let expected = model.context.reference.as_ref().map_or(0.0, |r| r.delay());
+    let late = delay::finding(model, skew - expected, settings)?;
     let named = late.is_some();
     findings.extend(late);
 
     // 2. What it gains on motion that was held out.
     let held = model.fast.held_out(false)?;
     findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
-    let before = before(model, &ended, named.then_some(skew))?;
+    let before = before(model, &ended, named.then_some(skew - expected))?;
     let held_out = held_out(model, standard, &held, before);
 
     // 3. What it changes, and what it leaves.
@@ -68,7 +70,7 @@ pub(in crate::diagnosis) fn explain(
     let is_wave = |f: &Finding| f.term.effect.properties().abscissa == Abscissa::WaveAngle;
     let waves = |joint: usize| findings.iter().any(|f| is_wave(f) && f.joints.contains(&joint));
     let spectra = search.spectra.iter().filter(|s| waves(s.joint)).cloned().collect();
-    let removed = |t: &crate::diagnosis::search::term::Accepted| Removed {
+    let removed = |t: &Accepted| Removed {
         effect: t.effect.id().into(),
         joints: named_on(robot, t.effect, t.place),
     };
@@ -97,10 +99,31 @@ pub(in crate::diagnosis) fn explain(
         },
         not_judged: Vec::new(),
         refuted: Vec::new(),
+        standing: Vec::new(),
+        covariance: None,
         findings,
     };
+    stand(model, &mut diagnosis, settings.threads);
     diagnosis.verdict = words::verdict(&diagnosis);
+    if let Some(reference) = &model.context.reference {
+        diagnosis.verdict.push(words::of_reference(reference.is_diagonal()));
+    }
     Ok(diagnosis)
+}
+
+/// What was there before, and how all that the model has varies together.
+fn stand(model: &ExtendedModel<'_>, diagnosis: &mut Diagnosis, threads: usize) {
+    let standing = standing::terms(model);
+    diagnosis.standing = standing.iter().map(|(term, _)| standing::told(term)).collect();
+    let column = |f: &Finding| {
+        let is = |t: &Accepted| t.effect == f.term.effect && t.place == f.term.place && t.shape == f.term.shape;
+        let range = &model.slow.term_columns[model.terms.iter().position(is)?];
+        (range.len() == f.term.amplitude.len() && f.term.transmission().is_none()).then_some(range.start)
+    };
+    let found = diagnosis.findings.iter().map(|f| (&f.term, column(f)));
+    let all: Vec<_> = found.chain(standing.iter().map(|(term, first)| (term, *first))).collect();
+    let upper = covariance::upper(model, &all, threads);
+    diagnosis.covariance = upper;
 }
 
 /// Rivals that explain nearly as much as the effects that were accepted; `effects` are those of the terms, in order.
@@ -194,7 +217,11 @@ fn how(model: &ExtendedModel<'_>) -> String {
     let design = &model.slow.design;
     let mut targets = design.segments.iter().filter(|s| s.is_target).map(|s| s.signal);
     let first = targets.next();
-    if model.change && targets.all(|s| Some(s) == first) {
+    if model.context.reference.is_some() && targets.all(|s| Some(s) == first) {
+        "every stretch of the motion predicted from the reference and its other stretches".into()
+    } else if model.context.reference.is_some() {
+        "every motion predicted from the reference and the other motions".into()
+    } else if model.change && targets.all(|s| Some(s) == first) {
         "every stretch of the new motion predicted from the baseline and its other stretches".into()
     } else if model.change {
         "every new motion predicted from the baseline and the other new motions".into()

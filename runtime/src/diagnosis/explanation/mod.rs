@@ -1,5 +1,6 @@
 //! Explanation: from accepted effects to numbers, curves and sentences.
 
+pub(in crate::diagnosis) mod covariance;
 pub(in crate::diagnosis) mod curves;
 pub(in crate::diagnosis) mod delay;
 pub(in crate::diagnosis) mod explain;
@@ -10,5 +11,6 @@ mod proposal;
 pub(in crate::diagnosis) mod quantities;
 pub(in crate::diagnosis) mod rate;
 pub(in crate::diagnosis) mod standard_model;
+pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod standstill;
 pub(in crate::diagnosis) mod words;

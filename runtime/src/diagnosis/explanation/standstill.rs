@@ -65,6 +65,8 @@ pub(in crate::diagnosis) fn explain(
         search: SearchOutcome { stop: StopReason::NoneAccepted, removed: Vec::new() },
         not_judged: Vec::new(),
         refuted: Vec::new(),
+        standing: Vec::new(),
+        covariance: None,
         findings,
     };
     diagnosis.verdict = verdict(robot, rest, &diagnosis);

@@ -75,12 +75,11 @@ pub(in crate::diagnosis) fn calibrate(
         let old = sum(&products.files, |f| !units.is_target(f));
         gain(&(&old + &fresh), &fresh, p, k, common)?
     } else {
-        let whole = sum(&products.units, |_| true);
-        gain(&whole, &whole, p, k, false)?
+        gain(&all(&products, regressors, p + k), &sum(&products.units, |_| true), p, k, false)?
     };
     // Without a baseline the law is in all units, and in each it may be another.
     let common = common || !change;
-    let compared = compared(units, &products);
+    let compared = compared(units, &products, all(&products, regressors, p + k));
     let own: Vec<f64> = compared
         .iter()
         .flat_map(|c| c.units.iter().map(|&u| gain(&c.whole, &products.units[u], p, k, common)))
@@ -105,7 +104,7 @@ pub(in crate::diagnosis) fn calibrate(
     // What differs between units is constant within one: it grows with the motion that is looked at.
     let longer = if change { (units.target_duration / units.duration.max(1e-9)).max(1.0) } else { 1.0 };
     let lambda = 1.0 + (variance.value - 1.0).max(0.0) * longer;
-    let whole = if change { sum(&products.files, |_| true) } else { sum(&products.units, |_| true) };
+    let whole = if change { sum(&products.files, |_| true) } else { all(&products, regressors, p + k) };
     let target: Vec<&DMatrix<f64>> =
         products.units.iter().zip(&units.units).filter(|(_, u)| u.target).map(|(m, _)| m).collect();
     let carrying = carrying(&whole, &target, p, k);
@@ -135,8 +134,8 @@ pub(in crate::diagnosis) fn beside(
         }
         gain(&whole, &fresh, p + o, k, law.common)?
     } else {
-        let whole = sum(&products.units, |_| true);
-        gain(&whole, &whole, p + o, k, false)?
+        let whole = all(&products, regressors, p + o + k);
+        gain(&whole, &sum(&products.units, |_| true), p + o, k, false)?
     };
     Some(Calibrated { squares: found.0, numbers: found.1, ..*calibrated })
 }
@@ -158,12 +157,22 @@ fn sum(list: &[DMatrix<f64>], taken: impl Fn(usize) -> bool) -> DMatrix<f64> {
     taken.fold(DMatrix::zeros(width, width), |sum, m| sum + m)
 }
 
+/// Inner products of a recording without a baseline, with what is known of its columns beforehand; `y` is the column of the
+/// torque.
+fn all(products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
+    let mut whole = sum(&products.units, |_| true);
+    if let Some(prior) = regressors.prior {
+        prior.add_to_products(&mut whole, y);
+    }
+    whole
+}
+
 /// The units in which nothing has changed, each with what it is compared with: against a baseline its other motions, or
-/// its other units where it is one motion; without one, the whole recording.
-fn compared(units: &Units, products: &Products) -> Vec<Compared> {
+/// its other units where it is one motion; without one, the whole recording `all`.
+fn compared(units: &Units, products: &Products, all: DMatrix<f64>) -> Vec<Compared> {
     let count = units.units.len();
     if !units.change() {
-        return vec![Compared { whole: sum(&products.units, |_| true), units: (0..count).collect() }];
+        return vec![Compared { whole: all, units: (0..count).collect() }];
     }
     let old = (0..products.files.len()).filter(|&f| !units.is_target(f)).count();
     let of_unit = |u: usize| {

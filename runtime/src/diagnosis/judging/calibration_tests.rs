@@ -85,6 +85,7 @@ fn judged(rng: &mut Pcg64, files: usize, baseline: bool, amplitude: f64, spread:
         y: &y,
         free: &[free],
         companions: &[vec![]],
+        prior: None,
         of_joint: std::slice::from_ref(&all),
     };
     let found = alone(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
@@ -105,7 +106,7 @@ fn rates(seed: u64, files: usize, baseline: bool, amplitude: f64, spread: f64, l
 /// One joint with nothing but its torque.
 fn plain<'a>(y: &'a [f64], all: &'a Range<usize>) -> Regressors<'a> {
     static NONE: [Vec<Vec<f64>>; 1] = [Vec::new()];
-    Regressors { shared: &[], y, free: &NONE, companions: &NONE, of_joint: std::slice::from_ref(all) }
+    Regressors { shared: &[], y, free: &NONE, companions: &NONE, prior: None, of_joint: std::slice::from_ref(all) }
 }
 
 #[test]

@@ -6,6 +6,7 @@
 use crate::diagnosis::judging::ar::Autoregression;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rows::gram::dot;
+use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{CALIBRATION_RIDGE, FREED, HIGHEST_AR_ORDER};
 use crate::parallel;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -21,6 +22,8 @@ pub(in crate::diagnosis) struct Regressors<'a> {
     /// Other laws of each joint, values on the joint's rows: how much they vary from unit to unit tells how much laws
     /// of this joint do.
     pub companions: &'a [Vec<Vec<f64>>],
+    /// What is known of the shared columns beforehand.
+    pub prior: Option<&'a Prior>,
     /// Rows of each joint.
     pub of_joint: &'a [Range<usize>],
 }

@@ -170,6 +170,17 @@ pub struct Small {
     pub unit: String,
 }
 
+/// A law that a reference has already, with the amplitudes that reference and recording have together: no finding.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of the joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// Its term in the model.
+    pub term: EffectTerm,
+}
+
 /// An effect that was accepted first and did not hold beside the others.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Removed {

@@ -7,7 +7,7 @@ mod finding;
 pub use drawn::{Curve, OrderSpectrum, TorqueSeries};
 pub use errors::{Errors, HeldOut, Mismatch, Unexplained};
 pub use finding::{
-    Alternative, CannotTell, Finding, NotJudged, OnTest, ParameterValue, Refuted, Removed, Small, WithoutIt,
+    Alternative, CannotTell, Finding, NotJudged, OnTest, ParameterValue, Refuted, Removed, Small, Standing, WithoutIt,
 };
 
 use crate::effects::EffectTerm;
@@ -105,6 +105,9 @@ pub struct Diagnosis {
     /// What is there and too small to be named.
     #[serde(default)]
     pub small: Vec<Small>,
+    /// Laws of a reference: missing in the standard model, and no news.
+    #[serde(default)]
+    pub standing: Vec<Standing>,
     /// What nothing explains.
     pub unexplained: Unexplained,
     /// The verdict in plain sentences.
@@ -135,11 +138,16 @@ pub struct Diagnosis {
     /// Laws that a test recording does not show, in the order in which they were taken out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refuted: Vec<Refuted>,
+    /// Upper triangle, row by row, of the covariance of the base parameters and of the amplitudes of [`Self::terms`], in
+    /// their order; a row of zeros is of what is not determined. Not part of the JSON.
+    #[serde(skip)]
+    pub covariance: Option<Vec<f64>>,
 }
 
 impl Diagnosis {
-    /// The accepted terms.
+    /// All that the model has beside its parameters: the terms of the findings, then those that a reference has already.
     pub fn terms(&self) -> Vec<EffectTerm> {
-        self.findings.iter().map(|f| f.term.clone()).collect()
+        let found = self.findings.iter().map(|f| &f.term);
+        found.chain(self.standing.iter().map(|s| &s.term)).cloned().collect()
     }
 }

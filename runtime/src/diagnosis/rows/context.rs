@@ -1,16 +1,17 @@
 //! Everything that columns are made from: the model, the motions, and the current standard parameters.
 
 use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{DRIVING_BAND, LEAST_LINK_INERTIA, RATE_PER_CUTOFF};
 use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, Form, JointLaw, Place, Scale, Sensitivity, Transmission,
+    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity, Transmission,
     body_columns, deflection, derivable, derivative,
 };
 use crate::model::{Link, Model, RecursiveModel};
 use crate::signal::{Butterworth, Stencil, central_difference};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// One column in one motion at the full rate: the joints that it acts on, with their torques.
 pub(in crate::diagnosis) type Series = Vec<(usize, Vec<f64>)>;
@@ -36,6 +37,8 @@ pub(in crate::diagnosis) struct Context<'a> {
     inertias: Vec<OnceLock<[f64; 2]>>,
     /// Transmissions that are known in physical units, per joint.
     pub transmissions: Vec<(usize, Transmission)>,
+    /// The robot before it changed, as a model.
+    pub reference: Option<Arc<Reference>>,
 }
 
 impl<'a> Context<'a> {
@@ -58,7 +61,13 @@ impl<'a> Context<'a> {
             links: signals.iter().map(|_| OnceLock::new()).collect(),
             inertias: (0..robot.joints()).map(|_| OnceLock::new()).collect(),
             transmissions: Vec::new(),
+            reference: None,
         })
+    }
+
+    /// The same beside a model of the robot before it changed.
+    pub fn beside(self, reference: Option<Arc<Reference>>) -> Self {
+        Self { reference, ..self }
     }
 
     /// Takes other standard parameters: loads and model torques follow.
@@ -76,7 +85,9 @@ impl<'a> Context<'a> {
     /// The columns of an effect in one motion, one per amplitude; none where the effect cannot be at the place.
     pub fn series(&self, signal: usize, effect: EffectKind, place: Place, shape: &[f64]) -> Vec<Series> {
         let columns = match effect.form() {
-            Form::Joint(law) => place.joint().map(|j| self.of_joint(signal, law, j, shape)),
+            Form::Joint(law) => {
+                place.joint().map(|j| self.of_joint(signal, law, (j, &self.scales[j]), shape))
+            }
             Form::Sensitivity(law) => place.variant().map(|v| self.derivatives(signal, law, v, shape)),
             Form::Compliance(_) => place.joint().map(|j| vec![self.compliant(signal, j, shape)]),
             Form::Body(_) => place.link().map(|frame| self.body(signal, frame)),
@@ -87,10 +98,25 @@ impl<'a> Context<'a> {
         columns.unwrap_or_default()
     }
 
-    fn of_joint(&self, signal: usize, law: &dyn JointLaw, j: usize, shape: &[f64]) -> Vec<Series> {
+    /// The same of a law that is part of a model, with the scales that it was made with.
+    pub fn series_of_term(&self, signal: usize, term: &EffectTerm) -> Vec<Series> {
+        match (term.effect.form(), term.place.joint(), term.scale) {
+            (Form::Joint(law), Some(j), Some(scale)) => {
+                self.of_joint(signal, law, (j, &scale.into()), &term.shape)
+            }
+            _ => self.series(signal, term.effect, term.place, &term.shape),
+        }
+    }
+
+    fn of_joint(
+        &self,
+        signal: usize,
+        law: &dyn JointLaw,
+        (j, scale): (usize, &Scale),
+        shape: &[f64],
+    ) -> Vec<Series> {
         let s = &self.signals[signal];
         let torques = &self.torques[signal];
-        let scale = &self.scales[j];
         let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
         let mut out = vec![0.0; columns.len()];
         let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));

@@ -5,12 +5,14 @@
 //! column go through the same window, which is the parallel decimation of the paper's IV.A.
 
 use crate::diagnosis::rows::gram::{Gram, dot};
+use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rows::selection::{RowSelection, hann};
 use crate::diagnosis::rows::signals::{Signals, each_block};
 use crate::diagnosis::rules::{CURVE_RIDGE, ENOUGH_BLOCKS, FIT_RIDGE, LONGEST_BLOCK};
 use crate::model::Model;
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// One row.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +44,8 @@ pub(in crate::diagnosis) struct Design {
     /// Columns of curves, whose amplitudes are kept from what no motion determines.
     pub shrunk: Vec<Range<usize>>,
     pub y: Vec<f64>,
+    /// What is known of columns beforehand.
+    pub prior: Option<Arc<Prior>>,
     kernels: Vec<Vec<f64>>,
     /// From one row to the next in a motion, s.
     pub step: f64,
@@ -68,6 +72,7 @@ impl Design {
             columns: vec![Vec::new(); parameters],
             shrunk: Vec::new(),
             y: Vec::new(),
+            prior: None,
             kernels: signals.iter().map(kernel).collect(),
             step: selection.half,
             short: false,
@@ -294,6 +299,7 @@ impl Design {
             columns,
             shrunk: Vec::new(),
             y,
+            prior: None,
             kernels: vec![hann(1); signals],
             step: 0.02,
             short: false,

@@ -28,7 +28,10 @@ impl Fit {
     /// [`SingularDesign`] where the normal equations have no solution.
     pub fn new(design: &Design, sigma: &[f64], train: Vec<bool>) -> Result<Self, SingularDesign> {
         let p = design.columns.len();
-        let (g, v) = weighted_sum(design, sigma, &train).normal_equations();
+        let (mut g, mut v) = weighted_sum(design, sigma, &train).normal_equations();
+        if let Some(prior) = &design.prior {
+            prior.add_to(&mut g, &mut v);
+        }
         let scale = DVector::from_fn(p, |k, _| if g[(k, k)] > 0.0 { 1.0 / g[(k, k)].sqrt() } else { 0.0 });
         let mut scaled = DMatrix::from_fn(p, p, |i, k| {
             g[(i, k)] * scale[i] * scale[k] + if i == k { design.ridge(i, |c| g[(c, c)]) } else { 0.0 }

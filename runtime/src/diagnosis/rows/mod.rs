@@ -6,6 +6,7 @@ pub(in crate::diagnosis) mod fit;
 pub(in crate::diagnosis) mod free;
 pub(in crate::diagnosis) mod gram;
 pub(in crate::diagnosis) mod motion;
+pub(in crate::diagnosis) mod prior;
 pub(in crate::diagnosis) mod scales;
 pub(in crate::diagnosis) mod selection;
 pub(in crate::diagnosis) mod signals;

@@ -21,6 +21,8 @@ pub(in crate::diagnosis) struct Signals {
     pub torque: Vec<Vec<f64>>,
     /// Samples at each end that the filters' edge effects reach.
     pub edge_samples: usize,
+    /// Torques that are known and not part of `torque`, where there are any.
+    known: Option<Vec<Vec<f64>>>,
     /// What the torques are made from again when another skew is taken out; `None` for a motion taken as it is.
     recorded: Option<Recorded>,
 }
@@ -100,6 +102,7 @@ impl Signals {
             jerk: thinned(jerk, stride),
             torque: recorded.delayed(delay)?,
             edge_samples: motion.edge_samples.div_ceil(stride),
+            known: None,
             recorded: Some(recorded),
         })
     }
@@ -130,8 +133,21 @@ impl Signals {
         if let Some(recorded) = &mut self.recorded {
             recorded.delay = delay;
             self.torque = recorded.delayed(delay)?;
+            self.leave_known_out();
         }
         Ok(())
+    }
+
+    /// Takes torques that are known out of the recorded ones, `[j][t]`.
+    pub fn take_out(&mut self, known: Vec<Vec<f64>>) {
+        self.known = Some(known);
+        self.leave_known_out();
+    }
+
+    fn leave_known_out(&mut self) {
+        for (torque, known) in self.torque.iter_mut().zip(self.known.iter().flatten()) {
+            torque.iter_mut().zip(known).for_each(|(t, k)| *t -= k);
+        }
     }
 
     /// A motion as it is: for the torques of terms.
@@ -148,6 +164,7 @@ impl Signals {
             jerk,
             torque: motion.torque.clone(),
             edge_samples: motion.edge_samples,
+            known: None,
             recorded: None,
         }
     }
@@ -166,6 +183,7 @@ impl Signals {
             jerk: nothing.clone(),
             torque: nothing,
             edge_samples: 0,
+            known: None,
             recorded: None,
         }
     }
@@ -175,7 +193,13 @@ impl Signals {
     /// slow, and it is the filtered torque.
     pub fn recorded_torque(&self, joint: usize) -> (Vec<f64>, f64) {
         match &self.recorded {
-            Some(r) if r.stride == 1 => (shifted(&r.torque[joint], r.delay * r.rate), RECORDED_BAND * r.rate),
+            Some(r) if r.stride == 1 => {
+                let mut torque = shifted(&r.torque[joint], r.delay * r.rate);
+                if let Some(known) = &self.known {
+                    torque.iter_mut().zip(&known[joint]).for_each(|(t, k)| *t -= k);
+                }
+                (torque, RECORDED_BAND * r.rate)
+            }
             Some(r) => (self.torque[joint].clone(), r.cutoff),
             None => (self.torque[joint].clone(), RECORDED_BAND * self.rate),
         }

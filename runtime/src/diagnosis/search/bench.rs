@@ -13,9 +13,11 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(in crate::diagnosis) struct Bench {
     pub units: Units,
-    /// Columns of the design that are the recording's own friction, three for each joint; empty without a baseline.
+    /// Columns of the design that are the recording's own friction, three for each joint; empty where only one recording is known.
     pub own_friction: Range<usize>,
-    /// Friction columns of each joint on its rows; none where there is no baseline.
+    /// Friction columns of each joint on its rows; none where only one recording is known.
+    pub friction: Vec<Vec<Vec<f64>>>,
+    /// Those that are free in every motion: against a baseline all of them.
     pub free: Vec<Vec<Vec<f64>>>,
     /// Other laws of each joint, values on its rows, which tell how much laws of this joint vary.
     pub companions: Arc<Vec<Vec<Vec<f64>>>>,
@@ -23,14 +25,15 @@ pub(in crate::diagnosis) struct Bench {
 }
 
 impl Bench {
-    pub fn new(context: &Context<'_>, design: &Design, companions: Vec<Vec<Vec<f64>>>) -> Self {
+    pub fn new(context: &Context<'_>, design: &Design, companions: Vec<Vec<Vec<f64>>>, change: bool) -> Self {
         let units = Units::of(design);
-        let change = units.change();
-        let free = |j| if change { friction_columns(context, design, j) } else { Vec::new() };
+        let friction = |j| if change { friction_columns(context, design, j) } else { Vec::new() };
+        let friction: Vec<Vec<Vec<f64>>> = (0..design.joints).map(friction).collect();
         Self {
             own_friction: design.columns.len() - if change { 3 * design.joints } else { 0 }
                 ..design.columns.len(),
-            free: (0..design.joints).map(free).collect(),
+            free: if units.change() { friction.clone() } else { vec![Vec::new(); design.joints] },
+            friction,
             companions: Arc::new(companions),
             of_joint: (0..design.joints).map(|j| design.of_joint(j)).collect(),
             units,
@@ -45,6 +48,7 @@ impl Bench {
             free: &self.free,
             companions: &self.companions,
             of_joint: &self.of_joint,
+            prior: design.prior.as_deref(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The standard model with accepted effects, fitted on the rows of both smoothing windows.
 
 use crate::diagnosis::candidates::companions::companions;
-use crate::diagnosis::candidates::nuisances::{NUISANCES, SKEW_COLUMNS, always_there};
+use crate::diagnosis::candidates::nuisances::{NUISANCES, SKEW_COLUMNS, always_there, standing_from};
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::error::SingularDesign;
@@ -12,6 +12,7 @@ use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
+use std::sync::Arc;
 
 /// The standard model, the effects that were accepted, and both regressions with them.
 pub(in crate::diagnosis) struct ExtendedModel<'a> {
@@ -36,12 +37,17 @@ impl<'a> ExtendedModel<'a> {
         fast: Design,
         change: bool,
     ) -> Result<Self, SingularDesign> {
-        let regression = |design: Design| {
+        let regression = |mut design: Design| {
             let nuisances = always_there(&context, &design, change);
+            if let Some(reference) = &context.reference {
+                let first = design.parameters + standing_from(design.joints);
+                design.prior = reference.prior_with_laws(first).map(Arc::new);
+            }
             Regression::new(design, nuisances)
         };
         let (slow, fast) = (regression(slow)?, regression(fast)?);
-        let bench = |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design));
+        let bench =
+            |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design), change);
         let benches = [bench(&slow), bench(&fast)];
         Ok(Self { context, slow, fast, benches, terms: Vec::new(), change })
     }
@@ -125,7 +131,8 @@ impl<'a> ExtendedModel<'a> {
                 context.signals,
                 context.scales.clone(),
                 context.chi.clone(),
-            )?,
+            )?
+            .beside(context.reference.clone()),
             slow: self.slow.clone(),
             fast: self.fast.clone(),
             benches: self.benches.clone(),

@@ -12,6 +12,7 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::calibration::{Calibrated, Law, beside, calibrate};
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::white_products::{Background, Regressors};
+use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
 use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::gate::SmallLaw;
@@ -20,9 +21,15 @@ use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
 use crate::effects::{EffectKind, Place, SmoothingWindow};
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// The law that friction which has changed is told from.
 const DRIVE_GAIN: EffectKind = EffectKind::TorqueConstantError;
+
+/// Columns of a design but for these.
+fn columns_but(design: &Design, without: &Range<usize>) -> Vec<Vec<f64>> {
+    (0..design.columns.len()).filter(|k| !without.contains(k)).map(|k| design.columns[k].clone()).collect()
+}
 
 /// What has changed on a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,23 +56,24 @@ impl Search<'_> {
         let (regression, bench) = (&self.model.slow, self.model.bench(SmoothingWindow::Slow));
         let design = &regression.design;
         let joints = design.joints;
-        let shared: Vec<Vec<f64>> = (0..design.columns.len())
-            .filter(|k| !bench.own_friction.contains(k))
-            .map(|k| design.columns[k].clone())
-            .collect();
-        let regressors = Regressors {
-            shared: &shared,
-            y: &design.y,
-            free: &bench.free,
-            companions: &bench.companions,
-            of_joint: &bench.of_joint,
-        };
         let residual = regression.residual();
-        let background = Background::new(&bench.units, &regressors, &residual, self.threads);
+        let background = |without: Range<usize>| {
+            let shared = columns_but(design, &without);
+            let regressors = Regressors { shared: &shared, ..bench.regressors(design) };
+            let background = Background::new(&bench.units, &regressors, &residual, self.threads);
+            (shared, background)
+        };
+        // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
+        let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
         let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
         let changed: Vec<(usize, Evidence, Change)> = (0..joints)
             .filter_map(|j| {
-                let (evidence, change) = self.friction_evidence(j, &shared, &background, &residual)?;
+                let own = baseline.is_none().then(|| {
+                    let first = bench.own_friction.start + 3 * j;
+                    background(first..first + 2)
+                });
+                let (shared, background) = own.as_ref().or(baseline.as_ref())?;
+                let (evidence, change) = self.friction_evidence(j, shared, background, &residual)?;
                 let sure = evidence.confidence(joints) >= settings.least_confidence;
                 let excluded = match change {
                     Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
@@ -161,7 +169,7 @@ impl Search<'_> {
         let (context, bench) = (&self.model.context, self.model.bench(SmoothingWindow::Slow));
         let design = &self.model.slow.design;
         let range = design.of_joint(joint);
-        let friction: Vec<Vec<f64>> = bench.free[joint][..2]
+        let friction: Vec<Vec<f64>> = bench.friction[joint][..2]
             .iter()
             .map(|on_joint| {
                 let mut column = vec![0.0; design.rows.len()];
@@ -171,14 +179,8 @@ impl Search<'_> {
             .collect();
         let gain = dense_columns(context, design, DRIVE_GAIN, Place::Joint(joint), &[], false);
         let mut free = bench.free.clone();
-        free[joint].drain(..2);
-        let regressors = Regressors {
-            shared,
-            y: &design.y,
-            free: &free,
-            companions: &bench.companions,
-            of_joint: &bench.of_joint,
-        };
+        free[joint].drain(..2.min(bench.free[joint].len()));
+        let regressors = Regressors { shared, free: &free, ..bench.regressors(design) };
         let judged = |columns| {
             let law = Law { columns, residual, common: false, trend_of: 0 };
             let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
@@ -206,7 +208,7 @@ impl Search<'_> {
         let [viscous, coulomb] = self.friction_of_baseline(joint);
         let own: Vec<f64> = self.own_friction(joint).map(|k| regression.fit.chi[k]).collect();
         let [by_speed, level] = own[..] else { return Size { law: 0.0, needed: 0.0 } };
-        let columns = &self.model.bench(SmoothingWindow::Slow).free[joint];
+        let columns = &self.model.bench(SmoothingWindow::Slow).friction[joint];
         let (mut changed, mut whole, mut count) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (row, r) in design.of_joint(joint).enumerate() {
             if self.model.context.signals[design.rows[r].signal].is_target {
@@ -226,7 +228,7 @@ impl Search<'_> {
         for (k, torques) in self.model.context.torques.iter().enumerate() {
             design.sample(joint, k, &torques.friction[joint], &mut friction);
         }
-        let columns = &self.model.bench(SmoothingWindow::Slow).free[joint][..2];
+        let columns = &self.model.bench(SmoothingWindow::Slow).friction[joint][..2];
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let g = DMatrix::from_fn(2, 2, |a, b| product(&columns[a], &columns[b]));
         let v = DVector::from_fn(2, |a, _| product(&columns[a], &friction));

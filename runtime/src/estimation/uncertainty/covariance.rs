@@ -26,7 +26,14 @@ pub(in crate::estimation) struct Solved<'a> {
     pub errors: &'a [f64],
 }
 
-/// Variance of each unknown that was solved for.
+/// Variance of each unknown that was solved for: the diagonal of [`covariance`].
+pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> {
+    let all = covariance(solved)?;
+    let variances: Vec<f64> = all.diagonal().iter().copied().collect();
+    variances.iter().all(|v| v.is_finite() && *v >= 0.0).then_some(variances)
+}
+
+/// Covariance of the unknowns that were solved for.
 ///
 /// The estimate solves ZT V W chi = ZT V Y with weights V, so that its error is (ZT V W)^-1 ZT V e with the covariance
 /// (ZT V W)^-1 ZT V C V Z (WT V Z)^-1, C that of the noise: an autoregression for each equation, with innovations that
@@ -36,7 +43,7 @@ pub(in crate::estimation) struct Solved<'a> {
 /// Where motions differ by more than that noise, the variances are as much larger ([`factors`]).
 ///
 /// `None` where the rows were not kept, or do not determine the unknowns.
-pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> {
+pub(in crate::estimation) fn covariance(solved: &Solved<'_>) -> Option<DMatrix<f64>> {
     let k = solved.unknowns.len();
     let series = Series::of(solved.observation, solved.unknowns, solved.errors)?;
     let noise = Noise::of(&series, k)?;
@@ -59,9 +66,8 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
         information -= noise;
     }
     let inverse = if same { inverse(&information)? } else { information.try_inverse()? };
-    let of = |l: usize| factors[l] * (inverse.row(l) * &spread * inverse.row(l).transpose())[(0, 0)];
-    let variances: Vec<f64> = (0..k).map(of).collect();
-    variances.iter().all(|v| v.is_finite() && *v >= 0.0).then_some(variances)
+    let all = &inverse * spread * inverse.transpose();
+    Some(DMatrix::from_fn(k, k, |i, l| (factors[i] * factors[l]).sqrt() * all[(i, l)]))
 }
 
 /// What one motion adds to the information and to the spread of the scores; `rows` are the series of its equations, each

@@ -6,4 +6,4 @@ mod covariance;
 mod noise;
 mod series;
 
-pub(super) use covariance::{Solved, variances};
+pub(super) use covariance::{Solved, covariance, variances};

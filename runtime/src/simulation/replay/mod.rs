@@ -91,9 +91,10 @@ pub fn replay(
         return Err(ReplayError::Joints { expected, found });
     }
     let terms = diagnosis.terms();
+    let standing = terms.get(diagnosis.findings.len()..).unwrap_or_default();
     let known = &diagnosis.standard.chi;
     let variants: [(Variant, &[f64], &[EffectTerm]); 2] =
-        [(Variant::Without, known, &[]), (Variant::With, &diagnosis.model.chi, &terms)];
+        [(Variant::Without, known, standing), (Variant::With, &diagnosis.model.chi, &terms)];
     let mut comparison = Comparison::new(model.robot().joints());
     for (k, motion) in prepared.iter().enumerate() {
         let recorded = smooth(&shifted(motion, diagnosis.delay), motion.rate, band)?;
