@@ -18,6 +18,7 @@ pub mod recorded;
 pub mod recording_files;
 pub mod robots;
 pub mod saved;
+pub mod speeds;
 pub mod truth;
 pub mod verdict;
 pub mod words;

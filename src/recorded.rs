@@ -8,7 +8,7 @@ use dynid_runtime::estimation::{
 };
 use dynid_runtime::model::Robot;
 use dynid_runtime::recording::{Manifest, RecordingError, RowReport, Side, Trajectory, load};
-use dynid_runtime::signal::{Motion, SignalError, prepare_all};
+use dynid_runtime::signal::{Motion, SignalError, SpeedFault, contradicting_speeds, prepare_all};
 
 use crate::arguments::{Sampling, Source};
 use crate::failure::Failure;
@@ -54,6 +54,8 @@ pub struct Recorded {
     pub motions: Vec<Motion>,
     /// What was left out.
     pub rows: LeftOut,
+    /// Columns of speeds that contradict the positions.
+    pub speeds: Vec<SpeedFault>,
     /// How equations are sampled from it.
     pub settings: ObserveSettings,
 }
@@ -115,7 +117,8 @@ pub fn prepared(measured: Measured, options: &Source, sampling: &Sampling) -> Re
         recorded_settings(sampling, joints).chosen(&trajectories).map_err(failed)?;
     let (motions, too_short) = prepare_all(&trajectories, &preparation).map_err(failed)?;
     rows.too_short = too_short.iter().map(SignalError::to_string).collect();
-    Ok(Recorded { dynamics, title, robot, side, motions, rows, settings })
+    let speeds = contradicting_speeds(&trajectories, &preparation);
+    Ok(Recorded { dynamics, title, robot, side, motions, rows, speeds, settings })
 }
 
 /// [`measure`] and [`prepared`].
@@ -160,10 +163,10 @@ pub fn read_observed(
         ObserveRecordingError::Observe(error) => observe_failure(&options.recording, &error),
         other => Failure::Input(in_recording(&options.recording, &other)),
     })?;
-    let ObservedRecording { observations, motions, whole, settings, rows, left_out } = observed;
+    let ObservedRecording { observations, motions, whole, settings, rows, speeds, left_out } = observed;
     let rows = LeftOut { rows, too_short: left_out };
     let (title, side) = (on_one_line(&manifest.title), manifest.side);
-    let recorded = Recorded { dynamics, title, robot, side, motions, rows, settings };
+    let recorded = Recorded { dynamics, title, robot, side, motions, rows, speeds, settings };
     Ok(Observed { recorded, observations, whole })
 }
 

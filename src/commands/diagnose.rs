@@ -9,7 +9,9 @@ use std::sync::Arc;
 use clap::Args;
 use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
+use dynid_runtime::estimation::choose_bandwidth;
 use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, NamedParameter, difference, doubt};
+use dynid_runtime::signal::{Preparation, SpeedFault, contradicting_speeds};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
@@ -18,7 +20,8 @@ use crate::failure::Failure;
 use crate::output::{Bar, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
-use crate::words::joint_number;
+use crate::speeds::{and_of_speeds, speed_words};
+use crate::words::{capital, joint_number};
 use compare::{Test, fitted, tested};
 
 /// What to diagnose and where to put it.
@@ -76,6 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         None => None,
     };
+    let contradictions = speed_words(&contradicting(&measured, &arguments.sampling), model.robot());
     let bar = Bar::new("diagnosis");
     let outcome = match &test {
         Some(test) => {
@@ -84,11 +88,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => diagnose(model, &measured.trajectories, &baseline, &settings, &bar).map_err(Into::into),
     };
     drop(bar);
-    let diagnosis = outcome.map_err(|error| match (&error, &arguments.test) {
+    let failure = |error: ConfirmationError| match (&error, &arguments.test) {
         (ConfirmationError::Test(error), Some(path)) => prediction_failure(path, error),
         (ConfirmationError::Diagnosis(error), _) => diagnosis_failure(&source.recording, error),
         (error, _) => Failure::Data(format!("{}: {error}", source.recording.display())),
-    })?;
+    };
+    let mut diagnosis = outcome.map_err(|error| and_of_speeds(failure(error), &contradictions))?;
+    diagnosis.verdict.extend(contradictions.iter().map(|words| format!("{}.", capital(words))));
     let extras = Extras {
         fitted: fitted(&measured, &diagnosis, &arguments.sampling),
         tested: match (&test, &arguments.test) {
@@ -153,6 +159,13 @@ fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<
         replay(model, &measured.title, &measured.trajectories, diagnosis, &progress)
             .map_err(|error| error.to_string()),
     )
+}
+
+/// Columns of speeds that contradict the positions, in the band of the diagnosis.
+fn contradicting(measured: &Measured, options: &DiagnosisOptions) -> Vec<SpeedFault> {
+    let chosen = || choose_bandwidth(&measured.trajectories).ok().map(|chosen| chosen.cutoff);
+    let cutoff = options.cutoff.or_else(chosen);
+    contradicting_speeds(&measured.trajectories, &Preparation { cutoff, ..Preparation::default() })
 }
 
 /// What a diagnosis refuses, as the end of a command.

@@ -1,4 +1,6 @@
-//! `dynid excite ROBOT`: motions that make the parameters observable.
+//! `dynid excite ROBOT`: motions that make the parameters observable, or that tell laws apart.
+
+mod tell;
 
 use std::path::PathBuf;
 
@@ -25,6 +27,12 @@ pub(super) struct Arguments {
     /// Folder for motions.yaml, which names a CSV and a figure for each motion
     #[arg(long)]
     out: PathBuf,
+    /// A motion that tells these laws apart, in the place of one for the parameters: two or more ids of `cannot tell`
+    #[arg(long, value_delimiter = ',', requires = "joint", conflicts_with = "pim", value_name = "ID,ID")]
+    tell: Vec<String>,
+    /// Number of the joint that has one of these laws
+    #[arg(long, requires = "tell")]
+    joint: Option<usize>,
     /// For the power model: one motion for each joint, with the joints before it fixed, so that the observation
     /// matrix becomes block-triangular
     #[arg(long)]
@@ -93,6 +101,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let model = dynamics.model();
     let robot = model.robot();
     let chi = nominal(robot)?;
+    if let Some(joint) = arguments.joint {
+        return tell::run(arguments, model, chi.as_deref(), joint);
+    }
     let settings = ExcitationSettings {
         kind: arguments.motions.kind(),
         criterion: arguments.criterion.into(),

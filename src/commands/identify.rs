@@ -17,6 +17,7 @@ use crate::failure::Failure;
 use crate::output::{print, table, write, write_json};
 use crate::ranges;
 use crate::recorded::{self, Recorded, left_out_words, observe_failure};
+use crate::speeds::{and_of_speeds, speed_words};
 use crate::verdict;
 use crate::words::joint_number;
 use method::Identification;
@@ -120,7 +121,7 @@ fn identify(
             model.robot().base.len(),
         )));
     }
-    let mut warnings: Vec<String> = Vec::new();
+    let mut warnings = speed_words(&recorded.speeds, model.robot());
     if !arguments.implausible {
         let path = &arguments.recording.recording;
         let weighted;
@@ -131,7 +132,8 @@ fn identify(
                 &weighted
             }
         };
-        warnings.extend(verdict::check(path, recorded, torques, of_torques)?);
+        let doubts = verdict::check(path, recorded, torques, of_torques);
+        warnings.extend(doubts.map_err(|failure| and_of_speeds(failure, &warnings))?);
     }
     let mut simulated = None;
     if let Some(plan) = &arguments.planned {

@@ -186,7 +186,10 @@ fn without(diagnosis: &Diagnosis, k: usize) -> Option<(Vec<f64>, Vec<EffectTerm>
             // What is no term of the fit, such as lines of a ripple, stays as it is.
             let lines = diagnosis.findings.iter().filter(|f| f.without.is_none()).map(|f| f.term.clone());
             let standing = diagnosis.standing.iter().map(|s| s.term.clone());
-            Some((without.chi.clone(), without.effects.iter().cloned().chain(lines).chain(standing).collect()))
+            Some((
+                without.chi.clone(),
+                without.effects.iter().cloned().chain(lines).chain(standing).collect(),
+            ))
         }
         (_, None) if finding.term.distortion().is_some() => None,
         (_, None) => {

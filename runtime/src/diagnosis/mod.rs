@@ -83,6 +83,7 @@
 mod candidates;
 mod contact;
 mod error;
+mod experiment;
 mod explanation;
 mod judging;
 mod motions;
@@ -99,13 +100,14 @@ mod settings;
 mod stages;
 
 pub use error::{DiagnosisError, SingularDesign};
+pub use experiment::{Distances, Question, distances, typical_laws};
 pub use outcome::{
     Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
     OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
     Standing, StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
-pub use reference::{NoReference, Reference};
 pub use predict::{joint_scales, term_torques};
+pub use reference::{NoReference, Reference};
 pub use settings::{Progress, Settings, Silent};
 
 use crate::effects::EffectKind;

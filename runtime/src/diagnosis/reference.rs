@@ -54,9 +54,8 @@ impl Reference {
             let size = covariance.nrows();
             return Err(NoReference { what: format!("a covariance of {size} numbers for {unknowns}") });
         }
-        let known: Vec<usize> = (0..unknowns)
-            .filter(|&k| covariance[(k, k)].is_finite() && covariance[(k, k)] > 0.0)
-            .collect();
+        let known: Vec<usize> =
+            (0..unknowns).filter(|&k| covariance[(k, k)].is_finite() && covariance[(k, k)] > 0.0).collect();
         let reference = Self { chi, effects, delay, covariance, known, diagonal };
         let all: Vec<usize> = (0..unknowns).collect();
         if reference.prior(&all).is_none() {
@@ -155,7 +154,8 @@ mod tests {
         let of = |covariance| Reference::new(vec![1.0, 2.0], Vec::new(), 0.0, covariance, false);
         assert!(of(DMatrix::identity(3, 3)).is_err());
         assert!(of(DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0])).is_err());
-        let reference = of(DMatrix::from_row_slice(2, 2, &[0.25, 0.0, 0.0, f64::INFINITY])).expect("half of it is known");
+        let reference =
+            of(DMatrix::from_row_slice(2, 2, &[0.25, 0.0, 0.0, f64::INFINITY])).expect("half of it is known");
         let (mut g, mut v) = (DMatrix::zeros(2, 2), nalgebra::DVector::zeros(2));
         reference.prior_of_parameters().expect("it is positive").add_to(&mut g, &mut v);
         assert_eq!((g[(0, 0)], g[(1, 1)], v[0], v[1]), (4.0, 0.0, 4.0, 0.0));

@@ -137,6 +137,13 @@ pub(super) const LAGS_PER_BLOCK: usize = 2;
 pub(super) const UNCORRELATED: f64 = 0.2;
 /// Fewest units that a law of time may rest on, weighted by what they carry. Statistics: two degrees of freedom.
 pub(super) const LEAST_CARRYING_UNITS: f64 = 3.0;
+/// A body lies within so many times the lengths of the robot's table of the link that carries it. Mechanics: what is
+/// farther away than the robot reaches from end to end and back is not carried by it; the last link's own length is not in
+/// the table.
+pub(super) const BODY_REACH: f64 = 2.0;
+/// Ten numbers are no body where one would explain as little as that with less probability. Judgement: one in a thousand
+/// bodies is not named.
+pub(super) const NO_BODY: f64 = 1e-3;
 /// Fewest blocks for a mean gain. Statistics: three degrees of freedom.
 pub(super) const LEAST_BLOCKS: f64 = 4.0;
 /// Highest confidence that is told. Judgement: no model of noise is right beyond it.

@@ -50,7 +50,7 @@ fn made_up(kind: EffectKind, place: Place, shape: &[f64]) -> Quantities {
                 .map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
                 .collect()
         }
-        Form::Body(_) => BodyEstimate::from_parameters(&a[..10], 0.1).parameters(&s),
+        Form::Body(_) => BodyEstimate::from_parameters(&a[..10], 0.1).parameters(&s, Some(2)),
         Form::Coupled => CoupledRotor { ratio: shape[0] }.parameters(&a[..3], &s[..3], 0.01),
         Form::Window => vec![Parameter::new("largest_force", 20.0, 0.0, "N")],
         Form::Free => vec![Parameter::new("swing", 2.0, 0.1, "N.m")],

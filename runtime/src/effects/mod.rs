@@ -45,7 +45,7 @@ pub use free_law::{Axis, FreeLaw, Seen, Together};
 pub use joint_law::{At, AtRest, JointLaw, Scale};
 pub use place::Place;
 pub use quantity::{Parameter, Quantities};
-pub use rigid_body::{BodyEstimate, BodyOnLink, body_columns};
+pub use rigid_body::{BodyEstimate, BodyOnLink, body_columns, body_detail};
 pub use sensitivity::{Direction, Distortion, Seeds, Sensitivity, Variant, derivable, derivative};
 pub use shape::{Move, ShapeSearch, Step};
 pub use term::{EffectTerm, TermScale};

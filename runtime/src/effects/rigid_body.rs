@@ -1,6 +1,6 @@
 //! A rigid body fixed to a link: its ten columns, and what they say about mass, centre and inertia.
 
-use super::quantity::Parameter;
+use super::quantity::{Parameter, Quantities};
 use crate::model::{Link, Robot, standard_idm};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
@@ -22,6 +22,10 @@ pub struct BodyEstimate {
     pub centre: [f64; 3],
     /// Principal moments about the centre of mass, kg.m², ascending.
     pub principal: [f64; 3],
+    /// Mass times centre, kg.m.
+    moment: [f64; 3],
+    /// Moment of inertia about the z axis of the frame, kg.m².
+    about_axis: f64,
     /// Whether a real body can have these parameters: positive mass, and principal moments that are positive and
     /// fulfil the triangle inequality (Traversaro et al. 2016), within the tolerance it was made with.
     pub consistent: bool,
@@ -41,14 +45,31 @@ impl BodyEstimate {
         let mut e = SymmetricEigen::new(at_origin - steiner).eigenvalues;
         e.as_mut_slice().sort_by(f64::total_cmp);
         let consistent = mass > 0.0 && e[0] > -slack && e[0] + e[1] > e[2] - slack;
-        Self { mass, centre: [c[0], c[1], c[2]], principal: [e[0], e[1], e[2]], consistent }
+        let centre = [c[0], c[1], c[2]];
+        let moment = [p[6], p[7], p[8]];
+        Self { mass, centre, principal: [e[0], e[1], e[2]], moment, about_axis: p[5], consistent }
     }
 }
 
 impl BodyEstimate {
     /// The quantities a person knows; `sigma` are standard deviations of the ten parameters.
-    pub fn parameters(&self, sigma: &[f64]) -> Vec<Parameter> {
+    ///
+    /// Where the mass is not known to be there, its centre means nothing: what the joint about the link's z axis, number
+    /// `axis`, feels of the body is then told, its first moment about that axis and its moment of inertia.
+    pub fn parameters(&self, sigma: &[f64], axis: Option<usize>) -> Vec<Parameter> {
         let s = |k: usize| sigma.get(k).copied().unwrap_or(0.0);
+        if let Some(axis) = axis.filter(|_| s(9) >= self.mass.abs()) {
+            let [x, y, _] = self.moment;
+            let moment = x.hypot(y);
+            let spread = (x * s(6)).hypot(y * s(7)) / moment.max(1e-12);
+            return vec![
+                Parameter::new("moment", moment, spread, "kg.m"),
+                Parameter::new("direction", y.atan2(x), spread / moment.max(1e-12), "rad"),
+                Parameter::new("inertia", self.about_axis, s(5), "kg.m2"),
+                Parameter::new("axis", axis as f64, 0.0, "1"),
+                Parameter::new("physically_consistent", f64::from(self.consistent), 0.0, "1"),
+            ];
+        }
         let m = self.mass.abs().max(1e-9);
         vec![
             Parameter::new("mass", self.mass, s(9), "kg"),
@@ -61,6 +82,18 @@ impl BodyEstimate {
             Parameter::new("physically_consistent", f64::from(self.consistent), 0.0, "1"),
         ]
     }
+}
+
+/// What is told of a body in a sentence.
+pub fn body_detail(q: &Quantities) -> String {
+    if q.has("moment") {
+        return format!(
+            "a first moment of {} about axis {}; its mass does not show in this motion",
+            q.text("moment"),
+            q.text("axis")
+        );
+    }
+    format!("a body of {} at ({}, {}, {})", q.text("mass"), q.text("x"), q.text("y"), q.text("z"))
 }
 
 /// The ten columns of a frame's inertial parameters at one state: `out[parameter][joint]`, zeros included.

@@ -4,8 +4,8 @@ use super::attenuation::{Attenuation, UNCERTAINTY};
 use super::observe::Observation;
 use super::outcome::ParameterEstimate;
 use super::uncertainty::{Solved, covariance};
-use nalgebra::DMatrix;
 use super::weights::{Weights, from_own_fits, iterate};
+use nalgebra::DMatrix;
 
 /// Standard deviations of the parameters that were solved for.
 pub(super) struct Deviations {
@@ -41,7 +41,11 @@ impl Deviations {
 
 /// Upper triangle, row by row, of the covariance of so many unknowns, of which these are `active`: errors that go together
 /// as they do, each with the standard deviation that is told.
-pub(super) fn upper_covariance(unknowns: usize, active: &[usize], deviations: &Deviations) -> Option<Vec<f64>> {
+pub(super) fn upper_covariance(
+    unknowns: usize,
+    active: &[usize],
+    deviations: &Deviations,
+) -> Option<Vec<f64>> {
     let of = &deviations.together;
     if !deviations.known || of.nrows() != active.len() {
         return None;
@@ -52,7 +56,8 @@ pub(super) fn upper_covariance(unknowns: usize, active: &[usize], deviations: &D
         (Some(a), Some(b)) => of[(a, b)] * factor[a] * factor[b],
         _ => 0.0,
     };
-    let upper: Vec<f64> = (0..unknowns).flat_map(|i| (i..unknowns).map(move |l| entry(i, l)).collect::<Vec<_>>()).collect();
+    let upper: Vec<f64> =
+        (0..unknowns).flat_map(|i| (i..unknowns).map(move |l| entry(i, l)).collect::<Vec<_>>()).collect();
     upper.iter().all(|x| x.is_finite()).then_some(upper)
 }
 

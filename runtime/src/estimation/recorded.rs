@@ -5,7 +5,9 @@ use super::observe::{Equations, Observation, ObserveError, ObserveSettings, Prog
 use super::{Bandwidth, EncoderNoise, EstimateSettings, Piecewise, choose_bandwidth, estimate};
 use crate::model::Model;
 use crate::recording::{Loader, Manifest, RecordingError, RowReport, Trajectory};
-use crate::signal::{Decimator, Motion, Preparation, SignalError, prepare_all};
+use crate::signal::{
+    Decimator, Motion, Preparation, SignalError, SpeedFault, contradicting_speeds, prepare_all,
+};
 
 /// Rows of a piece of a long recording: what is in memory at once is a few times as much.
 pub const PIECE: usize = 100_000;
@@ -58,6 +60,8 @@ pub struct ObservedRecording {
     pub settings: ObserveSettings,
     /// Rows that could not be right.
     pub rows: RowReport,
+    /// Columns of speeds that contradict the positions; of a long recording those of its first pieces.
+    pub speeds: Vec<SpeedFault>,
     /// Motions, or pieces of them, that gave no rows, and why.
     pub left_out: Vec<String>,
 }
@@ -126,13 +130,14 @@ pub fn observe_recording(
     let first: Vec<Trajectory> =
         first.into_iter().map(|(window, piece)| pieces.named(window, piece)).collect();
     let (preparation, settings) = settings.chosen(&first)?;
+    let speeds = contradicting_speeds(&first, &preparation);
     let (mut all, motions) = Piecewise::new(model, equations, first, preparation, settings.clone())?;
     while let Some((window, piece)) = pieces.next()? {
         all.add(&pieces.named(window, piece))?;
     }
     let (observations, left_out) = all.finish()?;
     let rows = pieces.loader.into_report();
-    Ok(ObservedRecording { observations, motions, whole: false, settings, rows, left_out })
+    Ok(ObservedRecording { observations, motions, whole: false, settings, rows, speeds, left_out })
 }
 
 /// A correction for the noise of the encoders may be this share of the standard deviation beside it: what is not known
@@ -172,6 +177,7 @@ pub fn observe_trajectories(
             whole: true,
             settings,
             rows,
+            speeds: contradicting_speeds(trajectories, &preparation),
             left_out,
         })
     };

@@ -99,6 +99,10 @@ struct Screening<'a> {
     faults: Vec<Fault>,
 }
 
+/// A column of speeds of which more than one row in so many is out of reach has no spikes but another unit: its rows are
+/// as right as their positions, and the column is compared with these later. Judgement.
+const SPIKES: usize = 20;
+
 impl Screening<'_> {
     fn kept(&self) -> Vec<usize> {
         (0..self.good.len()).filter(|&row| self.good[row]).collect()
@@ -135,6 +139,10 @@ impl Screening<'_> {
             [(&piece.velocity, &reach.velocity, "velocity"), (&piece.torque, &reach.torque, "torque")];
         for (channel, bounds, quantity) in bounded {
             for (j, (values, bound)) in channel.iter().zip(bounds).enumerate() {
+                let beyond = values.iter().filter(|x| x.abs() > *bound).count();
+                if quantity == "velocity" && beyond * SPIKES > values.len() {
+                    continue;
+                }
                 for (row, x) in values.iter().enumerate().filter(|(_, x)| x.is_nan() || x.abs() > *bound) {
                     let what = format!("{quantity} {} of joint {}", four_digits(*x), reach.joint[j]);
                     self.leave(row, Reason::OutOfReach, what);

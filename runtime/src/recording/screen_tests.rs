@@ -47,6 +47,16 @@ fn joints_are_called_by_their_numbers_in_the_table() {
 }
 
 #[test]
+fn speeds_in_another_unit_cost_no_rows_and_a_spike_of_one_costs_its_own() {
+    let mut piece = motion(500);
+    piece.velocity = piece.position.iter().map(|q| q.iter().map(|x| 100.0 * x).collect()).collect();
+    assert!(screen(&piece, &reach(2), false).faults.is_empty());
+    piece.velocity.iter_mut().flatten().for_each(|v| *v /= 100.0);
+    piece.velocity[1][70] = 1e9;
+    assert_eq!(reasons(&screen(&piece, &reach(2), false)), [(70, Reason::OutOfReach)]);
+}
+
+#[test]
 fn values_no_joint_can_have_are_left_out_and_named() {
     let mut piece = motion(500);
     piece.position[0][100] = 253.0;

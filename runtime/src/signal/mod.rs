@@ -24,6 +24,7 @@ mod motion;
 mod oracle;
 mod prepare;
 mod resample;
+mod speeds;
 mod standstill;
 mod welch;
 
@@ -34,5 +35,6 @@ pub use error::SignalError;
 pub use motion::Motion;
 pub use prepare::{Preparation, VelocitySource, prepare, prepare_all};
 pub use resample::UniformGrid;
+pub use speeds::{SpeedFault, contradicting_speeds};
 pub use standstill::StandstillSpeeds;
 pub use welch::{Spectrum, welch};

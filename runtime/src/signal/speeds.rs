@@ -41,7 +41,8 @@ pub fn contradicting_speeds(trajectories: &[Trajectory], preparation: &Preparati
     let with = |velocity| Preparation { velocity, ..preparation.clone() };
     let mut motions: Vec<Compared> = Vec::new();
     for trajectory in trajectories.iter().filter(|t| t.velocity.is_some()) {
-        let of_both = [VelocitySource::Recorded, VelocitySource::Positions].map(|v| prepare(trajectory, &with(v)));
+        let of_both =
+            [VelocitySource::Recorded, VelocitySource::Positions].map(|v| prepare(trajectory, &with(v)));
         if let [Ok(recorded), Ok(ours)] = of_both {
             let edge = recorded.edge_samples;
             let inside = |x: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
@@ -174,9 +175,13 @@ mod tests {
     #[test]
     fn another_unit_or_sign_is_told_with_its_joint_and_factor() {
         let found = told(|t| [truth(t)[0].to_degrees(), truth(t)[1]], 1.0);
-        assert!(matches!(found[..], [SpeedFault { joint: 0, of: 0, factor, .. }] if (factor - 57.3).abs() < 0.5));
+        assert!(
+            matches!(found[..], [SpeedFault { joint: 0, of: 0, factor, .. }] if (factor - 57.3).abs() < 0.5)
+        );
         let found = told(|t| [truth(t)[0], -truth(t)[1]], 0.5);
-        assert!(matches!(found[..], [SpeedFault { joint: 1, of: 1, factor, .. }] if (factor + 1.0).abs() < 0.05));
+        assert!(
+            matches!(found[..], [SpeedFault { joint: 1, of: 1, factor, .. }] if (factor + 1.0).abs() < 0.05)
+        );
     }
 
     #[test]
@@ -189,6 +194,9 @@ mod tests {
     #[test]
     fn a_column_that_is_late_is_told_with_its_delay() {
         let found = told(|t| [truth(t - 0.05)[0], truth(t)[1]], 0.1);
-        assert!(matches!(found[..], [SpeedFault { joint: 0, of: 0, late, .. }] if (late - 0.05).abs() < 0.006), "{found:?}");
+        assert!(
+            matches!(found[..], [SpeedFault { joint: 0, of: 0, late, .. }] if (late - 0.05).abs() < 0.006),
+            "{found:?}"
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! Columns that are always fitted and never named: what every recording of a real robot has, and what other laws would
 //! otherwise be taken for.
 
-use crate::diagnosis::candidates::trial::{delay_columns, dense_columns};
+use crate::diagnosis::candidates::trial::{delay_columns, dense_columns, term_columns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::PRESLIDING_NUISANCE;
@@ -38,23 +38,7 @@ pub(in crate::diagnosis) fn always_there(
 /// The laws of a reference on all rows, one column per amplitude, with the scales that they were made with.
 fn standing_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
     let Some(reference) = &context.reference else { return Vec::new() };
-    let mut out = Vec::new();
-    for term in reference.standing() {
-        let mut own = vec![vec![0.0; design.rows.len()]; term.amplitude.len()];
-        for k in 0..context.signals.len() {
-            for (column, series) in own.iter_mut().zip(context.series_of_term(k, term)) {
-                for (j, values) in series {
-                    for (range, _) in design.of_signal(j, k) {
-                        for r in range {
-                            column[r] = design.smooth(k, &values, design.rows[r].centre);
-                        }
-                    }
-                }
-            }
-        }
-        out.extend(own);
-    }
-    out
+    reference.standing().flat_map(|term| term_columns(context, design, term)).collect()
 }
 
 /// Per joint, on all rows: the second derivative of the model's torque, which is what a difference between the filters

@@ -3,7 +3,7 @@
 use crate::diagnosis::rows::context::{Context, Series};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::dot;
-use crate::effects::{EffectKind, Place};
+use crate::effects::{EffectKind, EffectTerm, Place};
 use nalgebra::DMatrix;
 
 /// A column on the rows: for each joint that it acts on, the values at all of the joint's rows.
@@ -76,6 +76,25 @@ pub(in crate::diagnosis) fn dense_columns(
     change: bool,
 ) -> Vec<Vec<f64>> {
     columns(context, design, effect, place, shape, change).iter().map(|c| dense(design, c)).collect()
+}
+
+/// The columns of a law that is part of a model on all rows, one per amplitude, with the scales that it was made with.
+pub(in crate::diagnosis) fn term_columns(
+    context: &Context<'_>,
+    design: &Design,
+    term: &EffectTerm,
+) -> Vec<Vec<f64>> {
+    let mut out = vec![vec![0.0; design.rows.len()]; term.amplitude.len()];
+    for k in 0..context.signals.len() {
+        for (column, series) in out.iter_mut().zip(context.series_of_term(k, term)) {
+            for (j, values) in series {
+                for r in design.of_signal(j, k).into_iter().flat_map(|(range, _)| range) {
+                    column[r] = design.smooth(k, &values, design.rows[r].centre);
+                }
+            }
+        }
+    }
+    out
 }
 
 /// The skew of the torques behind the positions, which is always fitted along.

@@ -50,6 +50,7 @@ pub(in crate::diagnosis) fn upper(
         ((None, sigma), _) if i == k => sigma * sigma,
         _ => 0.0,
     };
-    let upper: Vec<f64> = (0..of.len()).flat_map(|i| (i..of.len()).map(move |k| (i, k))).map(|(i, k)| entry(i, k)).collect();
+    let upper: Vec<f64> =
+        (0..of.len()).flat_map(|i| (i..of.len()).map(move |k| (i, k))).map(|(i, k)| entry(i, k)).collect();
     upper.iter().all(|x| x.is_finite()).then_some(upper)
 }

@@ -18,8 +18,8 @@ use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
-use crate::effects::Abscissa;
-use crate::model::Robot;
+use crate::effects::{Abscissa, EffectKind, Form, Place};
+use crate::model::{JointIndex, Robot};
 
 /// What is known when a search has ended, besides the search.
 pub(in crate::diagnosis) struct Ended<'a> {
@@ -70,10 +70,8 @@ pub(in crate::diagnosis) fn explain(
     let is_wave = |f: &Finding| f.term.effect.properties().abscissa == Abscissa::WaveAngle;
     let waves = |joint: usize| findings.iter().any(|f| is_wave(f) && f.joints.contains(&joint));
     let spectra = search.spectra.iter().filter(|s| waves(s.joint)).cloned().collect();
-    let removed = |t: &Accepted| Removed {
-        effect: t.effect.id().into(),
-        joints: named_on(robot, t.effect, t.place),
-    };
+    let removed =
+        |t: &Accepted| Removed { effect: t.effect.id().into(), joints: named_on(robot, t.effect, t.place) };
     let mut diagnosis = Diagnosis {
         robot: robot.name.to_string(),
         before: standard.in_sample.clone(),
@@ -116,7 +114,8 @@ fn stand(model: &ExtendedModel<'_>, diagnosis: &mut Diagnosis, threads: usize) {
     let standing = standing::terms(model);
     diagnosis.standing = standing.iter().map(|(term, _)| standing::told(term)).collect();
     let column = |f: &Finding| {
-        let is = |t: &Accepted| t.effect == f.term.effect && t.place == f.term.place && t.shape == f.term.shape;
+        let is =
+            |t: &Accepted| t.effect == f.term.effect && t.place == f.term.place && t.shape == f.term.shape;
         let range = &model.slow.term_columns[model.terms.iter().position(is)?];
         (range.len() == f.term.amplitude.len() && f.term.transmission().is_none()).then_some(range.start)
     };
@@ -135,7 +134,7 @@ fn cannot_tell(model: &ExtendedModel<'_>, effects: &[Finding]) -> Vec<CannotTell
             list.push(CannotTell {
                 between: vec![finding.effect.clone(), rival.effect.id().into()],
                 joints: finding.joints.clone(),
-                experiment: term.effect.words().experiment.into(),
+                experiment: experiment(robot, (term.effect, term.place), (rival.effect, rival.place)),
                 variables: if rival.shape.is_empty() {
                     Vec::new()
                 } else {
@@ -147,6 +146,27 @@ fn cannot_tell(model: &ExtendedModel<'_>, effects: &[Finding]) -> Vec<CannotTell
     list
 }
 
+/// What would tell two laws apart: an experiment in words, and where both are laws of one joint the command that makes its
+/// motion.
+fn experiment(robot: &Robot, law: (EffectKind, Place), rival: (EffectKind, Place)) -> String {
+    let words = law.0.words().experiment;
+    let of_joint = |(effect, place): (EffectKind, Place)| match effect.form() {
+        Form::Joint(_) => place.joint(),
+        _ => None,
+    };
+    match (of_joint(law), of_joint(rival)) {
+        (Some(a), Some(b)) if a == b && law.0 != rival.0 => {
+            let joint = robot.joint_number(JointIndex(a)).0;
+            let ids = [law.0.id(), rival.0.id()].join(",");
+            format!(
+                "{words} (`dynid excite {} --tell {ids} --joint {joint} --out DIR` makes such a motion)",
+                robot.name
+            )
+        }
+        _ => words.into(),
+    }
+}
+
 /// Two laws on different joints that cannot be told apart.
 fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
     let mut joints: Vec<usize> =
@@ -156,7 +176,7 @@ fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
     CannotTell {
         between: tie.effects.iter().map(|e| e.id().to_string()).collect(),
         joints,
-        experiment: tie.effects[0].words().experiment.into(),
+        experiment: experiment(robot, (tie.effects[0], tie.places[0]), (tie.effects[1], tie.places[1])),
         variables: Vec::new(),
     }
 }

@@ -6,9 +6,11 @@ use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
+use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, Parameter, Step};
+use crate::model::JointIndex;
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
 /// derivative of the columns (variable projection, Golub and Pereyra 1973).
@@ -102,10 +104,7 @@ pub(in crate::diagnosis) fn quantified(
             let of = wanted.iter().zip(amplitude.iter().zip(&sigma));
             of.map(|(variant, (a, s))| law.quantity(variant, *a, *s)).collect()
         }),
-        Form::Body(_) => {
-            let slack = 3.0 * sigma.iter().take(6).fold(0.0_f64, |a, b| a.max(*b));
-            Some(BodyEstimate::from_parameters(&amplitude, slack).parameters(&sigma))
-        }
+        Form::Body(_) => return body(model, term, amplitude, sigma),
         Form::Coupled => term.shape.first().map(|&ratio| {
             let ratio_sigma = shape_sigma.first().copied().unwrap_or(0.0);
             CoupledRotor { ratio }.parameters(&amplitude, &sigma, ratio_sigma)
@@ -114,6 +113,18 @@ pub(in crate::diagnosis) fn quantified(
         Form::Window => None,
     };
     Quantified { parameters: parameters.unwrap_or_default(), amplitude, sigma }
+}
+
+/// The body that is nearest to the fitted numbers; where its mass does not show, its first moment about the axis of the
+/// joint that carries it.
+fn body(model: &ExtendedModel<'_>, term: &Accepted, fitted: Vec<f64>, sigma: Vec<f64>) -> Quantified {
+    let amplitude = body::of_term(model, term).map_or(fitted, |(body, _)| body.parameters.to_vec());
+    let robot = model.context.model.robot();
+    let carrier = term.place.link().and_then(|frame| robot.joint_of_frame().get(frame).copied().flatten());
+    let axis = carrier.map(|j| robot.joint_number(JointIndex(j)).0);
+    let slack = 3.0 * sigma.iter().take(6).fold(0.0_f64, |a, b| a.max(*b));
+    let parameters = BodyEstimate::from_parameters(&amplitude, slack).parameters(&sigma, axis);
+    Quantified { parameters, amplitude, sigma }
 }
 
 /// A compliant transmission has no amplitude of its own: a model keeps its constants.

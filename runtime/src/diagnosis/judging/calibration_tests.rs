@@ -106,7 +106,14 @@ fn rates(seed: u64, files: usize, baseline: bool, amplitude: f64, spread: f64, l
 /// One joint with nothing but its torque.
 fn plain<'a>(y: &'a [f64], all: &'a Range<usize>) -> Regressors<'a> {
     static NONE: [Vec<Vec<f64>>; 1] = [Vec::new()];
-    Regressors { shared: &[], y, free: &NONE, companions: &NONE, prior: None, of_joint: std::slice::from_ref(all) }
+    Regressors {
+        shared: &[],
+        y,
+        free: &NONE,
+        companions: &NONE,
+        prior: None,
+        of_joint: std::slice::from_ref(all),
+    }
 }
 
 #[test]

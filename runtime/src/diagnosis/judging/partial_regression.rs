@@ -101,6 +101,11 @@ impl Residualised {
         Some((a, gain))
     }
 
+    /// Information on the amplitudes, in units of the residual variance; zero where the design makes a column itself.
+    pub fn information(&self) -> &DMatrix<f64> {
+        &self.squares
+    }
+
     /// Squares of the residual that amplitudes take away.
     fn gain(&self, a: &DVector<f64>) -> f64 {
         2.0 * a.dot(&self.with_residual) - a.dot(&(&self.squares * a))

@@ -7,7 +7,8 @@ mod finding;
 pub use drawn::{Curve, OrderSpectrum, TorqueSeries};
 pub use errors::{Errors, HeldOut, Mismatch, Unexplained};
 pub use finding::{
-    Alternative, CannotTell, Finding, NotJudged, OnTest, ParameterValue, Refuted, Removed, Small, Standing, WithoutIt,
+    Alternative, CannotTell, Finding, NotJudged, OnTest, ParameterValue, Refuted, Removed, Small, Standing,
+    WithoutIt,
 };
 
 use crate::effects::EffectTerm;

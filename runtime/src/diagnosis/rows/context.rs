@@ -6,8 +6,8 @@ use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{DRIVING_BAND, LEAST_LINK_INERTIA, RATE_PER_CUTOFF};
 use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity, Transmission,
-    body_columns, deflection, derivable, derivative,
+    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
+    Transmission, body_columns, deflection, derivable, derivative,
 };
 use crate::model::{Link, Model, RecursiveModel};
 use crate::signal::{Butterworth, Stencil, central_difference};

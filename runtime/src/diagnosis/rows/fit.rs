@@ -121,6 +121,15 @@ impl Fit {
         Some(scaled.dot(&covariance.cholesky()?.solve(&scaled)))
     }
 
+    /// Information on some columns beside all others, in units of the residual variance; zero where a column is.
+    pub fn information(&self, columns: Range<usize>) -> Option<DMatrix<f64>> {
+        let (first, k) = (columns.start, columns.len());
+        let unit = DMatrix::from_fn(self.chi.len(), k, |i, c| if i == first + c { 1.0 } else { 0.0 });
+        let inverse = self.factor.solve(&unit).rows(first, k).into_owned().cholesky()?.inverse();
+        let over = |c: usize| if self.scale[first + c] > 0.0 { 1.0 / self.scale[first + c] } else { 0.0 };
+        Some(DMatrix::from_fn(k, k, |i, c| inverse[(i, c)] * over(i) * over(c)))
+    }
+
     /// Variance of each parameter in units of the residual variance.
     pub fn variances(&self) -> DVector<f64> {
         let inverse = self.factor.inverse();

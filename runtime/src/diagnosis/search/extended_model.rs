@@ -46,8 +46,7 @@ impl<'a> ExtendedModel<'a> {
             Regression::new(design, nuisances)
         };
         let (slow, fast) = (regression(slow)?, regression(fast)?);
-        let bench =
-            |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design), change);
+        let bench = |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design), change);
         let benches = [bench(&slow), bench(&fast)];
         Ok(Self { context, slow, fast, benches, terms: Vec::new(), change })
     }

@@ -1,6 +1,7 @@
 //! Search: which candidates become part of the model, one after the other.
 
 pub(in crate::diagnosis) mod bench;
+pub(in crate::diagnosis) mod body;
 pub(in crate::diagnosis) mod extended_model;
 pub(in crate::diagnosis) mod free_form;
 pub(in crate::diagnosis) mod friction_change;

@@ -6,6 +6,7 @@ use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::StopReason;
 use crate::diagnosis::rules::KEPT_FRACTION;
+use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::round::Winner;
@@ -126,6 +127,12 @@ impl Search<'_> {
         let mut rejected = Vec::new();
         let mut k = 0;
         while k < self.model.terms.len() {
+            // Beside what was found later it may be no body any more, as one half of two that cancel.
+            if body::of_term(&self.model, &self.model.terms[k]).is_some_and(|(_, is_one)| !is_one) {
+                rejected.push(self.model.terms.remove(k));
+                self.model.refit()?;
+                continue;
+            }
             let with = held_out_error(&self.model, &self.model.terms[k])?;
             let term = self.model.terms.remove(k);
             self.model.refit()?;

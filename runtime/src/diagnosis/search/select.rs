@@ -7,6 +7,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rules::{
     FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, RIVALS, STRETCHES_PER_LOSS,
 };
+use crate::diagnosis::search::body;
 use crate::diagnosis::search::gate::{Outcome, RoundEvidence};
 use crate::diagnosis::search::round::{Ranked, Round, Tie, Winner};
 use crate::diagnosis::search::standing::Standing;
@@ -74,6 +75,9 @@ impl Search<'_> {
                 }
                 Weight::Fails => continue,
             };
+            if !self.can_be(&ranked[k], inflation) {
+                continue;
+            }
             let winner = Some(Winner {
                 window: ranked[k].window,
                 index: ranked[k].index,
@@ -113,6 +117,18 @@ impl Search<'_> {
             }
             Standing::Beaten => Weight::Fails,
         }
+    }
+
+    /// Whether a ranked candidate is a law that can be, with its standard deviations as much larger.
+    fn can_be(&self, ranked: &Ranked, inflation: f64) -> bool {
+        let (regression, candidate) = self.of(ranked);
+        let Some(part) = regression.fit.project_out(&candidate.trials[ranked.verdict.trial]) else {
+            return false;
+        };
+        part.solve(candidate).is_some_and(|(amplitude, _)| {
+            let fitted = (part.information(), &amplitude);
+            body::can_be(&self.model.context, candidate.effect.form(), fitted, inflation)
+        })
     }
 
     /// Candidates, on `joint` where one is given, that are not excluded: those that gain most on held-out motion first.

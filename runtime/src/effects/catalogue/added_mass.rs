@@ -1,7 +1,7 @@
 //! A rigid body added to an inner link.
 
 use crate::effects::{
-    Abscissa, BodyOnLink, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Words,
+    Abscissa, BodyOnLink, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Words, body_detail,
 };
 use crate::model::Robot;
 
@@ -45,7 +45,7 @@ impl Effect for AddedMass {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("a body of {} at ({}, {}, {})", q.text("mass"), q.text("x"), q.text("y"), q.text("z"))
+        body_detail(q)
     }
 
     fn formula(&self, _: &Quantities) -> String {

@@ -4,6 +4,7 @@
 //! recording does so by little; a recording that another robot made, or whose axes, signs or units are mixed up, needs
 //! such parameters. The best physically possible fit therefore tells whether the recording can be this robot's.
 
+mod body;
 mod interior_point;
 mod problem;
 mod pseudo_inertia;
@@ -13,6 +14,8 @@ use super::weights::stack;
 use super::{Estimate, per_equation, relative_error};
 use crate::model::Robot;
 use problem::Problem;
+
+pub use body::{NearestBody, nearest_body};
 
 /// The best fit whose parameters belong to real bodies and whose friction dissipates.
 #[derive(Debug, Clone, PartialEq)]

@@ -145,7 +145,7 @@ fn merit(
 }
 
 /// Makes a motion slower until its torques keep to the share of the limits at every instant that is looked at.
-fn slow_down(
+pub(super) fn slow_down(
     model: &dyn Model,
     chi: &[f64],
     share: f64,

@@ -9,6 +9,8 @@ mod limits;
 mod motion;
 mod point_to_point;
 mod settings;
+mod strokes;
+mod tell;
 #[cfg(test)]
 mod tests;
 
@@ -19,3 +21,4 @@ pub use limits::peak_torque_share;
 pub use motion::ExcitingMotion;
 pub use point_to_point::{PointToPointMotion, Profile};
 pub use settings::{ExcitationSettings, MotionKind};
+pub use tell::{TellError, TellPlan, TellSettings, Told, tell};

@@ -1,0 +1,152 @@
+//! Recordings judged against a model of the same robot from before it changed.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::sync::{Arc, LazyLock};
+
+use common::{Hidden, SimulatedRobot};
+use dynid_runtime::diagnosis::{Diagnosis, Reference, Settings, Silent, diagnose};
+use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
+use dynid_runtime::model::Model;
+use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, NamedParameter};
+use dynid_runtime::prediction::Errors;
+use dynid_runtime::recording::Trajectory;
+use dynid_runtime::simulation::World;
+
+/// Load friction of the first joint and a spring on the second, which the robot has from the start.
+const MU: f64 = 0.12;
+const STIFFNESS: f64 = 2.0;
+
+fn law(effect: EffectKind, joint: usize, shape: &[f64], amplitude: &[f64]) -> EffectTerm {
+    EffectTerm {
+        effect,
+        place: Place::Joint(joint),
+        joints: Vec::new(),
+        shape: shape.to_vec(),
+        amplitude: amplitude.to_vec(),
+        sigma: vec![0.0; amplitude.len()],
+        scale: Some(TermScale::UNIT),
+        wrenches: Vec::new(),
+    }
+}
+
+/// The robot with its own laws, its load friction being `mu`, and with what `more` adds.
+fn with_laws(mu: f64, more: impl Fn(&mut World<'_>) + 'static) -> Hidden {
+    Hidden::in_robot(move |world| {
+        world.put(&law(EffectKind::LoadDependentFriction, 0, &[], &[mu]));
+        world.put(&law(EffectKind::Spring, 1, &[], &[STIFFNESS, 0.0]));
+        more(world);
+    })
+}
+
+fn record(robot: &SimulatedRobot, hidden: &Hidden, seed: u64) -> Vec<Trajectory> {
+    robot.record(&robot.motions(3, 4.5, seed), hidden, seed)
+}
+
+fn settings(reference: Option<Reference>) -> Settings {
+    let mut settings = Settings::default();
+    settings.threads = 1;
+    settings.reference = reference.map(Arc::new);
+    settings
+}
+
+/// The robot, and what a diagnosis says of it before anything changes.
+static BEFORE: LazyLock<(SimulatedRobot, Diagnosis)> = LazyLock::new(|| {
+    let robot = common::planar();
+    let recording = record(&robot, &with_laws(MU, |_| ()), 1);
+    let found = diagnose(&robot.model, &recording, &[], &settings(None), &Silent).unwrap();
+    (robot, found)
+});
+
+fn against(reference: Reference, hidden: &Hidden) -> Diagnosis {
+    let recording = record(&BEFORE.0, hidden, 7);
+    let found = diagnose(&BEFORE.0.model, &recording, &[], &settings(Some(reference)), &Silent).unwrap();
+    for f in &found.findings {
+        eprintln!("{} {:?} {:?}", f.effect, f.joints, f.parameters);
+    }
+    found
+}
+
+fn reference() -> Reference {
+    Reference::of(&BEFORE.1).unwrap()
+}
+
+fn named(diagnosis: &Diagnosis) -> Vec<(&str, &[usize])> {
+    diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.as_slice())).collect()
+}
+
+#[test]
+fn laws_that_the_reference_has_stand_and_are_no_news() {
+    let mut before = named(&BEFORE.1);
+    before.sort_unstable();
+    assert_eq!(before, [("load_dependent_friction", &[1][..]), ("spring", &[2][..])]);
+    let found = against(reference(), &with_laws(MU, |_| ()));
+    assert_eq!(named(&found), []);
+    let mut standing: Vec<_> = found.standing.iter().map(|s| (s.effect.as_str(), s.joints.clone())).collect();
+    standing.sort_unstable();
+    assert_eq!(standing, [("load_dependent_friction", vec![1]), ("spring", vec![2])]);
+    // They stay part of the model.
+    assert_eq!(found.terms().len(), 2);
+}
+
+#[test]
+fn of_a_law_that_changed_the_change_is_told() {
+    let found = against(reference(), &with_laws(MU + 0.08, |_| ()));
+    assert_eq!(named(&found), [("load_dependent_friction", &[1][..])]);
+    let mu = &found.findings[0].parameters["mu"];
+    assert!((mu.value - 0.08).abs() < 4.0 * mu.sigma + 0.005, "{mu:?}");
+}
+
+#[test]
+fn a_law_that_came_is_told_and_a_body_is_weighed() {
+    let stribeck = |world: &mut World<'_>| world.put(&law(EffectKind::Stribeck, 1, &[0.3], &[2.0]));
+    assert_eq!(named(&against(reference(), &with_laws(MU, stribeck))), [("stribeck", &[2][..])]);
+    let (mass, x): (f64, f64) = (0.3, 0.4);
+    let about = mass * x * x;
+    let inertial = [0.0, 0.0, 0.0, about, 0.0, about, mass * x, 0.0, 0.0, mass];
+    let body =
+        EffectTerm { place: Place::Link(1), scale: None, ..law(EffectKind::Payload, 1, &[], &inertial) };
+    let found = against(reference(), &with_laws(MU, move |world| world.put(&body)));
+    assert_eq!(named(&found), [("payload", &[][..])]);
+    let weighed = &found.findings[0].parameters["mass"];
+    assert!((weighed.value - mass).abs() < 4.0 * weighed.sigma, "{weighed:?}");
+}
+
+#[test]
+fn a_file_with_standard_deviations_alone_still_is_a_reference_and_that_is_said() {
+    let found = &BEFORE.1;
+    let robot = BEFORE.0.model.robot();
+    let named_parameters = robot.base.iter().enumerate().map(|(k, base)| NamedParameter {
+        name: base.name.to_string(),
+        value: found.model.chi[k],
+        sigma: Some(found.model.sigma[k]),
+        relative_sigma_percent: None,
+        doubt: None,
+        sigma_white: None,
+        correction: None,
+        sigma_blocks: None,
+        unit: base.unit.to_string(),
+    });
+    let rows = EvaluatedRows {
+        samples: 1,
+        rows_left_out: None,
+        equations: Vec::new(),
+        band: 20.0,
+        errors: Errors { relative_error: None, per_joint: vec![None; 2] },
+        noise: None,
+    };
+    let mut saved = Identified {
+        effects: found.terms(),
+        ..Identified::with_parameters(robot, "planar", "diagnosis", rows, named_parameters.collect())
+    };
+    let alone = saved.reference(robot).unwrap();
+    assert!(alone.is_diagonal());
+    let told = against(alone, &with_laws(MU, |_| ()));
+    assert!(told.findings.is_empty());
+    assert!(told.verdict.iter().any(|line| line.contains("no covariance")), "{:?}", told.verdict);
+    // With the covariance of its file it is the model itself.
+    let amplitudes: Vec<usize> = found.terms().iter().map(|t| t.amplitude.len()).collect();
+    saved.covariance = Covariance::new(robot, &amplitudes, found.covariance.clone().unwrap());
+    assert_eq!(saved.reference(robot).unwrap(), reference());
+}
