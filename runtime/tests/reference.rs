@@ -138,6 +138,7 @@ fn a_file_with_standard_deviations_alone_still_is_a_reference_and_that_is_said()
     };
     let mut saved = Identified {
         effects: found.terms(),
+        delay: found.delay,
         ..Identified::with_parameters(robot, "planar", "diagnosis", rows, named_parameters.collect())
     };
     let alone = saved.reference(robot).unwrap();

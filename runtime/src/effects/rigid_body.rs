@@ -52,13 +52,15 @@ impl BodyEstimate {
 }
 
 impl BodyEstimate {
-    /// The quantities a person knows; `sigma` are standard deviations of the ten parameters.
+    /// The quantities a person knows; `sigma` are standard deviations of the ten parameters, infinite where one is not
+    /// determined.
     ///
     /// Where the mass is not known to be there, its centre means nothing: what the joint about the link's z axis, number
     /// `axis`, feels of the body is then told, its first moment about that axis and its moment of inertia.
     pub fn parameters(&self, sigma: &[f64], axis: Option<usize>) -> Vec<Parameter> {
-        let s = |k: usize| sigma.get(k).copied().unwrap_or(0.0);
-        if let Some(axis) = axis.filter(|_| s(9) >= self.mass.abs()) {
+        let undetermined = sigma.get(9).is_some_and(|s| *s >= self.mass.abs());
+        let s = |k: usize| sigma.get(k).copied().filter(|s| s.is_finite()).unwrap_or(0.0);
+        if let Some(axis) = axis.filter(|_| undetermined) {
             let [x, y, _] = self.moment;
             let moment = x.hypot(y);
             let spread = (x * s(6)).hypot(y * s(7)) / moment.max(1e-12);

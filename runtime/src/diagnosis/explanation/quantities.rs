@@ -119,11 +119,13 @@ pub(in crate::diagnosis) fn quantified(
 /// joint that carries it.
 fn body(model: &ExtendedModel<'_>, term: &Accepted, fitted: Vec<f64>, sigma: Vec<f64>) -> Quantified {
     let amplitude = body::of_term(model, term).map_or(fitted, |(body, _)| body.parameters.to_vec());
+    // A column that is nothing says nothing of its amplitude.
+    let shown: Vec<f64> = sigma.iter().map(|s| if *s > 0.0 { *s } else { f64::INFINITY }).collect();
     let robot = model.context.model.robot();
     let carrier = term.place.link().and_then(|frame| robot.joint_of_frame().get(frame).copied().flatten());
     let axis = carrier.map(|j| robot.joint_number(JointIndex(j)).0);
     let slack = 3.0 * sigma.iter().take(6).fold(0.0_f64, |a, b| a.max(*b));
-    let parameters = BodyEstimate::from_parameters(&amplitude, slack).parameters(&sigma, axis);
+    let parameters = BodyEstimate::from_parameters(&amplitude, slack).parameters(&shown, axis);
     Quantified { parameters, amplitude, sigma }
 }
 

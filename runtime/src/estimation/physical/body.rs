@@ -10,6 +10,16 @@ const FLOOR: f64 = 1.0;
 /// What the information matrix has added on its diagonal, relative to its largest entry there, so that it has a root.
 const RIDGE: f64 = 1e-14;
 
+/// Cost, in standard deviations, of the least mass that a body with the first and second moments can have: so little that it
+/// decides only where the mass does not show.
+const LIGHTER: f64 = 0.1;
+
+/// Least mass of a body within reach that has these first moments, or moments of inertia, kg.
+fn lightest(numbers: &DVector<f64>, reach: f64) -> f64 {
+    let first = numbers.rows(6, 3).norm() / reach;
+    [0, 3, 5].into_iter().fold(first, |most, k| most.max(numbers[k] / (reach * reach)))
+}
+
 /// A body and what it costs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearestBody {
@@ -39,7 +49,7 @@ pub fn nearest_body(
     let unit = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
     let scaled = DMatrix::from_fn(10, 10, |i, k| information[(i, k)] * unit(scale[i]) * unit(scale[k]));
     let eigen = scaled.symmetric_eigen();
-    let mut g = DMatrix::<f64>::zeros(11, 10);
+    let mut g = DMatrix::<f64>::zeros(12, 10);
     for (i, &value) in eigen.eigenvalues.iter().enumerate() {
         let root = value.max(RIDGE).sqrt();
         for k in 0..10 {
@@ -48,6 +58,11 @@ pub fn nearest_body(
     }
     let mut y = &g * numbers;
     y[10] = (10.0 * FLOOR).sqrt();
+    // Of bodies that do as well the lighter one.
+    let lightest = lightest(numbers, reach.unwrap_or(1.0));
+    if lightest > 0.0 {
+        (g[(11, 9)], y[11]) = (LIGHTER / lightest, 0.0);
+    }
     let mut start = DVector::zeros(10);
     let near = reach.map_or(1.0, |r| r * r);
     for (place, value) in [(0, 0.1 * near), (3, 0.1 * near), (5, 0.1 * near), (9, 1.0)] {
@@ -121,5 +136,7 @@ mod tests {
         (numbers[6], numbers[7]) = (0.3, -0.1);
         let found = nearest_body(&information, &numbers, Some(0.8)).expect("there are many");
         assert!(found.cost < 0.5 && found.parameters[9] > 0.3, "{found:?}");
+        // The mass is not made up: it is about the least that such a body has.
+        assert!(found.parameters[9] < 5.0, "{found:?}");
     }
 }
