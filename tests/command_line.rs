@@ -322,3 +322,42 @@ fn a_reader_that_goes_away_is_no_failure() {
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success(), "{}", error_of(&output));
 }
+
+#[test]
+fn a_motion_that_tells_laws_apart_is_written_with_how_far_it_puts_them() {
+    let folder = Folder::new("tell");
+    let words = ["excite", "planar_2r", "--tell", "stribeck,presliding_hysteresis", "--joint", "1", "--out", "m"];
+    let said = words_of(&folder.run(&words));
+    for part in ["Stribeck", "an ordinary exciting motion", "least", "multiples of the noise"] {
+        assert!(said.contains(part), "'{part}' is not in: {said}");
+    }
+    let plan = std::fs::read_to_string(folder.path("m/motions.yaml")).unwrap();
+    assert!(plan.contains("motion1.csv"), "{plan}");
+    let with = |tell: &str, joint: &str| {
+        folder.run(&["excite", "planar_2r", "--tell", tell, "--joint", joint, "--out", "n"])
+    };
+    assert_refused(&with("stribeck,nothing", "1"), 2, &["nothing", "catalogue"]);
+    assert_refused(&with("stribeck", "1"), 2, &["two laws"]);
+    assert_refused(&with("stribeck,payload", "1"), 2, &["payload", "no law of that joint"]);
+    assert_refused(&with("stribeck,spring", "7"), 2, &["--joint 7"]);
+}
+
+#[test]
+fn a_saved_model_is_a_reference_and_one_of_another_table_is_refused() {
+    let folder = Folder::new("reference");
+    folder.write("motion.csv", &moving(1500)).write("arm.yaml", ARM);
+    folder.write("recording.yaml", &MANIFEST.replace("planar_2r", "./arm.yaml"));
+    let saved = folder.run(&["identify", "recording.yaml", "--out", "m.json"]);
+    assert_eq!(saved.status.code(), Some(0), "{}", error_of(&saved));
+    let model: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path("m.json")).unwrap()).unwrap();
+    let count = model["covariance"]["of"].as_array().unwrap().len();
+    assert_eq!(count, model["base_parameters"].as_array().unwrap().len());
+    assert_eq!(model["covariance"]["upper"].as_array().unwrap().len(), count * (count + 1) / 2);
+    let against = folder.run(&["diagnose", "recording.yaml", "--reference", "m.json", "--json", "d.json"]);
+    let said = words_of(&against) + &error_of(&against);
+    assert!(said.contains("Compared with a model"), "{said}");
+    folder.write("arm.yaml", &ARM.replace("l1: 0.5", "l1: 0.7"));
+    let other = folder.run(&["diagnose", "recording.yaml", "--reference", "m.json"]);
+    assert_refused(&other, 2, &["m.json", "0.5", "0.7"]);
+}

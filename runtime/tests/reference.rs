@@ -1,6 +1,7 @@
 //! Recordings judged against a model of the same robot from before it changed.
 #![allow(clippy::unwrap_used)]
 
+#[allow(dead_code, unused_imports, reason = "every test program uses its own part")]
 mod common;
 
 use std::sync::{Arc, LazyLock};

@@ -104,17 +104,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         forward: simulated(&measured, &diagnosis, arguments.closed_loop),
         joints: (0..model.robot().joints()).map(|j| joint_number(model.robot(), j)).collect(),
     };
+    hand_out(arguments, &measured, &diagnosis, &extras)
+}
+
+/// Prints, and writes what was asked for.
+fn hand_out(
+    arguments: &Arguments,
+    measured: &Measured,
+    diagnosis: &Diagnosis,
+    extras: &Extras,
+) -> Result<(), Failure> {
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        print(&summary(&measured, &diagnosis, &extras));
+        print(&summary(measured, diagnosis, extras));
     }
     if let Some(path) = &arguments.json {
-        write_json(path, &for_programs(&diagnosis, &extras)?)?;
+        write_json(path, &for_programs(diagnosis, extras)?)?;
     }
     if let Some(path) = &arguments.out {
-        write_json(path, &improved(&measured, &diagnosis, &extras))?;
+        write_json(path, &improved(measured, diagnosis, extras))?;
     }
     if let Some(path) = &arguments.report {
-        write(path, &page(&measured.title, &diagnosis, &extras, &left_out_words(&measured.rows)))?;
+        write(path, &page(&measured.title, diagnosis, extras, &left_out_words(&measured.rows)))?;
     }
     Ok(())
 }

@@ -80,7 +80,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(&summary(&recorded, &identified, &estimate, arguments));
     }
     if let Some(path) = &arguments.json {
-        write_json(path, &identified)?;
+        // A triangle of numbers that only a saved model is asked for.
+        write_json(path, &Identified { covariance: None, ..identified.clone() })?;
     }
     if let Some(path) = &arguments.out {
         write_json(path, &identified)?;

@@ -220,6 +220,7 @@ impl Identified {
             band: rows.band,
             noise: rows.noise,
             simulated: None,
+            covariance: None,
             ..self.clone()
         }
     }

@@ -112,14 +112,13 @@ pub(in crate::diagnosis) fn not_judged(joints: &[NotJudged]) -> Option<String> {
 
 /// What a comparison with a reference rests on.
 pub(in crate::diagnosis) fn of_reference(is_diagonal: bool) -> String {
-    let mut text = "Compared with a model: a change is judged against how much this recording varies from stretch to                     stretch; how much the robot differs from day to day no model tells."
-        .to_owned();
-    if is_diagonal {
-        text.push_str(
-            " The model's file has no covariance of all of its numbers: those are taken to vary by themselves, so that              less of a change shows.",
-        );
+    let judged = "Compared with a model: a change is judged against how much this recording varies from stretch to stretch";
+    let text = format!("{judged}; how much the robot differs from day to day no model tells.");
+    if !is_diagonal {
+        return text;
     }
-    text
+    let alone = "Its file has no covariance of all of its numbers: those are taken to vary by themselves";
+    format!("{text} {alone}, so that less of a change shows.")
 }
 
 /// Where what is missing lies, where nothing names it.

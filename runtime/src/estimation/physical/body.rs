@@ -41,7 +41,8 @@ pub fn nearest_body(
     reach: Option<f64>,
 ) -> Option<NearestBody> {
     let largest = information.diagonal().max();
-    if information.nrows() != 10 || numbers.len() != 10 || !(largest > 0.0) || !largest.is_finite() {
+    let is_positive = largest > 0.0 && largest.is_finite();
+    if information.nrows() != 10 || numbers.len() != 10 || !is_positive {
         return None;
     }
     // Equations with this information: a root of it, of unit diagonal because units differ by orders of magnitude.
