@@ -27,7 +27,7 @@ fn stribeck_friction_raises_the_level_of_both_directions_and_fades_with_speed() 
     let world = World::from_base(&model, &chi).with(&terms);
     let torques = world.torques(&chi, "");
     let level = |dq: f64| {
-        let at = Instant { time: 0.0, q: &[0.3], dq: &[dq], load: &[0.0] };
+        let at = Instant { time: 0.0, q: &[0.3], dq: &[dq], load: &[0.0], link: &[0.0], gravity: &[0.0] };
         let mut levels = [[0.0; 2]];
         torques[0].dry_friction(&at, &mut levels);
         levels[0]
@@ -44,7 +44,7 @@ fn friction_that_bends_upwards_or_takes_off_does_not_hold_a_joint_at_rest() {
         let terms = [term(EffectKind::NonlinearViscous, Place::Joint(0), &[power], &[f])];
         let world = World::from_base(&model, &chi).with(&terms);
         let torques = world.torques(&chi, "");
-        let at = Instant { time: 0.0, q: &[0.3], dq: &[-0.5], load: &[0.0] };
+        let at = Instant { time: 0.0, q: &[0.3], dq: &[-0.5], load: &[0.0], link: &[0.0], gravity: &[0.0] };
         let (mut torque, mut levels) = ([0.0], [[0.0; 2]]);
         torques[0].torque(&at, &mut torque);
         torques[0].dry_friction(&at, &mut levels);

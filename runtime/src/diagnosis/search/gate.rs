@@ -16,9 +16,9 @@ use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 use std::sync::OnceLock;
 
-/// Whether a law is a number of the model that changes with time, on one joint.
+/// Whether a law is a number of the model that changes with time, of one joint or of all.
 fn is_trend(candidate: &Candidate) -> bool {
-    candidate.effect.properties().abscissa == Abscissa::Time && candidate.own.len() == 1
+    candidate.effect.properties().abscissa == Abscissa::Time
 }
 
 /// What a law's evidence and size say.
@@ -148,7 +148,7 @@ impl Search<'_> {
             columns,
             residual,
             common: self.model.change && properties.standing_friction,
-            trend_of: if is_trend(candidate) { LEVELS } else { 0 },
+            trend_of: if is_trend(candidate) && candidate.own.len() == 1 { LEVELS } else { 0 },
         }
     }
 
