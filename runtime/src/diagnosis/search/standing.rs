@@ -41,6 +41,8 @@ impl Search<'_> {
         let mut rivals: Vec<usize> = (0..ranked.len())
             .filter(|&k| ranked[k].window == window && ranked[k].verdict.gain > COMPARABLE * gain)
             .filter(|&k| self.of(&ranked[k]).1.own != law.own)
+            // What would itself not be named beside a simpler law is no rival of others.
+            .filter(|&k| self.is_told_from_simpler(round, ranked, k, least_confidence))
             .collect();
         rivals.sort_by(|&a, &b| ranked[b].verdict.gain.total_cmp(&ranked[a].verdict.gain));
         rivals.truncate(MOST_COMPARED);

@@ -1,7 +1,8 @@
 //! A torque constant that fades as a motor warms up: the recorded torque grows by a factor that changes with time.
 //!
 //! Magnets and windings follow their temperature, which approaches its end as 1 - exp(-t / T); where T is longer than the
-//! recording, that is a line. Friction that changes with time leaves what inertia and gravity ask for as it is.
+//! recording, that is a line. A constant that is wrong from the start does not change, and friction that changes with time
+//! leaves what inertia and gravity ask for as it is: only what neither of them explains is this.
 
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
@@ -26,7 +27,10 @@ const PROPERTIES: Properties = Properties {
     follows_parameters: true,
     repeats: false,
     special_case: Some(SpecialCase {
-        effects: &[&super::friction_drift::FrictionDrift],
+        effects: &[
+            &super::torque_constant_error::TorqueConstantError,
+            &super::friction_drift::FrictionDrift,
+        ],
         told_by: ToldBy::Certainty,
     }),
     abscissa: Abscissa::Time,
