@@ -20,7 +20,7 @@ pub(super) enum GearLoad {
 
 /// Shapes to try, the usual load in the middle.
 pub(super) fn shapes() -> Vec<Vec<f64>> {
-    vec![vec![0.0], Vec::new(), vec![1.0]]
+    [GearLoad::Gravity, GearLoad::Whole, GearLoad::Links].map(GearLoad::shape).to_vec()
 }
 
 impl GearLoad {
@@ -30,6 +30,15 @@ impl GearLoad {
             None => Self::Whole,
             Some(x) if *x < 0.5 => Self::Gravity,
             Some(_) => Self::Links,
+        }
+    }
+
+    /// The shape that means it.
+    pub(super) fn shape(self) -> Vec<f64> {
+        match self {
+            Self::Gravity => vec![0.0],
+            Self::Whole => Vec::new(),
+            Self::Links => vec![1.0],
         }
     }
 

@@ -59,11 +59,13 @@ pub(in crate::diagnosis) struct Gate {
     pub left: Vec<f64>,
 }
 
-/// What a round has worked out: evidence of the model as it is on the rows of each window, and of each candidate.
+/// What a round has worked out at one level: evidence of the model as it is on the rows of each window, and of each candidate.
 pub(in crate::diagnosis) struct RoundEvidence {
     slow: OnceLock<Background>,
     fast: OnceLock<Background>,
     gates: Vec<OnceLock<Option<Gate>>>,
+    /// Whether each is told from the simpler laws that it must be told from.
+    pub(super) told: Vec<OnceLock<bool>>,
 }
 
 impl RoundEvidence {
@@ -73,6 +75,7 @@ impl RoundEvidence {
             slow: OnceLock::new(),
             fast: OnceLock::new(),
             gates: (0..candidates).map(|_| OnceLock::new()).collect(),
+            told: (0..candidates).map(|_| OnceLock::new()).collect(),
         }
     }
 

@@ -87,16 +87,18 @@ impl Search<'_> {
             return true;
         }
         let Some(own) = self.gate(round, ranked, candidate) else { return false };
-        law.effect.special_cases().all(|simpler| {
-            let is_simpler = |r: &&Ranked| {
-                let other = self.of(r).1;
-                let within = other.own.iter().all(|j| law.own.contains(j));
-                r.window == ranked[candidate].window && other.effect == simpler && within
-            };
-            let columns: Vec<Vec<f64>> =
-                ranked.iter().filter(is_simpler).flat_map(|r| self.columns(r)).collect();
-            columns.is_empty()
-                || self.certain_beside(round, &ranked[candidate], own, &columns, least_confidence)
+        *round.told[candidate].get_or_init(|| {
+            law.effect.special_cases().all(|simpler| {
+                let is_simpler = |r: &&Ranked| {
+                    let other = self.of(r).1;
+                    let within = other.own.iter().all(|j| law.own.contains(j));
+                    r.window == ranked[candidate].window && other.effect == simpler && within
+                };
+                let columns: Vec<Vec<f64>> =
+                    ranked.iter().filter(is_simpler).flat_map(|r| self.columns(r)).collect();
+                columns.is_empty()
+                    || self.certain_beside(round, &ranked[candidate], own, &columns, least_confidence)
+            })
         })
     }
 

@@ -4,7 +4,7 @@
 //! drives it. Coulomb friction that grows with the load is the case of equal losses, a wrong torque constant that of
 //! opposite ones; only what neither of them explains is this.
 
-use crate::effects::gear_load::{self, GearLoad};
+use crate::effects::gear_load::GearLoad;
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, SpecialCase, Step, ToldBy, Words,
@@ -80,8 +80,9 @@ impl JointLaw for DriveEfficiency {
         2
     }
 
+    /// A rotor is in front of the gear: its inertia is no load of it.
     fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
-        gear_load::shapes()
+        [GearLoad::Gravity, GearLoad::Links].map(GearLoad::shape).to_vec()
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
@@ -126,11 +127,11 @@ mod tests {
     #[test]
     fn equal_losses_are_friction_that_grows_with_the_load() {
         for (load, sign) in [(3.0, 1.0), (3.0, -1.0), (-2.0, 1.0), (-2.0, -1.0)] {
-            let at = At { load, sign, ..At::default() };
+            let at = At { link: load, sign, ..At::default() };
             let (mut own, mut friction) = ([0.0; 2], [0.0]);
-            DriveEfficiency.law(&super::super::PLAIN, &[], &at, 0.0, &mut own);
+            DriveEfficiency.law(&super::super::PLAIN, &[1.0], &at, 0.0, &mut own);
             let simpler = super::super::load_dependent_friction::LoadDependentFriction;
-            simpler.law(&super::super::PLAIN, &[], &at, 0.0, &mut friction);
+            simpler.law(&super::super::PLAIN, &[1.0], &at, 0.0, &mut friction);
             assert_eq!(own[0] + own[1], friction[0]);
             assert_eq!((own[0] - own[1]).abs(), load.abs(), "opposite ones are a factor on the load");
         }

@@ -27,10 +27,7 @@ const PROPERTIES: Properties = Properties {
     follows_parameters: true,
     repeats: false,
     special_case: Some(SpecialCase {
-        effects: &[
-            &super::torque_constant_error::TorqueConstantError,
-            &super::friction_drift::FrictionDrift,
-        ],
+        effects: &[&super::torque_constant_error::TorqueConstantError, &super::friction_drift::FrictionDrift],
         told_by: ToldBy::Certainty,
     }),
     abscissa: Abscissa::Time,
@@ -39,7 +36,7 @@ const PROPERTIES: Properties = Properties {
 };
 
 /// Time constants to try, in durations of the recording. With the last one a hundredth is not told from a line.
-const TIMES: [f64; 4] = [0.15, 0.4, 1.0, 20.0];
+const TIMES: [f64; 3] = [0.2, 0.7, 20.0];
 
 /// In durations of the recording: what takes longer is told as a line.
 const LINE: f64 = 5.0;
@@ -108,7 +105,7 @@ impl JointLaw for TorqueConstantDrift {
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
-        vec![Step::Times(1.6), Step::Keep]
+        vec![Step::Times(1.8), Step::Keep]
     }
 
     fn only_positive(&self) -> bool {
