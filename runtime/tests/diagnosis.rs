@@ -329,7 +329,7 @@ fn a_torque_channel_that_hears_a_neighbour_is_named_with_it() {
 fn a_motor_that_droops_beyond_a_knee_is_named_with_the_knee() {
     let robot = planar();
     // Half of the torque that the joint needs at most, beyond which the motor gives less than its current says.
-    const KNEE: f64 = 45.0;
+    const KNEE: f64 = 24.0;
     let clipped = |motion: &mut Trajectory| {
         for x in &mut motion.torque[0] {
             *x *= 1.0 + 0.3 * (x.abs() - KNEE).max(0.0) / KNEE;

@@ -71,7 +71,7 @@ fn a_body_on_a_link_becomes_part_of_chi() {
 
 #[test]
 fn a_joint_that_hears_another_has_a_part_of_its_torque() {
-    let (model, chi, _) = arm();
+    let (model, chi) = arm();
     let n = model.robot().joints();
     let terms = [term(EffectKind::TorqueCrosstalk, Place::Hears(0, 1), &[], &[0.1])];
     let world = World::from_base(&model, &chi).with(&terms);
@@ -91,7 +91,7 @@ fn a_joint_that_hears_another_has_a_part_of_its_torque() {
 
 #[test]
 fn a_law_of_all_joints_is_in_each_of_them() {
-    let (model, chi, _) = arm();
+    let (model, chi) = arm();
     let common = [term(EffectKind::TorqueConstantDrift, Place::Robot, &[3.0, 9.0], &[0.1])];
     let world = World::from_base(&model, &chi).with(&common);
     assert_eq!(world.torques(&chi, "").len(), model.robot().joints());
