@@ -332,7 +332,7 @@ fn a_motor_that_droops_beyond_a_knee_is_named_with_the_knee() {
     const KNEE: f64 = 24.0;
     let clipped = |motion: &mut Trajectory| {
         for x in &mut motion.torque[0] {
-            *x *= 1.0 + 0.3 * (x.abs() - KNEE).max(0.0) / KNEE;
+            *x *= 1.0 + 0.1 * (x.abs() - KNEE).max(0.0) / KNEE;
         }
     };
     let diagnosis = diagnosed(robot, &Hidden::in_recording(clipped));

@@ -86,12 +86,12 @@ impl JointLaw for TorqueSaturation {
         // Beyond a knee the droop grows with the torque.
         let bent = |p: f64| vec![p];
         let beyond = |knee: f64| vec![2.0, knee];
-        vec![bent(2.0), beyond(0.4), beyond(0.6), bent(3.0), beyond(0.8), bent(5.0)]
+        vec![bent(2.0), beyond(0.35), beyond(0.5), bent(3.0), beyond(0.65), beyond(0.8), bent(5.0)]
     }
 
     /// Exponents between those of the grid are not told apart.
     fn steps(&self, _: &Scale) -> Vec<Step> {
-        vec![Step::Keep, Step::Times(1.2)]
+        vec![Step::Keep, Step::Times(1.15)]
     }
 
     fn only_positive(&self) -> bool {
