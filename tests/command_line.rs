@@ -326,7 +326,8 @@ fn a_reader_that_goes_away_is_no_failure() {
 #[test]
 fn a_motion_that_tells_laws_apart_is_written_with_how_far_it_puts_them() {
     let folder = Folder::new("tell");
-    let words = ["excite", "planar_2r", "--tell", "stribeck,presliding_hysteresis", "--joint", "1", "--out", "m"];
+    let words =
+        ["excite", "planar_2r", "--tell", "stribeck,presliding_hysteresis", "--joint", "1", "--out", "m"];
     let said = words_of(&folder.run(&words));
     for part in ["Stribeck", "an ordinary exciting motion", "least", "multiples of the noise"] {
         assert!(said.contains(part), "'{part}' is not in: {said}");

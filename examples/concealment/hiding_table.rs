@@ -43,7 +43,7 @@ fn nowhere(
 }
 
 /// How each of them is hidden.
-pub const TABLE: [Hiding; 25] = [
+pub const TABLE: [Hiding; 28] = [
     law(EffectKind::Stribeck, "extra level at rest, of the dry friction", 0.3, 2.0, |world, model, s, m| {
         let joint = Joint::of(model, s);
         let (level, vs) = (m * joint.friction, s.between(0, 0.03, 0.12) * joint.speed);
@@ -66,6 +66,13 @@ pub const TABLE: [Hiding; 25] = [
     law(EffectKind::LoadDependentFriction, "mu", 0.05, 0.3, |world, model, s, m| {
         world.put(&Joint::of(model, s).term(s, Vec::new(), vec![m]));
         Ok(vec![("mu", m)])
+    }),
+    // One of the losses is small beside the other: equal ones are friction that grows with the load.
+    law(EffectKind::DriveEfficiency, "the larger loss, of the load", 0.2, 0.6, |world, model, s, m| {
+        let less = m * s.between(1, 0.0, 0.4);
+        let [driving, driven] = if s.chance[0] < 0.5 { [m, less] } else { [less, m] };
+        world.put(&Joint::of(model, s).term(s, vec![1.0], vec![driving, driven]));
+        Ok(vec![("efficiency_driving", 1.0 / (1.0 + driving)), ("efficiency_driven", 1.0 - driven)])
     }),
     law(
         EffectKind::PositionDependentFriction,
@@ -197,11 +204,49 @@ pub const TABLE: [Hiding; 25] = [
             [0.06, 0.4],
             places::every,
             // The drive reports current times its constant: more than the torque where the constant droops. The motor
-            // is the same in every motion: what it gives at a torque does not depend on how far the motion goes.
+            // is the same in every motion: what it gives at a torque does not depend on how far the motion goes. The
+            // droop bends from the start, or begins at a knee.
             |motion, s, size| {
+                let knee = s.between(1, 0.4, 0.7);
                 for x in &mut motion.torque[s.joint.unwrap_or(0)] {
-                    *x += size * s.most_torque * (*x / s.most_torque.max(1e-9)).powi(3);
+                    let part = *x / s.most_torque.max(1e-9);
+                    let droop = if s.chance[0] < 0.5 {
+                        part.powi(2)
+                    } else {
+                        (part.abs() - knee).max(0.0) / (1.0 - knee)
+                    };
+                    *x += size * droop * *x;
                 }
+            },
+        )
+    },
+    // On one joint, or on all.
+    recorded(
+        EffectKind::TorqueConstantDrift,
+        "change of the torque constant in 10 s",
+        [0.05, 0.5],
+        places::every,
+        |motion, s, size| {
+            let tau = s.between(1, 3.0, 60.0);
+            let gone = |t: f64| -(-t / tau).exp_m1();
+            let factor = |t: f64| 1.0 + size * gone(t) / gone(10.0);
+            let warm = |j: usize| s.chance[0] < 0.5 || s.joint == Some(j);
+            for (_, torque) in motion.torque.iter_mut().enumerate().filter(|(j, _)| warm(*j)) {
+                torque.iter_mut().zip(&motion.time).for_each(|(x, t)| *x *= factor(*t));
+            }
+        },
+    ),
+    Hiding {
+        put: |_, _, s, m| Ok(vec![("k", m), ("heard_joint", (outside::other(s) + 1) as f64)]),
+        ..recorded(
+            EffectKind::TorqueCrosstalk,
+            "part of the neighbour's torque",
+            [0.03, 0.3],
+            places::every,
+            |motion, s, size| {
+                let heard = motion.torque[outside::other(s)].clone();
+                let own = &mut motion.torque[s.joint.unwrap_or(0)];
+                own.iter_mut().zip(heard).for_each(|(x, heard)| *x += size * heard);
             },
         )
     },
@@ -265,7 +310,7 @@ pub const TABLE: [Hiding; 25] = [
             push,
         )
     },
-    // Physics outside of the catalogue: crosstalk, a cable over two joints and the like.
+    // Physics outside of the catalogue: a cable over two joints and the like.
     recorded(
         EffectKind::FreeForm,
         "torque, of the largest of the joint",

@@ -9,8 +9,6 @@ use crate::secret::Secret;
 /// What is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outside {
-    /// The torque channel hears that of another joint.
-    Crosstalk,
     /// Friction that depends on the angle of another joint.
     FrictionByAnother,
     /// A cable over two joints, which pulls on both.
@@ -22,15 +20,14 @@ pub enum Outside {
 impl Outside {
     /// What a secret hides.
     pub fn of(secret: &Secret) -> Self {
-        let all = [Self::Crosstalk, Self::FrictionByAnother, Self::Cable, Self::Bump];
-        all[(4.0 * secret.chance[0]) as usize % 4]
+        let all = [Self::FrictionByAnother, Self::Cable, Self::Bump];
+        all[(3.0 * secret.chance[0]) as usize % 3]
     }
 
     /// What a person would call it, and what a diagnosis that has no law for it would rightly say.
     pub fn described(self, secret: &Secret) -> Described {
         let (own, other) = (secret.joint.unwrap_or(0) + 1, other(secret) + 1);
         let (what, must, may) = match self {
-            Self::Crosstalk => ("crosstalk", vec![format!("torque{other}")], vec![format!("dq{other}")]),
             Self::FrictionByAnother => {
                 ("friction by another angle", vec![format!("q{other}"), format!("dq{own}")], Vec::new())
             }
@@ -70,7 +67,7 @@ pub fn other(secret: &Secret) -> usize {
     secret.joint.filter(|j| *j > 0).map_or(1, |j| j - 1)
 }
 
-/// Adds it to a recording; `size` in units of the joint's largest torque, of crosstalk in those of what is heard.
+/// Adds it to a recording; `size` in units of the joint's largest torque.
 pub fn distort(motion: &mut Trajectory, secret: &Secret, size: f64) {
     let (own, other) = (secret.joint.unwrap_or(0), other(secret));
     let level = size * secret.most_torque;
@@ -78,7 +75,6 @@ pub fn distort(motion: &mut Trajectory, secret: &Secret, size: f64) {
     for t in 0..motion.time.len() {
         let [here, there] = [own, other].map(|j| motion.position[j][t]);
         motion.torque[own][t] += match Outside::of(secret) {
-            Outside::Crosstalk => size * motion.torque[other][t],
             Outside::FrictionByAnother => {
                 let (order, phase) = (secret.between(1, 1.5, 2.5), secret.between(2, 0.0, 6.0));
                 level * sign[t] * (order * there + phase).cos()

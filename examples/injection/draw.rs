@@ -22,7 +22,7 @@ pub fn draw(
     let shapes = effect.form().shapes(place, &scales);
     let shape = shapes.get(random.below(shapes.len()))?.clone();
     let amplitude = match effect.form() {
-        Form::Joint(law) => {
+        Form::Joint(law) | Form::Heard(law) => {
             let signed = |x: f64| if law.only_positive() { x } else { 2.0 * x - 1.0 };
             (0..law.amplitudes(&shape)).map(|_| signed(random.share())).collect()
         }
@@ -30,7 +30,7 @@ pub fn draw(
         Form::Sensitivity(_) | Form::Coupled => vec![if random.share() < 0.5 { -1.0 } else { 1.0 }],
         Form::Compliance(_) | Form::Window | Form::Free => return None,
     };
-    let scale = place.joint().and_then(|j| scales.get(j)).map(|s| TermScale::from(*s));
+    let scale = place.law_of().and_then(|j| scales.get(j)).map(|s| TermScale::from(*s));
     let numbers = effect.form().named_joints(robot, place);
     let sigma = vec![0.0; amplitude.len()];
     Some(EffectTerm {

@@ -283,6 +283,65 @@ fn a_torque_constant_that_is_wrong_since_the_baseline_is_named() {
     assert_factor(&diagnosis, "factor", 1.1);
 }
 
+#[test]
+fn friction_that_grows_with_the_weight_alone_is_told_as_that() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::LoadDependentFriction, Place::Joint(0), &[0.0], &[0.15]);
+    let diagnosis = diagnosed(robot, &hidden);
+    assert_only(&diagnosis, EffectKind::LoadDependentFriction, &[1]);
+    assert_factor(&diagnosis, "mu", 0.15);
+    assert!(diagnosis.findings[0].parameters.contains_key("load_of_gravity_alone"));
+}
+
+#[test]
+fn losses_that_differ_by_direction_are_an_efficiency_and_equal_ones_are_friction() {
+    let robot = planar();
+    let hidden =
+        |losses: &[f64]| Hidden::effect(EffectKind::DriveEfficiency, Place::Joint(0), &[1.0], losses);
+    let diagnosis = diagnosed(robot, &hidden(&[0.3, 0.05]));
+    assert_only(&diagnosis, EffectKind::DriveEfficiency, &[1]);
+    assert_factor(&diagnosis, "efficiency_driving", 1.0 / 1.3);
+    assert_factor(&diagnosis, "efficiency_driven", 0.95);
+    let diagnosis = diagnosed(robot, &hidden(&[0.15, 0.15]));
+    assert_only(&diagnosis, EffectKind::LoadDependentFriction, &[1]);
+}
+
+#[test]
+fn motors_that_warm_up_together_are_one_drift_of_the_whole_robot() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::TorqueConstantDrift, Place::Robot, &[3.0, LENGTH], &[0.15]);
+    let diagnosis = diagnosed(robot, &hidden);
+    assert_only(&diagnosis, EffectKind::TorqueConstantDrift, &[]);
+    assert_factor(&diagnosis, "factor_at_end", 1.15);
+}
+
+#[test]
+fn a_torque_channel_that_hears_a_neighbour_is_named_with_it() {
+    let robot = planar();
+    let hidden = Hidden::effect(EffectKind::TorqueCrosstalk, Place::Hears(1, 0), &[], &[0.1]);
+    let diagnosis = diagnosed(robot, &hidden);
+    assert_only(&diagnosis, EffectKind::TorqueCrosstalk, &[2]);
+    assert_factor(&diagnosis, "k", 0.1);
+    assert_eq!(diagnosis.findings[0].parameters["heard_joint"].value, 1.0);
+}
+
+#[test]
+fn a_motor_that_droops_beyond_a_knee_is_named_with_the_knee() {
+    let robot = planar();
+    // Half of the torque that the joint needs at most, beyond which the motor gives less than its current says.
+    const KNEE: f64 = 24.0;
+    let clipped = |motion: &mut Trajectory| {
+        for x in &mut motion.torque[0] {
+            *x *= 1.0 + 0.1 * (x.abs() - KNEE).max(0.0) / KNEE;
+        }
+    };
+    let diagnosis = diagnosed(robot, &Hidden::in_recording(clipped));
+    assert_only(&diagnosis, EffectKind::TorqueSaturation, &[1]);
+    let found = &diagnosis.findings[0].parameters;
+    let knee = found["knee"].value * found["most_torque"].value;
+    assert!((knee / KNEE - 1.0).abs() < 0.15, "{knee}");
+}
+
 /// The two are one on a planar arm: of what is not estimated, only the length between the axes ties inertia to gravity.
 #[test]
 fn a_wrong_time_base_that_no_motion_tells_from_a_wrong_length_is_named_with_it() {

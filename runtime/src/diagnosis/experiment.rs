@@ -128,17 +128,19 @@ pub fn distances(question: &Question<'_>, motion: &Motion) -> Result<Distances, 
     let truths: Vec<Vec<f64>> = question.laws.iter().map(on_rows).collect();
     let laws = question.laws.iter().enumerate();
     let apart = laws.map(|(a, law)| {
-        let of = |(b, rival): (usize, &EffectTerm)| match rival.effect.special_case() {
-            Some(special) if a != b && special == law.effect => Ok(None),
-            _ if a == b => left(&mut design.clone(), &sigma, &truths[a], &[]).map(Some),
-            _ => {
-                let grid = rival.effect.form().shapes(rival.place, &context.scales);
-                let rivals: Vec<Vec<Vec<f64>>> = grid
-                    .iter()
-                    .map(|shape| dense_columns(&context, &design, rival.effect, rival.place, shape, false))
-                    .collect();
-                left(&mut design.clone(), &sigma, &truths[a], &rivals).map(Some)
+        let of = |(b, rival): (usize, &EffectTerm)| {
+            if a == b {
+                return left(&mut design.clone(), &sigma, &truths[a], &[]).map(Some);
             }
+            if rival.effect.special_cases().any(|simpler| simpler == law.effect) {
+                return Ok(None);
+            }
+            let grid = rival.effect.form().shapes(rival.place, &context.scales);
+            let rivals: Vec<Vec<Vec<f64>>> = grid
+                .iter()
+                .map(|shape| dense_columns(&context, &design, rival.effect, rival.place, shape, false))
+                .collect();
+            left(&mut design.clone(), &sigma, &truths[a], &rivals).map(Some)
         };
         question.laws.iter().enumerate().map(of).collect()
     });

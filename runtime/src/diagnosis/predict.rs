@@ -4,7 +4,7 @@ use super::error::DiagnosisError;
 use super::rows::context::Context;
 use super::rows::scales::scales;
 use super::rows::signals::Signals;
-use crate::effects::{EffectTerm, Place, Scale};
+use crate::effects::{EffectTerm, Scale};
 use crate::model::Model;
 use crate::signal::Motion;
 
@@ -50,7 +50,7 @@ pub(super) fn torques_on(
     }
     let mut context = Context::new(model, signals, scales(model, signals, chi), chi.to_vec())?;
     for term in terms.iter().filter(|t| t.distortion().is_none()) {
-        if let (Place::Joint(j), Some(scale)) = (term.place, term.scale)
+        if let (Some(j), Some(scale)) = (term.place.law_of(), term.scale)
             && j < n
         {
             context.scales[j] = scale.into();

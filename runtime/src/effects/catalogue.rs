@@ -35,6 +35,18 @@ macro_rules! catalogue {
     };
 }
 
+/// A joint of which every scale is one.
+#[cfg(test)]
+const PLAIN: super::Scale = super::Scale {
+    speed: 1.0,
+    range: 1.0,
+    centre: 0.0,
+    torque: 1.0,
+    duration: 1.0,
+    gear: 1.0,
+    prismatic: false,
+};
+
 catalogue! {
     stribeck: Stribeck,
     nonlinear_viscous: NonlinearViscous,
@@ -51,7 +63,10 @@ catalogue! {
     added_mass: AddedMass,
     base_tilt: BaseTilt,
     coupled_transmission: CoupledTransmission,
+    drive_efficiency: DriveEfficiency,
     torque_constant_error: TorqueConstantError,
+    torque_constant_drift: TorqueConstantDrift,
+    torque_crosstalk: TorqueCrosstalk,
     torque_saturation: TorqueSaturation,
     joint_elasticity: JointElasticity,
     backlash: Backlash,
@@ -94,8 +109,9 @@ impl EffectKind {
         self.properties().sought == Sought::OnlyAgainstBaseline
     }
 
-    /// Its nested special case (backlash with zero gap is elasticity).
-    pub fn special_case(self) -> Option<Self> {
-        self.properties().special_case.and_then(|case| Self::from_id(case.effect.words().id))
+    /// The simpler laws that it must be told from (backlash with zero gap is elasticity).
+    pub fn special_cases(self) -> impl Iterator<Item = Self> {
+        let effects = self.properties().special_case.map_or(&[][..], |case| case.effects);
+        effects.iter().filter_map(|effect| Self::from_id(effect.words().id))
     }
 }

@@ -30,9 +30,13 @@ fn everywhere(kind: EffectKind) -> Vec<(Place, Vec<Scale>, Vec<Vec<f64>>)> {
 fn made_up(kind: EffectKind, place: Place, shape: &[f64]) -> Quantities {
     let (a, s) = (vec![0.5; 16], vec![0.01; 16]);
     Quantities::new(match kind.form() {
-        Form::Joint(law) => {
+        Form::Joint(law) | Form::Heard(law) => {
             let count = law.amplitudes(shape);
-            law.parameters(&SCALE, shape, &a[..count], &s[..count])
+            let mut list = law.parameters(&SCALE, shape, &a[..count], &s[..count]);
+            if place.hears().is_some() {
+                list.push(Parameter::new(HEARD_JOINT, 2.0, 0.0, "1"));
+            }
+            list
         }
         Form::Sensitivity(law) => {
             let variants = law.variants(&robot());
@@ -84,10 +88,14 @@ fn every_effect_has_all_of_its_words() {
 #[test]
 fn a_special_case_is_another_effect_of_the_catalogue_that_is_not_made_special_by_it() {
     for kind in EffectKind::ALL {
-        assert_eq!(kind.special_case().is_some(), kind.properties().special_case.is_some(), "{kind:?}");
-        if let Some(simpler) = kind.special_case() {
+        assert_eq!(
+            kind.special_cases().count(),
+            kind.properties().special_case.map_or(0, |c| c.effects.len()),
+            "{kind:?}"
+        );
+        for simpler in kind.special_cases() {
             assert_ne!(simpler, kind);
-            assert_ne!(simpler.special_case(), Some(kind));
+            assert!(simpler.special_cases().all(|s| s != kind));
         }
     }
 }
@@ -149,9 +157,19 @@ fn sentences_and_formulas_have_all_of_their_numbers() {
 
 #[test]
 fn every_law_of_a_joint_fills_its_columns() {
-    let at = At { time: 0.7, q: 0.4, dq: 1.1, sign: 1.0, load: 9.0, torque: 12.0, friction: 2.0 };
+    let at = At {
+        time: 0.7,
+        q: 0.4,
+        dq: 1.1,
+        sign: 1.0,
+        load: 9.0,
+        link: 8.0,
+        gravity: 5.0,
+        torque: 12.0,
+        friction: 2.0,
+    };
     for kind in EffectKind::ALL {
-        let Form::Joint(law) = kind.form() else { continue };
+        let (Form::Joint(law) | Form::Heard(law)) = kind.form() else { continue };
         for shape in law.shapes(&SCALE) {
             let mut out = vec![f64::NAN; law.amplitudes(&shape)];
             law.law(&SCALE, &shape, &at, 0.5, &mut out);

@@ -30,7 +30,22 @@ impl EffectTerm {
             }
         }
         match self.effect.form() {
-            Form::Joint(law) => self.check_law(law, robot),
+            Form::Joint(law) => {
+                if !(law.may_be_common() && self.place == Place::Robot) {
+                    self.check_joint(robot)?;
+                }
+                self.check_law(law)
+            }
+            Form::Heard(law) => {
+                let n = robot.joints();
+                let Place::Hears(a, b) = self.place else {
+                    return self.wrong_place("joint that hears another");
+                };
+                if a >= n || b >= n || a == b {
+                    return wrong("place.hears", format!("[{a}, {b}]: two different ones of 0 to {}", n - 1));
+                }
+                self.check_law(law)
+            }
             Form::Compliance(law) => {
                 self.check_joint(robot)?;
                 self.check_shape(&law.shapes().iter().map(|s| s.len()).collect::<Vec<_>>())?;
@@ -73,8 +88,7 @@ impl EffectTerm {
     }
 
     /// A law of a joint: its shape is one that the law offers, and its torque is finite.
-    fn check_law(&self, law: &dyn JointLaw, robot: &Robot) -> Result<(), TermError> {
-        self.check_joint(robot)?;
+    fn check_law(&self, law: &dyn JointLaw) -> Result<(), TermError> {
         let lengths: Vec<usize> = law.shapes(&WIDE).iter().map(Vec::len).collect();
         self.check_shape(&lengths)?;
         self.check_amplitudes(&[law.amplitudes(&self.shape)])?;

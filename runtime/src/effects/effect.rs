@@ -55,8 +55,7 @@ pub struct Properties {
     pub follows_parameters: bool,
     /// Whether it may be found more than once at the same place, with other shapes.
     pub repeats: bool,
-    /// The nested special case: what it comes back to where its own number vanishes. It must explain clearly more
-    /// than that one to be named.
+    /// The simpler laws that it must be told from to be named: its nested special case, or what imitates it.
     pub special_case: Option<SpecialCase>,
     /// What it is drawn over.
     pub abscissa: Abscissa,
@@ -68,13 +67,22 @@ pub struct Properties {
     pub standing_friction: bool,
 }
 
-/// What an effect comes back to where its own number vanishes.
+/// What an effect comes back to where its own number vanishes, or simpler laws that come close to it.
 #[derive(Clone, Copy)]
 pub struct SpecialCase {
-    /// The simpler effect.
-    pub effect: &'static dyn Effect,
-    /// It is named instead where it makes this part of the gain.
-    pub suffices: f64,
+    /// The simpler effects.
+    pub effects: &'static [&'static dyn Effect],
+    /// What it must do to be named instead of them.
+    pub told_by: ToldBy,
+}
+
+/// How an effect is told from simpler ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ToldBy {
+    /// Each of the simpler ones at its place makes less than this part of its gain.
+    Gain(f64),
+    /// What it has beyond each of the simpler ones, on all of its joints at once, is as certain as a law must be.
+    Certainty,
 }
 
 /// How much rows are smoothed.
@@ -124,6 +132,8 @@ pub enum Abscissa {
     Load,
     /// Torque of the standard model.
     ModelTorque,
+    /// The same of the joint that it feels.
+    HeardTorque,
     /// Time in the motion.
     Time,
     /// Distance since the joint last reversed.
@@ -146,6 +156,8 @@ impl Abscissa {
             (Self::Load, true) => "load, N",
             (Self::ModelTorque, false) => "model torque, N.m",
             (Self::ModelTorque, true) => "model force, N",
+            (Self::HeardTorque, false) => "model torque of the other joint, N.m",
+            (Self::HeardTorque, true) => "model force of the other joint, N",
             (Self::Time, _) => "time, s",
             (Self::SinceReversal, false) => "distance since reversal, rad",
             (Self::SinceReversal, true) => "distance since reversal, m",

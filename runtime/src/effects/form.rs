@@ -14,6 +14,8 @@ use crate::model::Robot;
 pub enum Form {
     /// A law of one joint.
     Joint(&'static dyn JointLaw),
+    /// A law of one joint that its neighbour feels.
+    Heard(&'static dyn JointLaw),
     /// A derivative of the model with respect to one of its own numbers.
     Sensitivity(&'static dyn Sensitivity),
     /// A compliant or loose transmission.
@@ -33,7 +35,12 @@ impl Form {
     pub fn places(self, robot: &Robot) -> Vec<Place> {
         let n = robot.joints();
         match self {
-            Self::Joint(_) | Self::Compliance(_) => (0..n).map(Place::Joint).collect(),
+            Self::Joint(law) => {
+                let common = (law.may_be_common() && n > 1).then_some(Place::Robot);
+                (0..n).map(Place::Joint).chain(common).collect()
+            }
+            Self::Heard(_) => (1..n).flat_map(|j| [Place::Hears(j, j - 1), Place::Hears(j - 1, j)]).collect(),
+            Self::Compliance(_) => (0..n).map(Place::Joint).collect(),
             Self::Sensitivity(law) => {
                 let count = if law.together() { 1 } else { law.variants(robot).len() };
                 (0..count).map(Place::Variant).collect()
@@ -47,8 +54,8 @@ impl Form {
     /// Shapes to try at a place; `scales` are those of the joints.
     pub fn shapes(self, place: Place, scales: &[Scale]) -> Vec<Vec<f64>> {
         match self {
-            Self::Joint(law) => {
-                place.joint().and_then(|j| scales.get(j)).map_or_else(Vec::new, |scale| law.shapes(scale))
+            Self::Joint(law) | Self::Heard(law) => {
+                place.law_of().and_then(|j| scales.get(j)).map_or_else(Vec::new, |scale| law.shapes(scale))
             }
             Self::Compliance(law) => law.shapes().iter().map(|s| s.to_vec()).collect(),
             Self::Coupled => CoupledRotor::RATIOS.iter().map(|&ratio| vec![ratio]).collect(),
@@ -61,7 +68,8 @@ impl Form {
     pub fn shapes_of_orders(self, orders: &[f64]) -> Vec<Vec<f64>> {
         match self {
             Self::Joint(law) => law.shapes_of_orders(orders),
-            Self::Sensitivity(_)
+            Self::Heard(_)
+            | Self::Sensitivity(_)
             | Self::Compliance(_)
             | Self::Body(_)
             | Self::Coupled
@@ -73,7 +81,7 @@ impl Form {
     /// How shapes between those of a grid are searched at a place.
     pub fn shape_search(self, place: Place, scales: &[Scale], grid: &[&[f64]]) -> ShapeSearch {
         match self {
-            Self::Joint(law) => match place.joint().and_then(|j| scales.get(j)) {
+            Self::Joint(law) | Self::Heard(law) => match place.law_of().and_then(|j| scales.get(j)) {
                 Some(scale) => ShapeSearch::within_a_step_of(grid, law.steps(scale)),
                 None => ShapeSearch::none(),
             },
@@ -88,6 +96,7 @@ impl Form {
         match self {
             Self::Compliance(_) => Some(1.0),
             Self::Joint(_)
+            | Self::Heard(_)
             | Self::Sensitivity(_)
             | Self::Body(_)
             | Self::Coupled
@@ -99,7 +108,7 @@ impl Form {
     /// Whether a negative amplitude is something else.
     pub fn only_positive(self) -> bool {
         match self {
-            Self::Joint(law) => law.only_positive(),
+            Self::Joint(law) | Self::Heard(law) => law.only_positive(),
             Self::Sensitivity(_)
             | Self::Compliance(_)
             | Self::Body(_)
@@ -115,6 +124,7 @@ impl Form {
         match self {
             Self::Sensitivity(_) => true,
             Self::Joint(_)
+            | Self::Heard(_)
             | Self::Compliance(_)
             | Self::Body(_)
             | Self::Coupled
@@ -133,6 +143,7 @@ impl Form {
         match self {
             Self::Compliance(_) => true,
             Self::Joint(_)
+            | Self::Heard(_)
             | Self::Sensitivity(_)
             | Self::Body(_)
             | Self::Coupled
@@ -145,6 +156,7 @@ impl Form {
     pub fn named_joints(self, robot: &Robot, place: Place) -> Vec<usize> {
         match self {
             Self::Joint(_) | Self::Compliance(_) | Self::Free => place.joint().into_iter().collect(),
+            Self::Heard(_) => place.hears().map(|[own, _]| own).into_iter().collect(),
             Self::Coupled => place.pair().into_iter().flatten().collect(),
             Self::Sensitivity(law) if law.together() => Vec::new(),
             Self::Sensitivity(law) => {

@@ -51,8 +51,12 @@ pub struct At {
     pub dq: f64,
     /// Direction of motion: -1 or 1; at rest the direction that is asked about.
     pub sign: f64,
-    /// Torque transmitted to the links: inertia and gravity, no friction.
+    /// Torque of inertia and gravity, that of the joint's own rotor included, no friction.
     pub load: f64,
+    /// The same without the rotor, where its inertia is a parameter of its own: what passes through the gear.
+    pub link: f64,
+    /// What of it gravity asks for: the load of a motion that is infinitely slow.
+    pub gravity: f64,
     /// Torque of the standard model.
     pub torque: f64,
     /// Viscous and Coulomb friction of the standard model.
@@ -85,6 +89,17 @@ pub trait JointLaw: Sync {
         Vec::new()
     }
 
+    /// Whether all joints may have it together with the same numbers: what it is about is the robot's, as the temperature
+    /// of its drives.
+    fn may_be_common(&self) -> bool {
+        false
+    }
+
+    /// Whether a law of this shape looks at [`At::gravity`], which a simulation works out only where it is needed.
+    fn needs_gravity(&self, _shape: &[f64]) -> bool {
+        false
+    }
+
     /// How each number of the shape is varied between the values of the grid; empty where it is not.
     fn steps(&self, scale: &Scale) -> Vec<Step>;
 
@@ -110,6 +125,9 @@ pub trait JointLaw: Sync {
     /// Amplitudes and shape as the quantities a person knows: value, standard deviation (0 where unknown), unit.
     fn parameters(&self, scale: &Scale, shape: &[f64], amplitude: &[f64], sigma: &[f64]) -> Vec<Parameter>;
 }
+
+/// The quantity that says which joint another one feels, by its number.
+pub const HEARD_JOINT: &str = "heard_joint";
 
 /// `count` values from `low` to `high`, each a constant factor from the next.
 pub(in crate::effects) fn geometric(low: f64, high: f64, count: usize) -> Vec<f64> {

@@ -14,6 +14,8 @@ pub enum Place {
     Link(usize),
     /// Two joints, the second one's motor turning with both.
     Pair(usize, usize),
+    /// A joint, and the one whose torque it feels.
+    Hears(usize, usize),
     /// The whole robot.
     Robot,
 }
@@ -39,10 +41,25 @@ impl Place {
         if let Self::Pair(a, b) = self { Some([a, b]) } else { None }
     }
 
+    /// The joint that feels another one, and that one.
+    pub fn hears(self) -> Option<[usize; 2]> {
+        if let Self::Hears(a, b) = self { Some([a, b]) } else { None }
+    }
+
+    /// The joint whose state and scales a law of a joint at this place is made from: its own, the one that it feels, or
+    /// where all joints share a law, the first one for all.
+    pub fn law_of(self) -> Option<usize> {
+        match self {
+            Self::Joint(j) | Self::Hears(_, j) => Some(j),
+            Self::Robot => Some(0),
+            Self::Variant(_) | Self::Link(_) | Self::Pair(..) => None,
+        }
+    }
+
     /// Joints, of `count`, whose residual something at this place must explain a share of.
     pub fn joints(self, count: usize) -> Vec<usize> {
         match self {
-            Self::Joint(j) => vec![j],
+            Self::Joint(j) | Self::Hears(j, _) => vec![j],
             Self::Pair(a, b) => vec![a, b],
             Self::Variant(_) | Self::Link(_) | Self::Robot => (0..count).collect(),
         }

@@ -37,6 +37,7 @@ impl EffectTerm {
         match self.effect.form() {
             Form::Sensitivity(law) => law.in_recording(&self.amplitude),
             Form::Joint(_)
+            | Form::Heard(_)
             | Form::Compliance(_)
             | Form::Body(_)
             | Form::Coupled
@@ -55,6 +56,7 @@ impl EffectTerm {
                 Some((self.place.joint()?, known))
             }
             Form::Joint(_)
+            | Form::Heard(_)
             | Form::Sensitivity(_)
             | Form::Body(_)
             | Form::Coupled

@@ -62,6 +62,8 @@ fn model() -> Identified {
             term(EffectKind::JointElasticity, Place::Joint(0), &[8.0, 0.1, 0.2, 0.0], &[1e4, 2.0, 0.1, 0.0]),
             term(EffectKind::CoupledTransmission, Place::Pair(0, 1), &[0.5], &[1.0, 1.0, 1.0]),
             term(EffectKind::Payload, Place::Link(2), &[], &[0.0; 10]),
+            term(EffectKind::TorqueCrosstalk, Place::Hears(1, 0), &[], &[0.1]),
+            term(EffectKind::TorqueConstantDrift, Place::Robot, &[3.0, 9.0], &[0.1]),
         ],
         ..Identified::with_parameters(&robot, "crane", "diagnosis", rows, parameters)
     }
@@ -83,7 +85,7 @@ fn what_is_written_is_read_again() {
 #[test]
 fn no_field_that_cannot_be_is_believed() {
     let good: Value = serde_json::to_value(model()).unwrap();
-    let mutations: [(&str, Value, &str); 31] = [
+    let mutations: [(&str, Value, &str); 34] = [
         ("/effects/0/shape", json!([]), "effects[0].shape"),
         ("/effects/0/shape", json!([0.0]), "effects[0].shape"),
         ("/effects/0/shape", json!([0.1, 0.2]), "effects[0].shape"),
@@ -100,6 +102,9 @@ fn no_field_that_cannot_be_is_believed() {
         ("/effects/4/place", json!({"pair": [1, 1]}), "effects[4].place.pair"),
         ("/effects/4/shape", json!([]), "effects[4].shape"),
         ("/effects/5/place", json!({"link": 3}), "effects[5].place.link"),
+        ("/effects/6/place", json!({"hears": [1, 1]}), "effects[6].place.hears"),
+        ("/effects/6/place", json!({"joint": 0}), "effects[6].place"),
+        ("/effects/7/shape", json!([0.0, 9.0]), "effects[7].shape"),
         ("/effects/0/effect", json!("gremlins"), "gremlins"),
         ("/band", json!(0.0), "band"),
         ("/band", json!("wide"), "wide"),

@@ -4,10 +4,13 @@ use super::extra::{ExtraTorque, Instant};
 use crate::effects::{At, AtRest, EffectTerm, JointLaw, Scale};
 use crate::model::{ParameterKind, Robot};
 
-/// The law of one joint as a torque.
+/// The law of one joint as a torque of this joint, or of one that feels it.
 pub(super) struct EffectTorque {
     law: &'static dyn JointLaw,
+    /// The joint that it is a torque of.
     joint: usize,
+    /// The joint whose state it is made from.
+    of: usize,
     scale: Scale,
     shape: Vec<f64>,
     amplitude: Vec<f64>,
@@ -33,21 +36,23 @@ pub(super) fn friction(robot: &Robot, chi: &[f64], joint: usize) -> [f64; 3] {
 const MOST_COLUMNS: usize = 16;
 
 impl EffectTorque {
-    /// From a term that has the law's scales; `None` where it has none. `chi` are the robot's base parameters.
+    /// From a term that has the law's scales; `None` where it has none. `joints`: the one that it is a torque of, and the
+    /// one whose state it is made from; `chi` are the robot's base parameters.
     pub(super) fn new(
         robot: &Robot,
         chi: &[f64],
         law: &'static dyn JointLaw,
-        joint: usize,
+        [joint, of]: [usize; 2],
         term: &EffectTerm,
     ) -> Option<Self> {
         Some(Self {
             law,
             joint,
+            of,
             scale: term.scale?.into(),
             shape: term.shape.clone(),
             amplitude: term.amplitude.clone(),
-            friction: friction(robot, chi, joint),
+            friction: friction(robot, chi, of),
             memory: 0.0,
             last: None,
         })
@@ -59,16 +64,18 @@ impl EffectTorque {
 
     /// The torque if the joint moves in the direction `sign`.
     fn toward(&self, at: &Instant<'_>, sign: f64, memory: f64) -> f64 {
-        let dq = at.dq[self.joint];
-        let load = at.load[self.joint];
+        let dq = at.dq[self.of];
+        let load = at.load[self.of];
         let [fv, fc, off] = self.friction;
         let friction = fv * dq + fc * sign;
         let here = At {
             time: at.time,
-            q: at.q[self.joint],
+            q: at.q[self.of],
             dq,
             sign,
             load,
+            link: at.link[self.of],
+            gravity: at.gravity[self.of],
             torque: load + friction + off,
             friction,
         };
@@ -82,7 +89,7 @@ impl EffectTorque {
 impl ExtraTorque for EffectTorque {
     fn torque(&self, at: &Instant<'_>, out: &mut [f64]) {
         out[self.joint] += match self.at_rest() {
-            AtRest::Smooth => self.toward(at, if at.dq[self.joint] < 0.0 { -1.0 } else { 1.0 }, self.memory),
+            AtRest::Smooth => self.toward(at, if at.dq[self.of] < 0.0 { -1.0 } else { 1.0 }, self.memory),
             AtRest::Dry => 0.0,
             AtRest::BuildsUp => self.toward(at, 0.0, self.memory),
         };
@@ -102,8 +109,12 @@ impl ExtraTorque for EffectTorque {
         self.at_rest() != AtRest::Smooth
     }
 
+    fn needs_gravity(&self) -> bool {
+        self.law.needs_gravity(&self.shape)
+    }
+
     fn advance(&mut self, at: &Instant<'_>, _: f64) {
-        let q = at.q[self.joint];
+        let q = at.q[self.of];
         if let Some(last) = self.last {
             self.memory = self.law.advance(&self.shape, self.memory, q - last);
         }

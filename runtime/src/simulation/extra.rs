@@ -13,6 +13,10 @@ pub struct Instant<'a> {
     /// Torque that each joint transmits to the links (inertia and gravity, no friction) at the last step,
     /// N.m or N.
     pub load: &'a [f64],
+    /// The same without the rotors whose inertias are parameters of their own.
+    pub link: &'a [f64],
+    /// What of it gravity asks for; zero where no effect says that it needs it.
+    pub gravity: &'a [f64],
 }
 
 /// An effect in a simulated robot. Every method has a default that does nothing.
@@ -34,6 +38,11 @@ pub trait ExtraTorque: Send {
 
     /// Whether [`ExtraTorque::dry_friction`] is used.
     fn has_dry_friction(&self) -> bool {
+        false
+    }
+
+    /// Whether [`Instant::gravity`] is used.
+    fn needs_gravity(&self) -> bool {
         false
     }
 

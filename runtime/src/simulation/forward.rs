@@ -1,7 +1,6 @@
 //! Forward dynamics of a plant: which friction holds, and the accelerations that follow.
 
 use super::driven::Driven;
-use super::extra::Instant;
 use super::plant::Plant;
 use super::state::{Hold, State};
 use super::stiction::{self, Decision};
@@ -83,10 +82,10 @@ impl Plant<'_> {
         let n = self.joints;
         let work = &mut self.work;
         for j in 0..n {
-            work.motor_q[j] = q[self.motor[j]];
-            work.motor_dq[j] = dq[self.motor[j]];
+            work.seen.q[j] = q[self.motor[j]];
+            work.seen.dq[j] = dq[self.motor[j]];
         }
-        let at = Instant { time, q: &work.motor_q, dq: &work.motor_dq, load: &work.load };
+        let at = work.seen.at(time);
         work.extra.fill(0.0);
         work.joint_levels.fill([0.0; 2]);
         for effect in &self.effects {
@@ -196,7 +195,14 @@ impl Plant<'_> {
         );
         for j in 0..n {
             let inertial: f64 = (0..n).map(|s| work.link_mass[j * n + s] * ddq[s]).sum();
-            work.load[j] = work.link_bias[j] + inertial;
+            work.seen.load[j] = work.link_bias[j] + inertial;
+            let rotors: f64 = (0..n).map(|s| self.rotor_in_chi[j * n + s] * ddq[s]).sum();
+            work.seen.link[j] = work.seen.load[j] - rotors;
+        }
+        if self.effects.iter().any(|effect| effect.needs_gravity()) {
+            work.extra.fill(0.0);
+            let (rest, mass) = (&work.extra, &mut work.link_mass);
+            self.model.mass_and_bias(&self.chi, &state.q[..n], rest, mass, &mut work.seen.gravity);
         }
     }
 
@@ -207,10 +213,10 @@ impl Plant<'_> {
         }
         let work = &mut self.work;
         for j in 0..self.joints {
-            work.motor_q[j] = state.q[self.motor[j]];
-            work.motor_dq[j] = state.dq[self.motor[j]];
+            work.seen.q[j] = state.q[self.motor[j]];
+            work.seen.dq[j] = state.dq[self.motor[j]];
         }
-        let at = Instant { time: state.time, q: &work.motor_q, dq: &work.motor_dq, load: &work.load };
+        let at = work.seen.at(state.time);
         for effect in &mut self.effects {
             effect.advance(&at, step);
         }

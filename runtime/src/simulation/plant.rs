@@ -21,6 +21,8 @@ pub struct Plant<'m> {
     pub(super) motor: Vec<usize>,
     /// Rotor inertias where they are not part of chi (with elastic joints), n x n; else empty.
     pub(super) rotor: Vec<f64>,
+    /// What the rotors whose inertias are parameters of their own add to the mass matrix of chi, n x n.
+    pub(super) rotor_in_chi: Vec<f64>,
     pub(super) effects: Vec<Box<dyn ExtraTorque + 'm>>,
     pub(super) scheme: Scheme,
     pub(super) work: Work,
@@ -122,6 +124,15 @@ impl<'m> Plant<'m> {
         let friction = DriveFriction::new(robot, kept, &motor, every_joint)?;
         let work = Work::new(n, freedom, &friction.elements);
         let rotor = rotor.unwrap_or_default();
+        let joint_of = robot.joint_of_frame();
+        let mut inertia = vec![0.0; n];
+        for (parameter, value) in robot.base.iter().zip(&chi) {
+            let standard = &robot.standard[parameter.standard];
+            if let (ParameterKind::Ia, Some(j)) = (standard.kind, joint_of[standard.frame]) {
+                inertia[j] = *value;
+            }
+        }
+        let rotor_in_chi = rotor_matrix(robot, &inertia);
         Ok(Self {
             model,
             chi,
@@ -131,6 +142,7 @@ impl<'m> Plant<'m> {
             elastic,
             motor,
             rotor,
+            rotor_in_chi,
             effects,
             scheme: Scheme::default(),
             work,

@@ -1,6 +1,7 @@
 //! Memory of a simulated robot, allocated once.
 
 use super::drive::DryElement;
+use super::extra::Instant;
 use super::stiction::{Decision, StictionScratch};
 use super::stiff::Stiff;
 
@@ -21,13 +22,21 @@ pub(super) struct Work {
     pub(super) extra: Vec<f64>,
     pub(super) joint_levels: Vec<[f64; 2]>,
     pub(super) levels: Vec<[f64; 2]>,
-    pub(super) motor_q: Vec<f64>,
-    pub(super) motor_dq: Vec<f64>,
-    pub(super) load: Vec<f64>,
+    pub(super) seen: Seen,
     pub(super) stages: Stages,
     pub(super) stiff: Stiff,
     pub(super) next_q: Vec<f64>,
     pub(super) next_dq: Vec<f64>,
+}
+
+/// What effects see, see [`Instant`].
+#[derive(Debug, Clone)]
+pub(super) struct Seen {
+    pub(super) q: Vec<f64>,
+    pub(super) dq: Vec<f64>,
+    pub(super) load: Vec<f64>,
+    pub(super) link: Vec<f64>,
+    pub(super) gravity: Vec<f64>,
 }
 
 impl Work {
@@ -48,14 +57,25 @@ impl Work {
             extra: vec![0.0; n],
             joint_levels: vec![[0.0; 2]; n],
             levels: friction.iter().map(|e| [e.level; 2]).collect(),
-            motor_q: vec![0.0; n],
-            motor_dq: vec![0.0; n],
-            load: vec![0.0; n],
+            seen: Seen {
+                q: vec![0.0; n],
+                dq: vec![0.0; n],
+                load: vec![0.0; n],
+                link: vec![0.0; n],
+                gravity: vec![0.0; n],
+            },
             stages: Stages::new(freedom),
             stiff: Stiff::new(freedom),
             next_q: vec![0.0; freedom],
             next_dq: vec![0.0; freedom],
         }
+    }
+}
+
+impl Seen {
+    /// At a time.
+    pub(super) fn at(&self, time: f64) -> Instant<'_> {
+        Instant { time, q: &self.q, dq: &self.dq, load: &self.load, link: &self.link, gravity: &self.gravity }
     }
 }
 

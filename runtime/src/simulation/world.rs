@@ -9,7 +9,7 @@ use super::free::FreeTorque;
 use super::less_friction::LessFriction;
 use super::plant::Plant;
 use super::push::Push;
-use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, FreeLaw, JointLaw};
+use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, FreeLaw, JointLaw, Place};
 use crate::model::{Model, ParameterKind, RecursiveModel, RecursiveModelError, Robot};
 
 /// What is known of the robot's numbers.
@@ -50,7 +50,8 @@ pub struct World<'m> {
     /// The robot with another table or another gravity.
     table: Option<RecursiveModel>,
     parameters: Parameters,
-    laws: Vec<(&'static dyn JointLaw, usize, EffectTerm)>,
+    /// Laws of a joint: the joint that each is a torque of, and the one whose state it is made from.
+    laws: Vec<(&'static dyn JointLaw, [usize; 2], EffectTerm)>,
     /// Laws over any variables, with their joints.
     free: Vec<(usize, EffectTerm)>,
     /// Elastic joints; the inertia of the rotor where base parameters do not tell it apart.
@@ -108,13 +109,13 @@ impl<'m> World<'m> {
     pub fn put(&mut self, term: &EffectTerm) {
         let n = self.nominal.robot().joints();
         let is_in = match term.effect.form() {
-            Form::Joint(law) => match term.place.joint().filter(|j| *j < n && term.scale.is_some()) {
-                Some(j) => {
-                    self.laws.push((law, j, term.clone()));
-                    true
-                }
-                None => false,
-            },
+            Form::Joint(law) if term.place == Place::Robot => {
+                let known = law.may_be_common() && term.scale.is_some();
+                self.laws.extend((0..n).filter(|_| known).map(|j| (law, [j, j], term.clone())));
+                known
+            }
+            Form::Joint(law) => self.put_law(law, term.place.joint().map(|j| [j, j]), term),
+            Form::Heard(law) => self.put_law(law, term.place.hears(), term),
             Form::Body(_) => term.place.link().is_some_and(|frame| self.put_body(frame, &term.amplitude)),
             Form::Compliance(_) => match term.transmission() {
                 Some((joint, t)) if joint < n && t.rotor > 0.0 => {
@@ -144,6 +145,14 @@ impl<'m> World<'m> {
         if !is_in {
             self.left_out.push(term.effect);
         }
+    }
+
+    /// Adds a law of a joint: of these two, the first has the torque, and the second the state that it is made from.
+    fn put_law(&mut self, law: &'static dyn JointLaw, joints: Option<[usize; 2]>, term: &EffectTerm) -> bool {
+        let n = self.nominal.robot().joints();
+        let joints = joints.filter(|both| both.iter().all(|j| *j < n) && term.scale.is_some());
+        self.laws.extend(joints.map(|joints| (law, joints, term.clone())));
+        joints.is_some()
     }
 
     /// Adds a joint's spring; its rotor is the one of the parameters.
@@ -241,8 +250,8 @@ impl<'m> World<'m> {
     pub(super) fn torques(&self, chi: &[f64], motion: &str) -> Vec<Box<dyn ExtraTorque + '_>> {
         let robot = self.model().robot();
         let mut torques: Vec<Box<dyn ExtraTorque + '_>> = Vec::new();
-        for (law, joint, term) in &self.laws {
-            if let Some(torque) = EffectTorque::new(robot, chi, *law, *joint, term) {
+        for (law, joints, term) in &self.laws {
+            if let Some(torque) = EffectTorque::new(robot, chi, *law, *joints, term) {
                 torques.push(Box::new(torque));
             }
         }

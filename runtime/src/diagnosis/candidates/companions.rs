@@ -4,7 +4,7 @@ use crate::diagnosis::candidates::nuisances::friction_columns;
 use crate::diagnosis::candidates::trial::columns;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::effects::{EffectKind, Place};
+use crate::effects::{EffectKind, Place, ToldBy};
 
 /// The first companions of a joint that are columns of its level of friction: viscous and Coulomb.
 pub(in crate::diagnosis) const LEVELS: usize = 2;
@@ -17,6 +17,10 @@ pub(in crate::diagnosis) fn companions(context: &Context<'_>, design: &Design) -
     let mut out: Vec<Vec<Vec<f64>>> = (0..design.joints).map(levels).collect();
     for effect in EffectKind::ALL {
         let form = effect.form();
+        // What must be told from simpler laws varies as they do, which would count twice.
+        if effect.properties().special_case.is_some_and(|case| case.told_by == ToldBy::Certainty) {
+            continue;
+        }
         for place in form.places(robot) {
             let Place::Joint(joint) = place else { continue };
             let shapes = form.shapes(place, &context.scales);

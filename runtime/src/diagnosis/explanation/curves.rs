@@ -23,6 +23,7 @@ fn abscissa(model: &ExtendedModel<'_>, joint: usize, term: &Accepted, r: &RowAt)
         Abscissa::Acceleration => s.ddq[joint][r.centre],
         Abscissa::Load => torques.rigid[joint][r.centre],
         Abscissa::ModelTorque => torques.total[joint][r.centre],
+        Abscissa::HeardTorque => torques.total[term.place.law_of().unwrap_or(joint)][r.centre],
         Abscissa::Time => s.time(r.centre),
         Abscissa::SinceReversal => since_reversal(s, joint, r.centre),
         Abscissa::WaveAngle => {

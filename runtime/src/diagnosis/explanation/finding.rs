@@ -101,7 +101,7 @@ fn with_amplitude(
         joints: named_on(model.context.model.robot(), accepted.effect, accepted.place),
         amplitude,
         sigma,
-        scale: accepted.place.joint().map(|j| model.context.scales[j].into()),
+        scale: accepted.place.law_of().map(|j| model.context.scales[j].into()),
         ..unit_term(accepted.effect, accepted.place, accepted.shape.clone())
     }
 }

@@ -9,7 +9,7 @@ use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, Parameter, Step};
+use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter, Step};
 use crate::model::JointIndex;
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
@@ -88,9 +88,14 @@ pub(in crate::diagnosis) fn quantified(
 ) -> Quantified {
     let context = &model.context;
     let parameters = match term.effect.form() {
-        Form::Joint(law) => term.place.joint().map(|j| {
+        Form::Joint(law) | Form::Heard(law) => term.place.law_of().map(|j| {
             let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, &amplitude, &sigma);
-            propagate(of, &term.shape, &shape_sigma)
+            let mut list = propagate(of, &term.shape, &shape_sigma);
+            if term.place.hears().is_some() {
+                let number = context.model.robot().joint_number(JointIndex(j)).0;
+                list.push(Parameter::new(HEARD_JOINT, number as f64, 0.0, "1"));
+            }
+            list
         }),
         Form::Compliance(law) => {
             if let Some(j) = term.place.joint() {

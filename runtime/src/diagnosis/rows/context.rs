@@ -34,6 +34,8 @@ pub(in crate::diagnosis) struct Context<'a> {
     pub scales: Vec<Scale>,
     pub chi: Vec<f64>,
     links: Vec<OnceLock<Links>>,
+    /// Torques of gravity, `[j][t]` of each motion.
+    gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
     inertias: Vec<OnceLock<[f64; 2]>>,
     /// Transmissions that are known in physical units, per joint.
     pub transmissions: Vec<(usize, Transmission)>,
@@ -59,6 +61,7 @@ impl<'a> Context<'a> {
             scales,
             chi,
             links: signals.iter().map(|_| OnceLock::new()).collect(),
+            gravity: signals.iter().map(|_| OnceLock::new()).collect(),
             inertias: (0..robot.joints()).map(|_| OnceLock::new()).collect(),
             transmissions: Vec::new(),
             reference: None,
@@ -74,6 +77,7 @@ impl<'a> Context<'a> {
     pub fn update(&mut self, chi: Vec<f64>) {
         self.torques = self.signals.iter().map(|s| ModelTorques::new(self.model, &chi, s)).collect();
         self.links = self.signals.iter().map(|_| OnceLock::new()).collect();
+        self.gravity = self.signals.iter().map(|_| OnceLock::new()).collect();
         self.inertias.iter_mut().for_each(|i| *i = OnceLock::new());
         self.chi = chi;
     }
@@ -85,8 +89,12 @@ impl<'a> Context<'a> {
     /// The columns of an effect in one motion, one per amplitude; none where the effect cannot be at the place.
     pub fn series(&self, signal: usize, effect: EffectKind, place: Place, shape: &[f64]) -> Vec<Series> {
         let columns = match effect.form() {
+            Form::Joint(law) if place == Place::Robot => Some(self.of_all_joints(signal, law, shape)),
             Form::Joint(law) => {
-                place.joint().map(|j| self.of_joint(signal, law, (j, &self.scales[j]), shape))
+                place.joint().map(|j| self.of_joint(signal, law, ([j, j], &self.scales[j]), shape))
+            }
+            Form::Heard(law) => {
+                place.hears().map(|[on, j]| self.of_joint(signal, law, ([on, j], &self.scales[j]), shape))
             }
             Form::Sensitivity(law) => place.variant().map(|v| self.derivatives(signal, law, v, shape)),
             Form::Compliance(_) => place.joint().map(|j| vec![self.compliant(signal, j, shape)]),
@@ -100,23 +108,45 @@ impl<'a> Context<'a> {
 
     /// The same of a law that is part of a model, with the scales that it was made with.
     pub fn series_of_term(&self, signal: usize, term: &EffectTerm) -> Vec<Series> {
-        match (term.effect.form(), term.place.joint(), term.scale) {
-            (Form::Joint(law), Some(j), Some(scale)) => {
-                self.of_joint(signal, law, (j, &scale.into()), &term.shape)
+        match (term.effect.form(), term.place, term.scale) {
+            (Form::Joint(law), Place::Joint(j), Some(scale)) => {
+                self.of_joint(signal, law, ([j, j], &scale.into()), &term.shape)
             }
+            (Form::Heard(law), place, Some(scale)) => place.hears().map_or_else(Vec::new, |joints| {
+                self.of_joint(signal, law, (joints, &scale.into()), &term.shape)
+            }),
             _ => self.series(signal, term.effect, term.place, &term.shape),
         }
     }
 
+    /// A law that all joints have together.
+    fn of_all_joints(&self, signal: usize, law: &dyn JointLaw, shape: &[f64]) -> Vec<Series> {
+        let mut columns: Vec<Series> = vec![Series::new(); law.amplitudes(shape)];
+        for (j, scale) in self.scales.iter().enumerate() {
+            for (all, own) in columns.iter_mut().zip(self.of_joint(signal, law, ([j, j], scale), shape)) {
+                all.extend(own);
+            }
+        }
+        columns
+    }
+
+    /// What gravity asks for in a motion, `[j][t]`.
+    fn gravity(&self, signal: usize) -> &[Vec<f64>] {
+        self.gravity[signal]
+            .get_or_init(|| ModelTorques::new(self.model, &self.chi, &self.signals[signal].at_rest()).link)
+    }
+
+    /// The law of joint `j` as a torque on joint `on`.
     fn of_joint(
         &self,
         signal: usize,
         law: &dyn JointLaw,
-        (j, scale): (usize, &Scale),
+        ([on, j], scale): ([usize; 2], &Scale),
         shape: &[f64],
     ) -> Vec<Series> {
         let s = &self.signals[signal];
         let torques = &self.torques[signal];
+        let gravity = law.needs_gravity(shape).then(|| &self.gravity(signal)[j]);
         let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
         let mut out = vec![0.0; columns.len()];
         let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));
@@ -130,6 +160,8 @@ impl<'a> Context<'a> {
                 dq,
                 sign: if dq > 0.0 { 1.0 } else { -1.0 },
                 load: torques.rigid[j][t],
+                link: torques.link[j][t],
+                gravity: gravity.map_or(0.0, |g| g[t]),
                 torque: torques.total[j][t],
                 friction: torques.friction[j][t],
             };
@@ -138,7 +170,7 @@ impl<'a> Context<'a> {
                 column[t] = value;
             }
         }
-        columns.into_iter().map(|c| vec![(j, c)]).collect()
+        columns.into_iter().map(|c| vec![(on, c)]).collect()
     }
 
     /// Derivatives with respect to the variant `v`, or to all together, on the way to the error `at`.

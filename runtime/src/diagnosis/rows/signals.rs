@@ -188,6 +188,12 @@ impl Signals {
         }
     }
 
+    /// The same positions, each reached infinitely slowly.
+    pub fn at_rest(&self) -> Self {
+        let still: Vec<Vec<f64>> = self.q.iter().map(|x| vec![0.0; x.len()]).collect();
+        Self::without_torque(&self.name, self.rate, self.start, [self.q.clone(), still.clone(), still])
+    }
+
     /// The torque of a joint as it was recorded, and the highest frequency that it holds, Hz: what is faster than the
     /// filter lets through still shows in it. Where samples are left out, what is fast would be folded into what is
     /// slow, and it is the filtered torque.
@@ -234,6 +240,8 @@ fn shifted(x: &[f64], samples: f64) -> Vec<f64> {
 pub(in crate::diagnosis) struct ModelTorques {
     /// Inertia, centrifugal, Coriolis, gravity, rotors.
     pub rigid: Vec<Vec<f64>>,
+    /// The same without the rotors whose inertias are parameters of their own.
+    pub link: Vec<Vec<f64>>,
     /// Viscous and Coulomb friction.
     pub friction: Vec<Vec<f64>>,
     /// Everything.
@@ -267,7 +275,7 @@ impl ModelTorques {
     pub fn new(model: &dyn Model, chi: &[f64], s: &Signals) -> Self {
         let n = s.q.len();
         let zero = || vec![vec![0.0; s.len()]; n];
-        let mut out = Self { rigid: zero(), friction: zero(), total: zero() };
+        let mut out = Self { rigid: zero(), link: zero(), friction: zero(), total: zero() };
         let kinds: Vec<ParameterKind> =
             model.robot().base.iter().map(|b| model.robot().standard[b.standard].kind).collect();
         let pattern = model.pattern().clone();
@@ -285,6 +293,11 @@ impl ModelTorques {
                     let values = &entries[e * BLOCK..e * BLOCK + count];
                     if let Some(part) = part {
                         for (o, v) in part[first..first + count].iter_mut().zip(values) {
+                            *o += v * chi[k];
+                        }
+                    }
+                    if kinds[k] <= ParameterKind::M {
+                        for (o, v) in out.link[j][first..first + count].iter_mut().zip(values) {
                             *o += v * chi[k];
                         }
                     }

@@ -16,9 +16,9 @@ use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow};
 use crate::parallel;
 use std::sync::OnceLock;
 
-/// Whether a law is a number of the model that changes with time, on one joint.
+/// Whether a law is a number of the model that changes with time, of one joint or of all.
 fn is_trend(candidate: &Candidate) -> bool {
-    candidate.effect.properties().abscissa == Abscissa::Time && candidate.own.len() == 1
+    candidate.effect.properties().abscissa == Abscissa::Time
 }
 
 /// What a law's evidence and size say.
@@ -59,11 +59,13 @@ pub(in crate::diagnosis) struct Gate {
     pub left: Vec<f64>,
 }
 
-/// What a round has worked out: evidence of the model as it is on the rows of each window, and of each candidate.
+/// What a round has worked out at one level: evidence of the model as it is on the rows of each window, and of each candidate.
 pub(in crate::diagnosis) struct RoundEvidence {
     slow: OnceLock<Background>,
     fast: OnceLock<Background>,
     gates: Vec<OnceLock<Option<Gate>>>,
+    /// Whether each is told from the simpler laws that it must be told from.
+    pub(super) told: Vec<OnceLock<bool>>,
 }
 
 impl RoundEvidence {
@@ -73,6 +75,7 @@ impl RoundEvidence {
             slow: OnceLock::new(),
             fast: OnceLock::new(),
             gates: (0..candidates).map(|_| OnceLock::new()).collect(),
+            told: (0..candidates).map(|_| OnceLock::new()).collect(),
         }
     }
 
@@ -148,7 +151,7 @@ impl Search<'_> {
             columns,
             residual,
             common: self.model.change && properties.standing_friction,
-            trend_of: if is_trend(candidate) { LEVELS } else { 0 },
+            trend_of: if is_trend(candidate) && candidate.own.len() == 1 { LEVELS } else { 0 },
         }
     }
 

@@ -14,7 +14,7 @@ use crate::diagnosis::search::standing::Standing;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Form, SmoothingWindow};
+use crate::effects::{Form, SmoothingWindow, ToldBy};
 use crate::parallel;
 
 /// How a candidate comes out of the gate.
@@ -106,6 +106,9 @@ impl Search<'_> {
         let gate = self.judged_by_gate(round, ranked, k, least);
         let Outcome::Passes { confidence, significance, inflation } = gate else { return Weight::Fails };
         let confidence = 1.0 - rounds * (1.0 - confidence);
+        if !self.is_told_from_simpler(round, ranked, k, least) {
+            return Weight::Fails;
+        }
         match self.standing(round, ranked, k, least) {
             Standing::Ahead => Weight::Named { confidence, significance, inflation },
             Standing::Tied(rival) => {
@@ -209,24 +212,27 @@ impl Search<'_> {
     /// tell whether it is mostly that case, they decide.
     fn nested_case_suffices(&self, ranked: &[Ranked], k: usize) -> bool {
         let (regression, more) = self.of(&ranked[k]);
-        let (Some(nested), Some(case)) = (more.effect.special_case(), more.effect.properties().special_case)
+        let Some(ToldBy::Gain(suffices)) = more.effect.properties().special_case.map(|case| case.told_by)
         else {
             return false;
         };
         let trial = &more.trials[ranked[k].verdict.trial];
         let amplitude = regression.fit.project_out(trial).and_then(|part| part.solve(more));
         let mostly = match (more.effect.form(), amplitude) {
-            (Form::Joint(law), Some((amplitude, _))) => law.is_mostly_special(amplitude.as_slice()),
+            (Form::Joint(law) | Form::Heard(law), Some((amplitude, _))) => {
+                law.is_mostly_special(amplitude.as_slice())
+            }
             _ => None,
         };
         let least = match mostly {
             Some(false) => return false,
             Some(true) => 0.0,
-            None => case.suffices * ranked[k].verdict.total(),
+            None => suffices * ranked[k].verdict.total(),
         };
         ranked.iter().any(|other| {
             let candidate = self.of(other).1;
-            candidate.effect == nested && candidate.place == more.place && other.verdict.total() > least
+            let nested = more.effect.special_cases().any(|nested| nested == candidate.effect);
+            nested && candidate.place == more.place && other.verdict.total() > least
         })
     }
 

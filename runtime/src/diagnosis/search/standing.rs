@@ -5,6 +5,7 @@ use crate::diagnosis::rules::{COMPARABLE, MOST_COMPARED, TOLD_APART};
 use crate::diagnosis::search::gate::{Gate, RoundEvidence};
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
+use crate::effects::ToldBy;
 use crate::parallel;
 
 /// How a candidate stands against rivals at other places.
@@ -40,6 +41,8 @@ impl Search<'_> {
         let mut rivals: Vec<usize> = (0..ranked.len())
             .filter(|&k| ranked[k].window == window && ranked[k].verdict.gain > COMPARABLE * gain)
             .filter(|&k| self.of(&ranked[k]).1.own != law.own)
+            // What would itself not be named beside a simpler law is no rival of others.
+            .filter(|&k| self.is_told_from_simpler(round, ranked, k, least_confidence))
             .collect();
         rivals.sort_by(|&a, &b| ranked[b].verdict.gain.total_cmp(&ranked[a].verdict.gain));
         rivals.truncate(MOST_COMPARED);
@@ -49,7 +52,13 @@ impl Search<'_> {
             let Some(other) = self.gate(round, ranked, rivals[r]) else { return Standing::Ahead };
             let ahead = worth(&own.calibrated) - worth(&other.calibrated);
             if rival_p_value(&own.calibrated, &other.calibrated, ahead) <= TOLD_APART
-                || self.certain_beside(round, &ranked[candidate], own, &ranked[rivals[r]], least_confidence)
+                || self.certain_beside(
+                    round,
+                    &ranked[candidate],
+                    own,
+                    &self.columns(&ranked[rivals[r]]),
+                    least_confidence,
+                )
             {
                 Standing::Ahead
             } else if ahead < -penalty {
@@ -64,21 +73,49 @@ impl Search<'_> {
         standings.into_iter().rfind(|s| *s != Standing::Ahead).unwrap_or(Standing::Ahead)
     }
 
-    /// Whether a candidate is certain beside a rival, too.
+    /// Whether what a candidate has beyond each of the simpler laws that it must be told from is certain, on all of its
+    /// joints at once: at equal evidence the simpler law is named.
+    pub(in crate::diagnosis) fn is_told_from_simpler(
+        &self,
+        round: &RoundEvidence,
+        ranked: &[Ranked],
+        candidate: usize,
+        least_confidence: f64,
+    ) -> bool {
+        let law = self.of(&ranked[candidate]).1;
+        if law.effect.properties().special_case.is_none_or(|case| case.told_by != ToldBy::Certainty) {
+            return true;
+        }
+        let Some(own) = self.gate(round, ranked, candidate) else { return false };
+        *round.told[candidate].get_or_init(|| {
+            law.effect.special_cases().all(|simpler| {
+                let is_simpler = |r: &&Ranked| {
+                    let other = self.of(r).1;
+                    let within = other.own.iter().all(|j| law.own.contains(j));
+                    r.window == ranked[candidate].window && other.effect == simpler && within
+                };
+                let columns: Vec<Vec<f64>> =
+                    ranked.iter().filter(is_simpler).flat_map(|r| self.columns(r)).collect();
+                columns.is_empty()
+                    || self.certain_beside(round, &ranked[candidate], own, &columns, least_confidence)
+            })
+        })
+    }
+
+    /// Whether a candidate is certain beside a rival, given as columns over all rows, too.
     fn certain_beside(
         &self,
         round: &RoundEvidence,
         candidate: &Ranked,
         own: &Gate,
-        rival: &Ranked,
+        rival: &[Vec<f64>],
         least_confidence: f64,
     ) -> bool {
         let (bench, design) = (self.model.bench(candidate.window), &self.of(candidate).0.design);
         let Some(background) = round.of(candidate.window).get() else { return false };
         let columns = self.columns(candidate);
         let law = self.law(candidate, &columns, &own.left);
-        let rival = self.columns(rival);
-        beside(&bench.units, &bench.regressors(design), background, &law, &own.calibrated, &rival)
+        beside(&bench.units, &bench.regressors(design), background, &law, &own.calibrated, rival)
             .is_some_and(|left| left.evidence().confidence(self.tries()) >= least_confidence)
     }
 }

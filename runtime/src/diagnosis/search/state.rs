@@ -173,8 +173,8 @@ impl<'a> Search<'a> {
     pub fn is_excluded(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
         // Where the special case was enough, the general one would take its place by what is left of it.
-        let special = candidate.effect.special_case();
-        if self.model.terms.iter().any(|t| t.place == candidate.place && Some(t.effect) == special) {
+        let simpler = |t: &Accepted| candidate.effect.special_cases().any(|s| s == t.effect);
+        if self.model.terms.iter().any(|t| t.place == candidate.place && simpler(t)) {
             return true;
         }
         !candidate.effect.properties().repeats && self.model.terms.iter().any(same)

@@ -1,7 +1,7 @@
 //! Play between motor and link (Nordin and Gutman 2002).
 
 use crate::effects::{
-    Abscissa, Compliance, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, SpecialCase,
+    Abscissa, Compliance, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, SpecialCase, ToldBy,
     Transmission, Words,
 };
 
@@ -22,7 +22,10 @@ const PROPERTIES: Properties = Properties {
     sought: Sought::Always,
     follows_parameters: false,
     repeats: false,
-    special_case: Some(SpecialCase { effect: &super::joint_elasticity::JointElasticity, suffices: 0.9 }),
+    special_case: Some(SpecialCase {
+        effects: &[&super::joint_elasticity::JointElasticity],
+        told_by: ToldBy::Gain(0.9),
+    }),
     abscissa: Abscissa::Load,
     along_motion: false,
     standing_friction: false,

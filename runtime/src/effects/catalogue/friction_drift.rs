@@ -2,7 +2,7 @@
 
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
-    Sought, SpecialCase, Step, Words,
+    Sought, SpecialCase, Step, ToldBy, Words,
 };
 
 /// What a person is told.
@@ -23,8 +23,8 @@ const PROPERTIES: Properties = Properties {
     follows_parameters: false,
     repeats: false,
     special_case: Some(SpecialCase {
-        effect: &super::friction_level_change::FrictionLevelChange,
-        suffices: 0.9,
+        effects: &[&super::friction_level_change::FrictionLevelChange],
+        told_by: ToldBy::Gain(0.9),
     }),
     abscissa: Abscissa::Time,
     along_motion: true,

@@ -1,5 +1,6 @@
 //! Coulomb friction that grows with the transmitted torque: mu·|load|·sign v.
 
+use crate::effects::gear_load::{self, GearLoad};
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
@@ -45,11 +46,11 @@ impl Effect for LoadDependentFriction {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("friction grows by {} of the load torque", q.text("mu"))
+        format!("friction grows by {} of {}", q.text("mu"), GearLoad::told(q).words())
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        format!("{}·|load|·sign(dq)", q.value("mu"))
+        format!("{}·|{}|·sign(dq)", q.value("mu"), GearLoad::told(q).symbol())
     }
 }
 
@@ -59,7 +60,7 @@ impl JointLaw for LoadDependentFriction {
     }
 
     fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
-        vec![vec![]]
+        gear_load::shapes()
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
@@ -70,15 +71,20 @@ impl JointLaw for LoadDependentFriction {
         true
     }
 
-    fn law(&self, _: &Scale, _: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        out[0] = at.load.abs() * at.sign;
+    fn needs_gravity(&self, shape: &[f64]) -> bool {
+        GearLoad::of(shape) == GearLoad::Gravity
+    }
+
+    fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        out[0] = GearLoad::of(shape).at(at).abs() * at.sign;
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
         AtRest::Dry
     }
 
-    fn parameters(&self, _: &Scale, _: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        vec![Parameter::new("mu", a[0], s[0], "1")]
+    fn parameters(&self, _: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+        let mu = Parameter::new("mu", a[0], s[0], "1");
+        std::iter::once(mu).chain(GearLoad::of(shape).parameter()).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
-    Sought, SpecialCase, Step, Words,
+    Sought, SpecialCase, Step, ToldBy, Words,
 };
 
 /// What a person is told.
@@ -22,7 +22,7 @@ const PROPERTIES: Properties = Properties {
     sought: Sought::Always,
     follows_parameters: false,
     repeats: false,
-    special_case: Some(SpecialCase { effect: &super::spring::Spring, suffices: SPRING }),
+    special_case: Some(SpecialCase { effects: &[&super::spring::Spring], told_by: ToldBy::Gain(SPRING) }),
     abscissa: Abscissa::Position,
     along_motion: false,
     standing_friction: false,

@@ -1,4 +1,5 @@
-//! Torque constant that droops at high current: a·tau·|tau/tau_max|^(p-1).
+//! Torque constant that droops at high current: a·tau·|tau/tau_max|^(p-1), or beyond a knee k only:
+//! a·tau·(max(|tau/tau_max| - k, 0) / (1 - k))^(p-1).
 
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
@@ -28,6 +29,9 @@ const PROPERTIES: Properties = Properties {
     standing_friction: false,
 };
 
+/// A knee leaves at least this part of the torque beyond it.
+const LEAST_BEYOND: f64 = 0.02;
+
 /// The effect.
 pub(super) struct TorqueSaturation;
 
@@ -45,10 +49,25 @@ impl Effect for TorqueSaturation {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("the torque constant is off by {} at the highest torque", q.text("droop_at_most_torque"))
+        let knee = if q.has("knee") {
+            format!(", and by nothing below {} of it", q.text("knee"))
+        } else {
+            String::new()
+        };
+        format!(
+            "the torque constant is off by {} at the highest torque{knee}",
+            q.text("droop_at_most_torque")
+        )
     }
 
     fn formula(&self, q: &Quantities) -> String {
+        if q.has("knee") {
+            let (most, knee) = (q.value("most_torque"), q.value("knee"));
+            return format!(
+                "{}·torque·max(|torque / {most}| - {knee}, 0) / (1 - {knee})",
+                q.value("droop_at_most_torque")
+            );
+        }
         format!(
             "{}·{}·|torque / {1}|^{}·sign(torque)",
             q.value("droop_at_most_torque"),
@@ -64,12 +83,15 @@ impl JointLaw for TorqueSaturation {
     }
 
     fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
-        [2.0, 3.0, 5.0].iter().map(|&p| vec![p]).collect()
+        // Beyond a knee the droop grows with the torque.
+        let bent = |p: f64| vec![p];
+        let beyond = |knee: f64| vec![2.0, knee];
+        vec![bent(2.0), beyond(0.35), beyond(0.5), bent(3.0), beyond(0.65), beyond(0.8), bent(5.0)]
     }
 
     /// Exponents between those of the grid are not told apart.
     fn steps(&self, _: &Scale) -> Vec<Step> {
-        Vec::new()
+        vec![Step::Keep, Step::Times(1.15)]
     }
 
     fn only_positive(&self) -> bool {
@@ -78,7 +100,13 @@ impl JointLaw for TorqueSaturation {
 
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         let relative = at.torque / scale.torque;
-        out[0] = scale.torque * relative.abs().powf(shape[0]) * relative.signum();
+        out[0] = match shape.get(1) {
+            None => scale.torque * relative.abs().powf(shape[0]) * relative.signum(),
+            Some(&knee) => {
+                let beyond = (relative.abs() - knee).max(0.0) / (1.0 - knee).max(LEAST_BEYOND);
+                at.torque * beyond.powf(shape[0] - 1.0)
+            }
+        };
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
@@ -86,10 +114,14 @@ impl JointLaw for TorqueSaturation {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+        let last = match shape.get(1) {
+            None => Parameter::new("exponent", shape[0], 0.0, "1"),
+            Some(&knee) => Parameter::new("knee", knee, 0.0, "1"),
+        };
         vec![
             Parameter::new("droop_at_most_torque", a[0], s[0], "1"),
             Parameter::new("most_torque", scale.torque, 0.0, scale.torque_unit()),
-            Parameter::new("exponent", shape[0], 0.0, "1"),
+            last,
         ]
     }
 }
