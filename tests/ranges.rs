@@ -76,7 +76,8 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, and a seed, which may be any.
-const OTHERS: [&str; 18] = [
+const OTHERS: [&str; 19] = [
+    "--tell",
     "--out",
     "--json",
     "--report",

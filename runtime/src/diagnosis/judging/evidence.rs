@@ -50,10 +50,13 @@ impl Regression {
         let design = &self.design;
         let dense = trial.dense(design);
         let whole = if design.is_single_motion() { Some(self.fit.project_out(trial)?) } else { None };
+        let whole = whole.map(|whole| (self.by_segment(&whole, trial), whole));
         let mut blocks = BTreeMap::<(usize, usize), Block>::new();
         for fold in &self.folds {
             let prediction = match &whole {
-                Some(whole) => self.predict_from_rest_of_motion(candidate, trial, whole, fold)?,
+                Some((parts, whole)) => {
+                    self.predict_from_rest_of_motion(candidate, trial, (whole, parts), fold)?
+                }
                 None => self.predict_from_others(candidate, trial, fold)?,
             };
             for (j, &s) in self.sigma.iter().enumerate() {

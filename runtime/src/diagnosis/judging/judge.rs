@@ -3,7 +3,7 @@
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::{Fold, forward_cuts};
-use crate::diagnosis::judging::partial_regression::Residualised;
+use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::prediction::Prediction;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::fit::Fit;
@@ -42,6 +42,14 @@ struct Best {
     part: Residualised,
 }
 
+/// A candidate on the segments that a fold holds out.
+enum Predicted<'a> {
+    /// Everything refitted to the other motions.
+    FromOthers(Prediction<'a>),
+    /// Its amplitude fitted to the rest of a single motion.
+    FromRest(&'a BySegment, DVector<f64>),
+}
+
 /// The shape whose gain is largest after a penalty for its numbers.
 fn best_shape(fit: &Fit, candidate: &Candidate) -> Option<Best> {
     let worth = |gain: f64, numbers: usize| gain - AIC_PENALTY * numbers as f64;
@@ -67,14 +75,21 @@ impl Regression {
         }
         let mut held_out = Vec::new();
         let mut of_joint = vec![(0.0, 0.0); self.sigma.len()];
+        let parts = self
+            .design
+            .is_single_motion()
+            .then(|| self.by_segment(&best.part, &candidate.trials[best.trial]));
         for (fold, left) in self.folds.iter().zip(&self.held_out_squares) {
-            let prediction = self.predict(candidate, &best, fold)?;
+            let prediction = self.predict(candidate, (&best, parts.as_ref()), fold)?;
             let mut sum = 0.0;
             for (j, &s) in self.sigma.iter().enumerate() {
                 let w = 1.0 / (s * s);
                 of_joint[j].1 += w * left[j];
                 for (g, _) in fold.test.iter().enumerate().filter(|(_, t)| **t) {
-                    let gain = w * prediction.gain(&self.design, j, g);
+                    let gain = w * match &prediction {
+                        Predicted::FromOthers(prediction) => prediction.gain(&self.design, j, g),
+                        Predicted::FromRest(parts, amplitude) => parts.gain(amplitude, j, g),
+                    };
                     sum += gain;
                     of_joint[j].0 += gain;
                 }
@@ -109,30 +124,30 @@ impl Regression {
         })
     }
 
-    /// The candidate fitted to the segments of a fold.
+    /// The candidate fitted to the segments of a fold; on a single motion by its products on each of its `parts`.
     fn predict<'a>(
         &'a self,
         candidate: &'a Candidate,
-        best: &Best,
+        (best, parts): (&Best, Option<&'a BySegment>),
         fold: &'a Fold,
-    ) -> Option<Prediction<'a>> {
-        let trial = &candidate.trials[best.trial];
-        if self.design.is_single_motion() {
-            return self.predict_from_rest_of_motion(candidate, trial, &best.part, fold);
+    ) -> Option<Predicted<'a>> {
+        if let Some(parts) = parts {
+            let (amplitude, _) = parts.on(&fold.fit.train, &self.sigma, &best.part).solve(candidate)?;
+            return Some(Predicted::FromRest(parts, amplitude));
         }
         if candidate.fixed.is_some() {
             // A law without free amplitudes has nothing to fit but its shape, which needs all of the motion.
-            return self.predict_from_others(candidate, trial, fold);
+            let trial = &candidate.trials[best.trial];
+            return self.predict_from_others(candidate, trial, fold).map(Predicted::FromOthers);
         }
         let own = best_shape(&fold.fit, candidate)?;
-        Some(Prediction::new(&fold.fit, &candidate.trials[own.trial], &own.part, own.amplitude))
+        let trial = &candidate.trials[own.trial];
+        Some(Predicted::FromOthers(Prediction::new(&fold.fit, trial, &own.part, own.amplitude)))
     }
 
     /// Squared residual of a joint in the recording that is diagnosed, in units of its variance.
     fn target_squares(&self, joint: usize) -> f64 {
-        let targets = self.design.target_segments().into_iter();
-        let squares = targets.map(|g| self.fit.squares(&self.design, joint, g)).sum::<f64>();
-        squares / (self.sigma[joint] * self.sigma[joint])
+        self.target_squares[joint] / (self.sigma[joint] * self.sigma[joint])
     }
 
     /// Whether a candidate improves later time of a single motion when everything, standard parameters included, is

@@ -137,33 +137,71 @@ impl Regression {
         gains.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
     }
 
-    /// A trial that was residualised over all motion, its inner products on some segments only.
-    pub fn restricted(&self, whole: &Residualised, trial: &Trial, segments: &[bool]) -> Residualised {
+    /// The inner products of a trial that was residualised over all motion, on each segment alone.
+    pub fn by_segment(&self, whole: &Residualised, trial: &Trial) -> BySegment {
+        let (joints, segments) = (self.sigma.len(), self.design.segments.len());
+        let places = (0..joints).flat_map(|j| (0..segments).map(move |g| (j, g)));
+        let products = places.map(|(j, g)| self.on_segment(whole, trial, j, g)).collect();
+        BySegment { products, segments }
+    }
+
+    /// Zᵀ M M Z and Zᵀ M e on the rows of one joint in one segment, e the residual, unweighted.
+    fn on_segment(
+        &self,
+        whole: &Residualised,
+        trial: &Trial,
+        j: usize,
+        g: usize,
+    ) -> (DMatrix<f64>, DVector<f64>) {
         let (x, chi) = (&whole.coefficients, &self.fit.chi);
         let (p, k) = (self.design.columns.len(), trial.columns.len());
         let (mut s, mut b) = (DMatrix::zeros(k, k), DVector::zeros(k));
-        for (j, sd) in self.sigma.iter().enumerate() {
-            let w = 1.0 / (sd * sd);
-            for g in (0..segments.len()).filter(|&g| segments[g]) {
-                let gram = self.design.gram(j, g);
-                for i in (0..p).filter(|&i| gram.squares(i) > 0.0) {
-                    let row = gram.row(i);
-                    let residual = gram.with_y(i) - dot(row, chi.as_slice());
-                    for c in 0..k {
-                        let made = dot(row, &x.as_slice()[c * p..(c + 1) * p]);
-                        for a in 0..k {
-                            s[(a, c)] += w * x[(i, a)] * made;
-                        }
-                        b[c] -= w * x[(i, c)] * residual;
-                    }
+        let gram = self.design.gram(j, g);
+        let residual = &self.residual_products[j][g];
+        for i in (0..p).filter(|&i| gram.squares(i) > 0.0) {
+            let row = gram.row(i);
+            for c in 0..k {
+                let made = dot(row, &x.as_slice()[c * p..(c + 1) * p]);
+                for a in 0..k {
+                    s[(a, c)] += x[(i, a)] * made;
                 }
-                if let Some(product) = trial.products.get(j).and_then(|of_joint| of_joint.get(g)) {
-                    let cross = product.with.transpose() * x;
-                    s += w * (&product.own - &cross - cross.transpose());
-                    b += w * (DVector::from_column_slice(&product.y) - product.with.transpose() * chi);
-                }
+                b[c] -= x[(i, c)] * residual[i];
             }
         }
-        Residualised { coefficients: x.clone(), squares: s, with_residual: b }
+        if let Some(product) = trial.products.get(j).and_then(|of_joint| of_joint.get(g)) {
+            let cross = product.with.transpose() * x;
+            s += &product.own - &cross - cross.transpose();
+            b += DVector::from_column_slice(&product.y) - product.with.transpose() * chi;
+        }
+        (s, b)
+    }
+}
+
+/// Inner products of a residualised trial on the rows of each joint in each segment, unweighted.
+pub(in crate::diagnosis) struct BySegment {
+    /// Zᵀ M M Z and Zᵀ M e, the segments of the first joint first.
+    products: Vec<(DMatrix<f64>, DVector<f64>)>,
+    segments: usize,
+}
+
+impl BySegment {
+    /// The trial on some segments only, weighted by the standard deviations of the joints.
+    pub fn on(&self, segments: &[bool], sigma: &[f64], whole: &Residualised) -> Residualised {
+        let k = whole.coefficients.ncols();
+        let (mut squares, mut with_residual) = (DMatrix::zeros(k, k), DVector::zeros(k));
+        for (products, s) in self.products.chunks(self.segments.max(1)).zip(sigma) {
+            let w = 1.0 / (s * s);
+            for ((square, with), _) in products.iter().zip(segments).filter(|(_, used)| **used) {
+                squares += w * square;
+                with_residual += w * with;
+            }
+        }
+        Residualised { coefficients: whole.coefficients.clone(), squares, with_residual }
+    }
+
+    /// Squares of the residual that amplitudes take away on the rows of one joint in one segment.
+    pub fn gain(&self, amplitude: &DVector<f64>, joint: usize, segment: usize) -> f64 {
+        let (squares, with_residual) = &self.products[joint * self.segments + segment];
+        2.0 * amplitude.dot(with_residual) - amplitude.dot(&(squares * amplitude))
     }
 }

@@ -3,7 +3,7 @@
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::judging::folds::Fold;
-use crate::diagnosis::judging::partial_regression::Residualised;
+use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
@@ -78,10 +78,10 @@ impl Regression {
         &'a self,
         candidate: &Candidate,
         trial: &'a Trial,
-        whole: &Residualised,
+        (whole, parts): (&Residualised, &BySegment),
         fold: &Fold,
     ) -> Option<Prediction<'a>> {
-        let (amplitude, _) = self.restricted(whole, trial, &fold.fit.train).solve(candidate)?;
+        let (amplitude, _) = parts.on(&fold.fit.train, &self.sigma, whole).solve(candidate)?;
         Some(Prediction::new(&self.fit, trial, whole, amplitude))
     }
 }

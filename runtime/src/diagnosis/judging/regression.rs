@@ -5,6 +5,7 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::{Fold, folds};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rows::gram::dot;
 use std::ops::Range;
 
 /// Rows and columns with their fit, their folds, and the noise of each joint. What is asked of all four is asked here:
@@ -19,6 +20,10 @@ pub(in crate::diagnosis) struct Regression {
     pub folds: Vec<Fold>,
     /// What is left of the held-out rows of each fold, joint by joint, squared.
     pub held_out_squares: Vec<Vec<f64>>,
+    /// Products of each column with the residual of the fit, `[joint][segment][column]`.
+    pub(super) residual_products: Vec<Vec<Vec<f64>>>,
+    /// Squares of the residual of each joint in the recording that is diagnosed.
+    pub(super) target_squares: Vec<f64>,
     /// Columns of each term; empty where its amplitude is fixed.
     pub term_columns: Vec<Range<usize>>,
     /// y without any term of fixed amplitude.
@@ -50,8 +55,20 @@ impl Regression {
         let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
         let sigma = fit.sigma.clone();
         let held_out_squares = held_out_squares(&design, &fit, &folds);
-        let term_columns = Vec::new();
-        Ok(Self { design, sigma, fit, folds, held_out_squares, term_columns, measured, fixed_columns })
+        let residual_products = residual_products(&design, &fit);
+        let target_squares = target_squares(&design, &fit);
+        Ok(Self {
+            design,
+            sigma,
+            fit,
+            folds,
+            held_out_squares,
+            residual_products,
+            target_squares,
+            term_columns: Vec::new(),
+            measured,
+            fixed_columns,
+        })
     }
 
     /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again.
@@ -86,6 +103,8 @@ impl Regression {
         self.sigma.clone_from(&self.fit.sigma);
         self.folds = folds(&self.design, &self.sigma)?;
         self.held_out_squares = held_out_squares(&self.design, &self.fit, &self.folds);
+        self.residual_products = residual_products(&self.design, &self.fit);
+        self.target_squares = target_squares(&self.design, &self.fit);
         Ok(())
     }
 
@@ -119,4 +138,18 @@ fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold]) -> Vec<Vec<f64
         (0..design.joints).map(|j| held.iter().map(|&g| fit.squares(design, j, g)).sum()).collect()
     };
     folds.iter().map(of_fold).collect()
+}
+
+fn residual_products(design: &Design, fit: &Fit) -> Vec<Vec<Vec<f64>>> {
+    let chi = fit.chi.as_slice();
+    let of = |j: usize, g: usize| -> Vec<f64> {
+        let gram = design.gram(j, g);
+        (0..gram.columns()).map(|i| gram.with_y(i) - dot(gram.row(i), chi)).collect()
+    };
+    (0..design.joints).map(|j| (0..design.segments.len()).map(|g| of(j, g)).collect()).collect()
+}
+
+fn target_squares(design: &Design, fit: &Fit) -> Vec<f64> {
+    let targets = design.target_segments();
+    (0..design.joints).map(|j| targets.iter().map(|&g| fit.squares(design, j, g)).sum()).collect()
 }

@@ -127,11 +127,33 @@ fn on_some_segments_only_the_amplitude_is_fitted() {
     let (design, trial) = (&regression.design, &candidate.trials[0]);
     let whole = regression.fit.project_out(trial).expect("a small problem is regular");
     let train = [true, false, true];
-    let (amplitude, _) =
-        regression.restricted(&whole, trial, &train).solve(&candidate).expect("a small problem is regular");
+    let parts = regression.by_segment(&whole, trial);
+    let part = parts.on(&train, &regression.sigma, &whole);
+    let (amplitude, _) = part.solve(&candidate).expect("a small problem is regular");
     let columns = whole.columns(design, trial);
     let (expected, _) = explicit(&regression, &columns, &regression.residual(), &train);
     assert!((amplitude - expected).norm() < 1e-5);
+}
+
+#[test]
+fn on_one_segment_the_amplitude_gains_what_the_squares_fall_by() {
+    let (regression, candidate) = random(8);
+    let (design, trial) = (&regression.design, &candidate.trials[0]);
+    let whole = regression.fit.project_out(trial).expect("a small problem is regular");
+    let parts = regression.by_segment(&whole, trial);
+    let (amplitude, _) = whole.solve(&candidate).expect("a small problem is regular");
+    let (columns, before) = (whole.columns(design, trial), regression.residual());
+    for j in 0..JOINTS {
+        for g in 0..SEGMENTS.len() {
+            let fall = |r: usize| {
+                let change: f64 = columns.iter().zip(amplitude.iter()).map(|(c, a)| a * c[r]).sum();
+                before[r].powi(2) - (before[r] - change).powi(2)
+            };
+            let expected: f64 = design.ranges[j][g].clone().map(fall).sum();
+            let gain = parts.gain(&amplitude, j, g);
+            assert!((gain - expected).abs() < 1e-8 * (1.0 + expected.abs()), "{gain} {expected}");
+        }
+    }
 }
 
 #[test]

@@ -124,3 +124,45 @@ pub(in crate::diagnosis) struct Size {
     /// law acts.
     pub needed: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const ROWS: usize = 400;
+
+    fn every(first: usize, step: usize, value: f64) -> Vec<f64> {
+        (0..ROWS).map(|r| if r % step == first { value } else { 0.0 }).collect()
+    }
+
+    #[test]
+    fn a_law_that_acts_all_the_time_has_its_root_mean_square_and_so_has_what_it_leaves() {
+        let rows: Vec<usize> = (0..ROWS).collect();
+        let size = where_it_acts(&rows, &vec![0.3; ROWS], &every(0, 4, 1.0));
+        assert_relative_eq!(size.law, 0.3, max_relative = 1e-12);
+        assert_relative_eq!(size.needed, 0.5, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn a_law_in_bursts_is_not_diluted_by_motion_in_which_it_does_not_act() {
+        let rows: Vec<usize> = (0..ROWS).collect();
+        let noise: Vec<f64> = (0..ROWS).map(|r| if (r / 20) % 2 == 0 { 0.6 } else { -0.6 }).collect();
+        let size = where_it_acts(&rows, &every(3, 20, 1.0), &noise);
+        assert_relative_eq!(size.law, 1.0, max_relative = 1e-12);
+        assert_relative_eq!(size.needed, 0.6, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn what_stays_where_a_law_does_not_act_does_not_count_against_it() {
+        let rows: Vec<usize> = (0..ROWS).collect();
+        let size = where_it_acts(&rows, &every(3, 20, 1.0), &every(4, 20, 50.0));
+        assert_relative_eq!(size.needed, 0.0);
+    }
+
+    #[test]
+    fn a_law_that_is_nothing_has_no_size() {
+        let size = where_it_acts(&[0, 1], &[0.0, 0.0], &[1.0, 1.0]);
+        assert_eq!((size.law, size.needed), (0.0, 0.0));
+    }
+}
