@@ -75,8 +75,9 @@ const WORK: [(&str, f64); 9] = [
     ("--harmonics", 8.0),
 ];
 
-/// Options whose value is no number of a range: files, names, and a seed, which may be any.
-const OTHERS: [&str; 19] = [
+/// Options whose value is no number of a range: files, names, joints of the robot, and a seed, which may be any.
+const OTHERS: [&str; 20] = [
+    "--joint",
     "--tell",
     "--out",
     "--json",

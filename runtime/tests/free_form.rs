@@ -52,9 +52,9 @@ fn by_angle_of_another(motion: &mut Trajectory) {
     }
 }
 
-fn crosstalk(motion: &mut Trajectory) {
+fn hears_joint_1(motion: &mut Trajectory) {
     for t in 0..motion.time.len() {
-        motion.torque[2][t] += 0.3 * motion.torque[1][t];
+        motion.torque[2][t] += 0.3 * motion.torque[0][t];
     }
 }
 
@@ -73,15 +73,15 @@ fn magnet(motion: &mut Trajectory) {
 }
 
 #[test]
-fn a_torque_channel_that_hears_its_neighbour_depends_on_the_neighbours_torque() {
-    let diagnosis = diagnosed(&scara(), &Hidden::in_recording(crosstalk));
-    let found = over(&diagnosis, 3, &["torque2"]);
+fn a_torque_channel_that_hears_a_joint_farther_away_depends_on_that_joints_torque() {
+    let diagnosis = diagnosed(&scara(), &Hidden::in_recording(hears_joint_1));
+    let found = over(&diagnosis, 3, &["torque1"]);
     assert_eq!(diagnosis.findings.len(), 1);
     assert!(found.held_out_after < 0.7 * found.held_out_before, "{}", found.sentence);
     // A line, said with its slope.
-    assert!(found.proposal.as_deref().is_some_and(|p| p.contains("·torque2")), "{:?}", found.proposal);
+    assert!(found.proposal.as_deref().is_some_and(|p| p.contains("·torque1")), "{:?}", found.proposal);
     let curve = found.curve.as_ref().unwrap();
-    assert_eq!((curve.variable.as_str(), curve.band.len()), ("torque of joint 2, N.m", curve.x.len()));
+    assert_eq!((curve.variable.as_str(), curve.band.len()), ("torque of joint 1, N.m", curve.x.len()));
     assert!(curve.band.iter().all(|b| *b > 0.0 && *b < 2.0), "{:?}", curve.band);
 }
 
@@ -129,8 +129,8 @@ fn what_was_found_is_found_again_in_the_robot_that_is_simulated_with_it() {
 #[test]
 fn a_saved_law_stands_alone_and_is_constant_beyond_what_was_seen() {
     let robot = scara();
-    let diagnosis = diagnosed(&robot, &Hidden::in_recording(crosstalk));
-    let term = over(&diagnosis, 3, &["torque2"]).term.clone();
+    let diagnosis = diagnosed(&robot, &Hidden::in_recording(hears_joint_1));
+    let term = over(&diagnosis, 3, &["torque1"]).term.clone();
     let saved: EffectTerm = serde_json::from_str(&serde_json::to_string(&term).unwrap()).unwrap();
     assert_eq!(saved, term);
     assert_eq!(saved.check(robot.model.robot()), Ok(()));
@@ -141,12 +141,12 @@ fn a_saved_law_stands_alone_and_is_constant_beyond_what_was_seen() {
     wrong.amplitude.pop();
     assert_eq!(wrong.check(robot.model.robot()).unwrap_err().field, "amplitude");
 
-    // Joint 2 at accelerations that ask for torques inside, at the end of and beyond what was seen.
+    // Joint 1 at accelerations that ask for torques inside, at the end of and beyond what was seen.
     let chi = robot.model.robot().base_from_standard(&robot.standard);
     let at = |acceleration: f64| {
         let still = || vec![vec![0.0; 4]; 3];
         let mut ddq = still();
-        ddq[1] = vec![acceleration; 4];
+        ddq[0] = vec![acceleration; 4];
         let motion = Motion {
             name: String::new(),
             rate: 100.0,

@@ -124,16 +124,7 @@ fn identify(
     }
     let mut warnings = speed_words(&recorded.speeds, model.robot());
     if !arguments.implausible {
-        let path = &arguments.recording.recording;
-        let weighted;
-        let of_torques = match estimate.method {
-            Method::IdimWls => &estimate,
-            _ => {
-                weighted = dynid_runtime::estimation::estimate(torques, &EstimateSettings::default());
-                &weighted
-            }
-        };
-        let doubts = verdict::check(path, recorded, torques, of_torques);
+        let doubts = doubts(recorded, torques, &estimate, arguments);
         warnings.extend(doubts.map_err(|failure| and_of_speeds(failure, &warnings))?);
     }
     let mut simulated = None;
@@ -161,6 +152,20 @@ fn identify(
     identified.simulated = simulated;
     identified.warnings.extend(warnings);
     Ok((identified, estimate))
+}
+
+/// What is doubtful in the data, by the weighted estimate of the torques.
+fn doubts(
+    recorded: &Recorded,
+    torques: &Observation,
+    found: &Estimate,
+    arguments: &Arguments,
+) -> Result<Vec<String>, Failure> {
+    let path = &arguments.recording.recording;
+    if found.method == Method::IdimWls {
+        return verdict::check(path, recorded, torques, found);
+    }
+    verdict::check(path, recorded, torques, &estimate(torques, &EstimateSettings::default()))
 }
 
 fn summary(

@@ -90,6 +90,7 @@ mod motions;
 mod outcome;
 mod predict;
 mod preparation;
+mod pushes;
 mod rate;
 mod reference;
 mod rows;

@@ -47,25 +47,13 @@ pub(in crate::diagnosis) fn explain(
     let standard = ended.standard;
     let skew = ended.delay + model.slow.fit.chi[model.slow.design.parameters];
 
-    // 1. What was found: contacts, effects, the delay.
+    // 1. What was found, and what it gains on motion that was held out.
     let effects = (0..model.terms.len()).map(|k| of_term(model, k)).collect::<Result<Vec<_>, _>>()?;
     let mut cannot_tell = cannot_tell(model, &effects);
     cannot_tell.extend(search.ties.iter().map(|tie| tied(robot, tie)));
-    let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
-    findings.extend(effects);
-    findings.extend(line::findings(search, settings.least_confidence));
-    let expected = model.context.reference.as_ref().map_or(0.0, |r| r.delay());
-    let late = delay::finding(model, skew - expected, settings)?;
-    let named = late.is_some();
-    findings.extend(late);
+    let (findings, held_out) = found(search, &ended, (effects, skew), settings)?;
 
-    // 2. What it gains on motion that was held out.
-    let held = model.fast.held_out(false)?;
-    findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
-    let before = before(model, &ended, named.then_some(skew - expected))?;
-    let held_out = held_out(model, standard, &held, before);
-
-    // 3. What it changes, and what it leaves.
+    // 2. What it changes, and what it leaves.
     let after = estimated(&model.slow);
     let is_wave = |f: &Finding| f.term.effect.properties().abscissa == Abscissa::WaveAngle;
     let waves = |joint: usize| findings.iter().any(|f| is_wave(f) && f.joints.contains(&joint));
@@ -107,6 +95,27 @@ pub(in crate::diagnosis) fn explain(
         diagnosis.verdict.push(words::of_reference(reference.is_diagonal()));
     }
     Ok(diagnosis)
+}
+
+/// Contacts, the effects of the terms, ripple by its lines, the delay, a wrong rate; and what all of them gain.
+fn found(
+    search: &Search<'_>,
+    ended: &Ended<'_>,
+    (effects, skew): (Vec<Finding>, f64),
+    settings: &Settings,
+) -> Result<(Vec<Finding>, HeldOut), DiagnosisError> {
+    let model = &search.model;
+    let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
+    findings.extend(effects);
+    findings.extend(line::findings(search, settings.least_confidence));
+    let expected = model.context.reference.as_ref().map_or(0.0, |r| r.delay());
+    let late = delay::finding(model, skew - expected, settings)?;
+    let named_skew = late.is_some().then_some(skew - expected);
+    findings.extend(late);
+    let held = model.fast.held_out(false)?;
+    findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
+    let before = before(model, ended, named_skew)?;
+    Ok((findings, held_out(model, ended.standard, &held, before)))
 }
 
 /// What was there before, and how all that the model has varies together.

@@ -1,0 +1,111 @@
+//! Pushes from outside in the course of a diagnosis: found beside the standard model, set aside, looked at again beside the
+//! laws that were found.
+
+use super::contact::felt::Around;
+use super::contact::search::{self as contact_search, Contacts};
+use super::contact::{moving, standing};
+use super::error::DiagnosisError;
+use super::preparation::Prepared;
+use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
+use super::search::state::Search;
+use super::settings::Settings;
+use crate::model::Model;
+
+/// Windows in which something outside seems to have pushed the robot.
+pub(super) struct Pushes {
+    /// Seen by several joints.
+    contacts: Option<Contacts>,
+    /// Whether their rows are set aside. A body that is carried all the time pushes like a hand: against a baseline, laws
+    /// are tried first on all of the motion, and only what still stands out then is set aside.
+    set_aside: bool,
+    /// Seen by single joints, in what is left when the search is done.
+    of_single_joints: Option<Contacts>,
+    /// Whether those have been looked for.
+    scanned: bool,
+}
+
+impl Pushes {
+    /// What the standard model alone leaves.
+    pub fn found(model: &dyn Model, prepared: &Prepared, change: bool) -> Result<Self, DiagnosisError> {
+        let signals = &prepared.motions.signals;
+        let contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
+        Ok(Self { contacts, set_aside: !change, of_single_joints: None, scanned: false })
+    }
+
+    /// Those whose rows are not used.
+    pub fn set_aside(&self) -> Option<Contacts> {
+        Contacts::joined(self.contacts.clone().filter(|_| self.set_aside), self.of_single_joints.clone())
+    }
+
+    /// Looks at what a model with effects leaves; whether other rows are to be set aside than were.
+    pub fn differ_beside(
+        &mut self,
+        model: &dyn Model,
+        prepared: &Prepared,
+        search: &Search<'_>,
+        settings: &Settings,
+    ) -> bool {
+        if let Some(found) = &self.contacts {
+            let remain = remain(found, prepared, search);
+            if !remain {
+                self.contacts = None;
+            }
+            if remain != self.set_aside {
+                self.set_aside = true;
+                return true;
+            }
+        }
+        if self.scanned && self.of_single_joints.is_none() && self.contacts.is_none() {
+            return false;
+        }
+        let (confirmed, found) = pushed_in_motion(model, prepared, self.contacts.as_ref(), search);
+        let refuted = self.contacts.is_some() && confirmed.is_none();
+        self.contacts = confirmed;
+        if self.scanned || !settings.single_joint_contacts {
+            let before = self.of_single_joints.take();
+            self.of_single_joints = before.and_then(|p| moving::still_there(p, found));
+            return refuted;
+        }
+        // What was found with the pushes among the rows is looked for again without them.
+        (self.of_single_joints, self.scanned) = (found, true);
+        refuted || self.of_single_joints.is_some()
+    }
+
+    /// All of them, and those at rest.
+    pub fn with_those_at_rest(&self, prepared: &Prepared, search: &Search<'_>) -> Option<Contacts> {
+        let motions = &prepared.motions;
+        let rest = standing::at_rest(&search.model.context, &prepared.moving.fitted, &motions.slowest);
+        Contacts::joined(
+            Contacts::joined(self.contacts.clone(), self.of_single_joints.clone()),
+            rest.contacts(motions.signals.len()),
+        )
+    }
+}
+
+/// Of the contacts that are known, those that what the model with its effects leaves confirms; and the pushes that stand out
+/// of it besides, on single joints or several.
+fn pushed_in_motion(
+    model: &dyn Model,
+    prepared: &Prepared,
+    contacts: Option<&Contacts>,
+    search: &Search<'_>,
+) -> (Option<Contacts>, Option<Contacts>) {
+    let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
+    let context = &search.model.context;
+    let level = if search.model.terms.is_empty() { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
+    let look = moving::look(context, &outside, &search.model.residual_on(&outside), level);
+    let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
+    let design = all.as_ref().unwrap_or(&outside);
+    let residual = search.model.residual_on(design);
+    let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
+    let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
+    (confirmed, moving::seen(&around, &look))
+}
+
+/// Whether contacts still stand out of what the model with its effects leaves.
+fn remain(contacts: &Contacts, prepared: &Prepared, search: &Search<'_>) -> bool {
+    let aligned = &prepared.aligned;
+    let residual = search.model.residual_on(aligned);
+    let sigma = &search.model.slow.sigma;
+    contact_search::remain(contacts, aligned, &residual, sigma, &prepared.motions.signals)
+}
