@@ -19,6 +19,7 @@
 mod base_parameter;
 pub mod bounds;
 mod drive;
+pub mod formula;
 mod frame;
 mod joint;
 mod limits;

@@ -28,7 +28,7 @@ pub fn draw(
         }
         Form::Body(_) => body(random),
         Form::Sensitivity(_) | Form::Coupled => vec![if random.share() < 0.5 { -1.0 } else { 1.0 }],
-        Form::Compliance(_) | Form::Window | Form::Free => return None,
+        Form::Compliance(_) | Form::Window | Form::Free | Form::User => return None,
     };
     let scale = place.law_of().and_then(|j| scales.get(j)).map(|s| TermScale::from(*s));
     let numbers = effect.form().named_joints(robot, place);

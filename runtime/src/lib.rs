@@ -7,6 +7,7 @@ pub mod confirmation;
 pub mod diagnosis;
 pub mod effects;
 pub mod estimation;
+pub mod law_file;
 pub mod model;
 #[cfg(feature = "diagnosis")]
 pub mod model_file;

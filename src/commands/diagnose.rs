@@ -10,6 +10,7 @@ use clap::Args;
 use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
 use dynid_runtime::estimation::choose_bandwidth;
+use dynid_runtime::law_file;
 use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, NamedParameter, difference, doubt};
 use dynid_runtime::signal::{Preparation, SpeedFault, contradicting_speeds};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
@@ -38,6 +39,9 @@ pub(super) struct Arguments {
     /// it knows them, are no news
     #[arg(long, conflicts_with = "baseline")]
     reference: Option<PathBuf>,
+    /// Laws of your own that are tried beside those of the catalogue: a YAML list of {id, joint, law, unit, shapes}
+    #[arg(long)]
+    laws: Option<PathBuf>,
     /// A test recording, which takes no part in the diagnosis: the errors on it are reported before and after
     #[arg(long)]
     test: Option<PathBuf>,
@@ -71,6 +75,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut settings = settings(&arguments.sampling, model.robot().joints());
     if let Some(path) = &arguments.reference {
         settings.reference = Some(Arc::new(reference::read(path, model.robot())?));
+    }
+    if let Some(path) = &arguments.laws {
+        settings.laws =
+            law_file::read(path, model.robot()).map_err(|error| Failure::Input(error.to_string()))?;
     }
     let test = match &arguments.test {
         Some(path) => {

@@ -6,6 +6,7 @@ mod robot;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use dynid_runtime::effects::UserLaw;
 use dynid_runtime::model::Model;
 use dynid_runtime::model_file::to_yaml;
 use dynid_runtime::report::significant;
@@ -131,9 +132,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Parameters::Base(_, terms) => terms.as_slice(),
         Parameters::Standard(_) => &[],
     };
+    if let Some(law) = terms.iter().filter_map(|t| t.place.law()).find(|law| law.is_of_acceleration()) {
+        return Err(Failure::Input(of_acceleration(&arguments.robot, law)));
+    }
     let world = World::from_base(model, &chi).with(terms);
-    for effect in world.left_out() {
-        print(&format!("{} is in the model, but is not simulated", effect.id()));
+    for id in world.left_out_ids() {
+        print(&format!("{id} is in the model, but is not simulated"));
     }
     let motions = planned(model, &chi, arguments)?;
     make_folder(&arguments.out)?;
@@ -158,6 +162,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = write_recording(place, robot, reference, &title, &trajectories)?;
     print(&summary(&path, &runs));
     Ok(())
+}
+
+/// Why a law over an acceleration is not simulated.
+fn of_acceleration(file: &str, law: UserLaw) -> String {
+    format!(
+        "{file}: the law {} ({}) depends on an acceleration, which in a simulation follows from the torques; write it without ddq, or take it out of the model's effects",
+        law.id(),
+        law.text()
+    )
 }
 
 fn planned(

@@ -87,7 +87,7 @@ fn summary(
     text.push_str(&band_words(evaluation, prepared, asked));
     text.push('\n');
     if !identified.effects.is_empty() {
-        let names: Vec<&str> = identified.effects.iter().map(|term| term.effect.id()).collect();
+        let names: Vec<&str> = identified.effects.iter().map(|term| term.id()).collect();
         text.push_str(&format!("effects in the model: {}\n", names.join(", ")));
     }
     if identified.delay != 0.0 {

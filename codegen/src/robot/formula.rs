@@ -1,9 +1,7 @@
 //! Reading the expressions of a table: numbers, pi, `q<j>`, constants, + - * / and parentheses.
 
 use super::expression::Expression;
-
-/// Longest expression that is read, in operators, names and numbers; bounds every recursion over an expression.
-const MAX_TOKENS: usize = 200;
+use dynid_description::formula::{Algebra, FormulaError, parse};
 
 /// An expression that may have joint variables added to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,25 +12,9 @@ pub(super) struct Formula {
     pub constant: Option<Expression>,
 }
 
-/// What is wrong with an expression and where: characters from its start.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct FormulaError {
-    pub offset: usize,
-    pub message: String,
-}
-
 /// Reads an expression. `constants` are the names that it may use.
 pub(super) fn parse_formula(text: &str, constants: &[(String, f64)]) -> Result<Formula, FormulaError> {
-    let tokens = tokenize(text)?;
-    let mut parser = Parser { tokens: &tokens, next: 0, end: text.chars().count(), constants };
-    let formula = parser.sum()?;
-    match parser.tokens.get(parser.next) {
-        None => {}
-        Some((Token::Symbol(')'), offset)) => {
-            return error(*offset, "')' without its '('");
-        }
-        Some((_, offset)) => return error(*offset, "expected an operator (+ - * /) before this"),
-    }
+    let formula = parse(text, &mut Table { constants })?;
     if let Some(constant) = &formula.constant {
         let value = constant.value();
         if !value.is_finite() {
@@ -43,186 +25,66 @@ pub(super) fn parse_formula(text: &str, constants: &[(String, f64)]) -> Result<F
 }
 
 fn error<T>(offset: usize, message: impl Into<String>) -> Result<T, FormulaError> {
-    Err(FormulaError { offset, message: message.into() })
-}
-
-#[derive(Debug, Clone, PartialEq)]
-enum Token {
-    Number(f64),
-    Name(String),
-    Symbol(char),
-}
-
-fn tokenize(text: &str) -> Result<Vec<(Token, usize)>, FormulaError> {
-    let chars: Vec<char> = text.chars().collect();
-    let mut tokens = Vec::new();
-    let mut at = 0;
-    while at < chars.len() {
-        let start = at;
-        let c = chars[at];
-        if c.is_whitespace() {
-            at += 1;
-            continue;
-        }
-        if tokens.len() == MAX_TOKENS {
-            return error(start, format!("expression longer than {MAX_TOKENS} numbers, names and operators"));
-        }
-        let take = |at: &mut usize, keep: fn(char) -> bool| {
-            while chars.get(*at).is_some_and(|&c| keep(c)) {
-                *at += 1;
-            }
-        };
-        let token = if c.is_ascii_digit() || c == '.' && chars.get(at + 1).is_some_and(char::is_ascii_digit) {
-            take(&mut at, |c| c.is_ascii_digit() || c == '.');
-            if matches!(chars.get(at), Some('e' | 'E')) {
-                let sign = usize::from(matches!(chars.get(at + 1), Some('+' | '-')));
-                if chars.get(at + 1 + sign).is_some_and(char::is_ascii_digit) {
-                    at += 1 + sign;
-                    take(&mut at, |c| c.is_ascii_digit());
-                }
-            }
-            let word: String = chars[start..at].iter().collect();
-            match word.parse::<f64>() {
-                Ok(value) if value.is_finite() => Token::Number(value),
-                Ok(_) => return error(start, format!("'{word}' is not a finite number")),
-                Err(_) => return error(start, format!("'{word}' is not a number")),
-            }
-        } else if c.is_alphabetic() || c == '_' || c == '.' {
-            take(&mut at, |c| c.is_alphanumeric() || c == '_' || c == '.');
-            Token::Name(chars[start..at].iter().collect())
-        } else if "+-*/()".contains(c) {
-            at += 1;
-            Token::Symbol(c)
-        } else {
-            return error(
-                start,
-                format!(
-                    "'{c}' does not belong in an expression; it has numbers, pi, q<j>, constants, + - * / and parentheses"
-                ),
-            );
-        };
-        tokens.push((token, start));
-    }
-    Ok(tokens)
+    Err(FormulaError::new(offset, message))
 }
 
 /// The j of `q<j>`.
 pub(super) fn joint_variable(name: &str) -> Option<usize> {
-    let digits = name.strip_prefix('q')?;
-    if digits.is_empty() || digits.starts_with('0') || !digits.bytes().all(|b| b.is_ascii_digit()) {
-        return None;
-    }
-    digits.parse().ok()
+    dynid_description::formula::joint_variable(name, "q")
 }
 
-struct Parser<'a> {
-    tokens: &'a [(Token, usize)],
-    next: usize,
-    end: usize,
+/// What expressions of a table mean.
+struct Table<'a> {
     constants: &'a [(String, f64)],
 }
 
-impl Parser<'_> {
-    fn offset(&self) -> usize {
-        self.tokens.get(self.next).map_or(self.end, |&(_, offset)| offset)
+impl Algebra for Table<'_> {
+    type Value = Formula;
+    const OPERATORS: &'static str = "+-*/";
+    const PARTS: &'static str = "numbers, pi, q<j>, constants, + - * / and parentheses";
+    const HAS_FUNCTIONS: bool = false;
+
+    fn number(&mut self, value: f64) -> Formula {
+        only(Expression::Number(value))
     }
 
-    /// Takes the next token if it is one of the symbols.
-    fn accept(&mut self, symbols: &str) -> Option<char> {
-        match self.tokens.get(self.next) {
-            Some((Token::Symbol(c), _)) if symbols.contains(*c) => {
-                self.next += 1;
-                Some(*c)
-            }
-            _ => None,
+    fn name(&mut self, name: &str, offset: usize) -> Result<Formula, FormulaError> {
+        if name == "pi" {
+            return Ok(only(Expression::Pi));
+        }
+        if let Some(j) = joint_variable(name) {
+            return Ok(Formula { variables: vec![(j, 1, offset)], constant: None });
+        }
+        match self.constants.iter().find(|(known, _)| known == name) {
+            Some((_, value)) => Ok(only(Expression::Constant(name.to_owned(), *value))),
+            None => error(offset, self.unknown(name)),
         }
     }
 
-    fn sum(&mut self) -> Result<Formula, FormulaError> {
-        let mut left = self.product()?;
-        while let Some(op) = self.accept("+-") {
-            let mut right = self.product()?;
-            if op == '-' {
-                right.variables.iter_mut().for_each(|v| v.1 = -v.1);
-            }
-            left.variables.append(&mut right.variables);
-            left.constant = match (left.constant, right.constant, op) {
-                (a, None, _) => a,
-                (None, b, '+') => b,
-                (None, Some(b), _) => Some(negative(b)),
-                (Some(a), Some(b), '+') => Some(Expression::Add(Box::new(a), Box::new(b))),
-                (Some(a), Some(b), _) => Some(Expression::Sub(Box::new(a), Box::new(b))),
-            };
-        }
-        Ok(left)
+    fn call(&mut self, function: &str, offset: usize, _: Formula) -> Result<Formula, FormulaError> {
+        error(offset, self.unknown(function))
     }
 
-    fn product(&mut self) -> Result<Formula, FormulaError> {
-        let mut left = self.signed()?;
-        while let Some(op) = self.accept("*/") {
-            let at = self.offset();
-            let right = self.signed()?;
-            if let Some(&(j, _, offset)) = left.variables.iter().chain(&right.variables).next() {
-                return error(offset, format!("q{j} may only be added: expected q{j} plus a constant"));
-            }
-            let a = Box::new(left.constant.unwrap_or(Expression::ZERO));
-            let b = right.constant.unwrap_or(Expression::ZERO);
-            left.constant = Some(if op == '*' {
-                Expression::Mul(a, Box::new(b))
-            } else if b.value() == 0.0 {
-                return error(at, format!("division by zero: {b} is 0"));
-            } else {
-                Expression::Div(a, Box::new(b))
-            });
-        }
-        Ok(left)
+    fn negative(&mut self, mut operand: Formula) -> Formula {
+        operand.variables.iter_mut().for_each(|v| v.1 = -v.1);
+        operand.constant = operand.constant.map(negative);
+        operand
     }
 
-    fn signed(&mut self) -> Result<Formula, FormulaError> {
-        match self.accept("+-") {
-            Some('-') => {
-                let mut operand = self.signed()?;
-                operand.variables.iter_mut().for_each(|v| v.1 = -v.1);
-                operand.constant = operand.constant.map(negative);
-                Ok(operand)
-            }
-            Some(_) => self.signed(),
-            None => self.primary(),
+    fn combined(
+        &mut self,
+        operator: char,
+        [left, right]: [Formula; 2],
+        offset: usize,
+    ) -> Result<Formula, FormulaError> {
+        match operator {
+            '+' | '-' => Ok(sum(left, right, operator)),
+            _ => product(left, right, operator, offset),
         }
     }
+}
 
-    fn primary(&mut self) -> Result<Formula, FormulaError> {
-        let offset = self.offset();
-        let Some((token, _)) = self.tokens.get(self.next) else {
-            return error(offset, "the expression ends where a number, a name or '(' was expected");
-        };
-        self.next += 1;
-        let constant = match token {
-            Token::Number(value) => Expression::Number(*value),
-            Token::Name(name) if name == "pi" => Expression::Pi,
-            Token::Name(name) => {
-                if let Some(j) = joint_variable(name) {
-                    return Ok(Formula { variables: vec![(j, 1, offset)], constant: None });
-                }
-                match self.constants.iter().find(|(known, _)| known == name) {
-                    Some((_, value)) => Expression::Constant(name.clone(), *value),
-                    None => return error(offset, self.unknown(name)),
-                }
-            }
-            Token::Symbol('(') => {
-                let inner = self.sum()?;
-                if self.accept(")").is_none() {
-                    return error(self.offset(), "expected ')'");
-                }
-                return Ok(inner);
-            }
-            Token::Symbol(_) => {
-                return error(offset, "expected a number, a name or '(' before this operator");
-            }
-        };
-        Ok(Formula { variables: Vec::new(), constant: Some(constant) })
-    }
-
+impl Table<'_> {
     fn unknown(&self, name: &str) -> String {
         let word = name.trim_start_matches('.').to_ascii_lowercase();
         if ["nan", "inf", "infinity"].contains(&word.as_str()) {
@@ -232,6 +94,47 @@ impl Parser<'_> {
         let names = known.collect::<Vec<_>>().join(", ");
         format!("unknown constant '{name}': expected a number, q<j> or one of {names}")
     }
+}
+
+fn only(constant: Expression) -> Formula {
+    Formula { variables: Vec::new(), constant: Some(constant) }
+}
+
+fn sum(mut left: Formula, mut right: Formula, operator: char) -> Formula {
+    if operator == '-' {
+        right.variables.iter_mut().for_each(|v| v.1 = -v.1);
+    }
+    left.variables.append(&mut right.variables);
+    left.constant = match (left.constant, right.constant, operator) {
+        (a, None, _) => a,
+        (None, b, '+') => b,
+        (None, Some(b), _) => Some(negative(b)),
+        (Some(a), Some(b), '+') => Some(Expression::Add(Box::new(a), Box::new(b))),
+        (Some(a), Some(b), _) => Some(Expression::Sub(Box::new(a), Box::new(b))),
+    };
+    left
+}
+
+/// `offset` is where the right side starts.
+fn product(
+    mut left: Formula,
+    right: Formula,
+    operator: char,
+    offset: usize,
+) -> Result<Formula, FormulaError> {
+    if let Some(&(j, _, at)) = left.variables.iter().chain(&right.variables).next() {
+        return error(at, format!("q{j} may only be added: expected q{j} plus a constant"));
+    }
+    let a = Box::new(left.constant.unwrap_or(Expression::ZERO));
+    let b = right.constant.unwrap_or(Expression::ZERO);
+    left.constant = Some(if operator == '*' {
+        Expression::Mul(a, Box::new(b))
+    } else if b.value() == 0.0 {
+        return error(offset, format!("division by zero: {b} is 0"));
+    } else {
+        Expression::Div(a, Box::new(b))
+    });
+    Ok(left)
 }
 
 fn negative(operand: Expression) -> Expression {

@@ -3,7 +3,7 @@
 use super::error::DiagnosisError;
 use super::reference::Reference;
 use super::rules;
-use crate::effects::{EffectKind, Place};
+use crate::effects::{EffectKind, Place, UserLaw};
 use crate::estimation::choose_bandwidth;
 use crate::recording::Trajectory;
 use std::sync::Arc;
@@ -49,6 +49,8 @@ pub struct Settings {
     pub single_joint_contacts: bool,
     /// Laws at places that are not tried, because other evidence speaks against them.
     pub excluded: Vec<(EffectKind, Place)>,
+    /// Laws that the user wrote down: tried beside those of the catalogue.
+    pub laws: Vec<UserLaw>,
     /// A model of the robot before it changed, in the place of a baseline: what it explains is not looked for.
     pub reference: Option<Arc<Reference>>,
     /// Threads; 0: as many as the machine has. The outcome does not depend on them.
@@ -110,6 +112,7 @@ impl Default for Settings {
             standstill_speeds: None,
             single_joint_contacts: true,
             excluded: Vec::new(),
+            laws: Vec::new(),
             reference: None,
             threads: 2,
         }

@@ -2,13 +2,16 @@
 
 use super::effect::{Effect, Properties, Sought, Words};
 use super::form::Form;
+use super::place::Place;
 use serde::{Deserialize, Serialize};
 
 /// From lines `module: Type`, declares the modules and everything that is known by the name of an effect. The type is
-/// a unit struct of the module that implements [`Effect`]; the module is named by the effect's id in the JSON.
+/// a unit struct of the module that implements [`Effect`]; the module is named by the effect's id in the JSON. After a
+/// bar what only a user has, which belongs to no list of effects.
 macro_rules! catalogue {
-    ($($module:ident: $effect:ident,)*) => {
+    ($($module:ident: $effect:ident,)* | $($own:ident: $of_user:ident,)*) => {
         $(mod $module;)*
+        $(mod $own;)*
 
         /// An effect of the catalogue.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -18,6 +21,10 @@ macro_rules! catalogue {
             $(
                 #[doc = concat!("`", stringify!($module), "`")]
                 $effect,
+            )*
+            $(
+                #[doc = concat!("`", stringify!($own), "`: no effect of the catalogue")]
+                $of_user,
             )*
         }
 
@@ -29,6 +36,7 @@ macro_rules! catalogue {
             pub fn effect(self) -> &'static dyn Effect {
                 match self {
                     $(Self::$effect => &$module::$effect,)*
+                    $(Self::$of_user => &$own::$of_user,)*
                 }
             }
         }
@@ -76,6 +84,8 @@ catalogue! {
     geometry_error: GeometryError,
     contact: Contact,
     free_form: FreeForm,
+    |
+    user_law: UserLaw,
 }
 
 impl EffectKind {
@@ -87,6 +97,14 @@ impl EffectKind {
     /// Its name in the JSON.
     pub fn id(self) -> &'static str {
         self.words().id
+    }
+
+    /// The same at a place: that of a law of the user is the user's.
+    pub fn id_at(self, place: Place) -> &'static str {
+        match (self.form(), place) {
+            (Form::User, Place::Law(law)) => law.id(),
+            _ => self.id(),
+        }
     }
 
     /// Its words.

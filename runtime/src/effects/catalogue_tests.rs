@@ -58,6 +58,7 @@ fn made_up(kind: EffectKind, place: Place, shape: &[f64]) -> Quantities {
         Form::Coupled => CoupledRotor { ratio: shape[0] }.parameters(&a[..3], &s[..3], 0.01),
         Form::Window => vec![Parameter::new("largest_force", 20.0, 0.0, "N")],
         Form::Free => vec![Parameter::new("swing", 2.0, 0.1, "N.m")],
+        Form::User => Vec::new(),
     })
 }
 

@@ -84,6 +84,7 @@ impl EffectTerm {
                 };
                 self.check_amplitudes(&[law.amplitudes()])
             }
+            Form::User => self.check_user_law(robot),
         }
     }
 
@@ -102,6 +103,23 @@ impl EffectTerm {
             }
         }
         Ok(())
+    }
+
+    /// A law of the user on a joint of the robot, over variables of its joints.
+    fn check_user_law(&self, robot: &Robot) -> Result<(), TermError> {
+        let Place::Law(law) = self.place else { return self.wrong_place("joint, by a law of a user") };
+        if law.joint() >= robot.joints() {
+            let last = robot.joints().saturating_sub(1);
+            let what = format!("{}: {} has the joints 0 to {last}", law.joint(), robot.name);
+            return wrong("place.law.joint", what);
+        }
+        if let Err(name) = law.variables(robot) {
+            return wrong("place.law.law", format!("{name}: {} has no such joint", robot.name));
+        }
+        if !law.has_shape(&self.shape) {
+            return wrong("shape", format!("{:?} is outside of the ranges of {}", self.shape, law.id()));
+        }
+        self.check_amplitudes(&[law.constants().len()])
     }
 
     /// One of the `known` numbers of the model that the effect can be an error of.

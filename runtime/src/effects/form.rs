@@ -7,6 +7,7 @@ use super::place::Place;
 use super::rigid_body::BodyOnLink;
 use super::sensitivity::Sensitivity;
 use super::shape::ShapeSearch;
+use super::user_law::UserLaw;
 use crate::model::Robot;
 
 /// How an effect's torque is made.
@@ -28,6 +29,8 @@ pub enum Form {
     Window,
     /// Curves of a joint's torque over any variables.
     Free,
+    /// A law that the user wrote down.
+    User,
 }
 
 impl Form {
@@ -47,7 +50,7 @@ impl Form {
             }
             Self::Body(law) => law.links(robot).into_iter().map(Place::Link).collect(),
             Self::Coupled => CoupledRotor::places(robot),
-            Self::Window | Self::Free => Vec::new(),
+            Self::Window | Self::Free | Self::User => Vec::new(),
         }
     }
 
@@ -60,6 +63,7 @@ impl Form {
             Self::Compliance(law) => law.shapes().iter().map(|s| s.to_vec()).collect(),
             Self::Coupled => CoupledRotor::RATIOS.iter().map(|&ratio| vec![ratio]).collect(),
             Self::Sensitivity(_) | Self::Body(_) => vec![Vec::new()],
+            Self::User => place.law().map_or_else(Vec::new, UserLaw::grid),
             Self::Window | Self::Free => Vec::new(),
         }
     }
@@ -74,7 +78,8 @@ impl Form {
             | Self::Body(_)
             | Self::Coupled
             | Self::Window
-            | Self::Free => Vec::new(),
+            | Self::Free
+            | Self::User => Vec::new(),
         }
     }
 
@@ -87,6 +92,7 @@ impl Form {
             },
             Self::Compliance(_) => compliance::shape_search(),
             Self::Coupled => CoupledRotor::shape_search(),
+            Self::User => place.law().map_or_else(ShapeSearch::none, UserLaw::shape_search),
             Self::Sensitivity(_) | Self::Body(_) | Self::Window | Self::Free => ShapeSearch::none(),
         }
     }
@@ -101,7 +107,8 @@ impl Form {
             | Self::Body(_)
             | Self::Coupled
             | Self::Window
-            | Self::Free => None,
+            | Self::Free
+            | Self::User => None,
         }
     }
 
@@ -114,7 +121,8 @@ impl Form {
             | Self::Body(_)
             | Self::Coupled
             | Self::Window
-            | Self::Free => false,
+            | Self::Free
+            | Self::User => false,
         }
     }
 
@@ -129,7 +137,8 @@ impl Form {
             | Self::Body(_)
             | Self::Coupled
             | Self::Window
-            | Self::Free => false,
+            | Self::Free
+            | Self::User => false,
         }
     }
 
@@ -148,7 +157,8 @@ impl Form {
             | Self::Body(_)
             | Self::Coupled
             | Self::Window
-            | Self::Free => false,
+            | Self::Free
+            | Self::User => false,
         }
     }
 
@@ -167,6 +177,7 @@ impl Form {
             Self::Body(law) => {
                 place.link().and_then(|frame| law.named_joint(robot, frame)).into_iter().collect()
             }
+            Self::User => place.law().map(UserLaw::joint).into_iter().collect(),
             Self::Window => Vec::new(),
         }
     }

@@ -6,7 +6,8 @@
 //! evaluated sample by sample they are columns of an identification, evaluated inside an integrator they are a torque
 //! of a simulation. Errors of the model's own numbers are a [`Sensitivity`]: their columns are exact derivatives of the
 //! model. Compliant transmissions are a [`Compliance`]: their torque is the response of the link that is driven through
-//! them. Bodies on links are a [`BodyOnLink`]. What no law describes is a [`FreeLaw`]: curves over any variables.
+//! them. Bodies on links are a [`BodyOnLink`]. What no law describes is a [`FreeLaw`]: curves over any variables. A law that the user
+//! wrote down is a [`UserLaw`], which its place holds.
 //!
 //! ```
 //! use dynid_runtime::effects::EffectKind;
@@ -33,6 +34,7 @@ mod sensitivity;
 mod shape;
 mod spline;
 mod term;
+mod user_law;
 mod variable;
 
 pub use catalogue::EffectKind;
@@ -50,6 +52,7 @@ pub use rigid_body::{BodyEstimate, BodyOnLink, body_columns, body_detail};
 pub use sensitivity::{Direction, Distortion, Seeds, Sensitivity, Variant, derivable, derivative};
 pub use shape::{Move, ShapeSearch, Step};
 pub use term::{EffectTerm, TermScale};
+pub use user_law::{LawError, UserLaw};
 pub use variable::{SinceReversal, Variable};
 
 #[cfg(test)]

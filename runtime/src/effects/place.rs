@@ -1,5 +1,6 @@
 //! Where in a robot an effect acts.
 
+use super::user_law::UserLaw;
 use serde::{Deserialize, Serialize};
 
 /// Where in the robot an effect acts; joints and frames are counted from 0.
@@ -16,6 +17,8 @@ pub enum Place {
     Pair(usize, usize),
     /// A joint, and the one whose torque it feels.
     Hears(usize, usize),
+    /// The joint of a law of the user, with the law.
+    Law(UserLaw),
     /// The whole robot.
     Robot,
 }
@@ -46,13 +49,18 @@ impl Place {
         if let Self::Hears(a, b) = self { Some([a, b]) } else { None }
     }
 
+    /// The law of the user, where there is one.
+    pub fn law(self) -> Option<UserLaw> {
+        if let Self::Law(law) = self { Some(law) } else { None }
+    }
+
     /// The joint whose state and scales a law of a joint at this place is made from: its own, the one that it feels, or
     /// where all joints share a law, the first one for all.
     pub fn law_of(self) -> Option<usize> {
         match self {
             Self::Joint(j) | Self::Hears(_, j) => Some(j),
             Self::Robot => Some(0),
-            Self::Variant(_) | Self::Link(_) | Self::Pair(..) => None,
+            Self::Variant(_) | Self::Link(_) | Self::Pair(..) | Self::Law(_) => None,
         }
     }
 
@@ -61,6 +69,7 @@ impl Place {
         match self {
             Self::Joint(j) | Self::Hears(j, _) => vec![j],
             Self::Pair(a, b) => vec![a, b],
+            Self::Law(law) => vec![law.joint()],
             Self::Variant(_) | Self::Link(_) | Self::Robot => (0..count).collect(),
         }
     }

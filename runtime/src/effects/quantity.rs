@@ -42,6 +42,13 @@ impl Quantities {
         self.get(name).map(|p| p.value)
     }
 
+    /// All of them by name: `k1 = 0.31 ± 0.02 N.m, k2 = ...`.
+    pub fn all(&self) -> String {
+        let each: Vec<String> =
+            self.0.iter().map(|p| format!("{} = {}", p.name, self.text(&p.name))).collect();
+        each.join(", ")
+    }
+
     /// Value and unit: `0.31 N.m`; empty where there is none.
     pub fn value(&self, name: &str) -> String {
         self.get(name).map_or_else(String::new, |p| format!("{}{}", short(p.value), unit(p)))

@@ -7,6 +7,8 @@ pub enum Step {
     Times(f64),
     /// By an amount; the number does not go below 0.
     Add(f64),
+    /// By an amount, above and below 0.
+    Move(f64),
     /// Not at all: it chooses between forms of the law.
     Keep,
 }
@@ -67,6 +69,7 @@ impl ShapeSearch {
             next[k] = match self.steps[k] {
                 Step::Times(factor) => next[k] * factor.powf(direction * size),
                 Step::Add(amount) => (next[k] + amount * direction * size).max(0.0),
+                Step::Move(amount) => next[k] + amount * direction * size,
                 Step::Keep => next[k],
             };
             let [low, high] = self.bounds[k];

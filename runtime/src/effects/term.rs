@@ -32,6 +32,11 @@ pub struct EffectTerm {
 }
 
 impl EffectTerm {
+    /// Its name in the JSON: that of the effect, or of the user's law.
+    pub fn id(&self) -> &'static str {
+        self.effect.id_at(self.place)
+    }
+
     /// What is wrong with a recording, where the term is that and nothing of the robot.
     pub fn distortion(&self) -> Option<Distortion> {
         match self.effect.form() {
@@ -42,7 +47,8 @@ impl EffectTerm {
             | Form::Body(_)
             | Form::Coupled
             | Form::Window
-            | Form::Free => None,
+            | Form::Free
+            | Form::User => None,
         }
     }
 
@@ -61,7 +67,8 @@ impl EffectTerm {
             | Form::Body(_)
             | Form::Coupled
             | Form::Window
-            | Form::Free => None,
+            | Form::Free
+            | Form::User => None,
         }
     }
 }

@@ -48,7 +48,7 @@ mod trajectory;
 mod unit;
 mod window;
 mod write;
-mod yaml;
+pub(crate) mod yaml;
 
 pub use column::Column;
 pub use error::RecordingError;

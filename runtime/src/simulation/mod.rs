@@ -59,6 +59,7 @@ mod state;
 mod steps;
 mod stiction;
 mod stiff;
+mod user;
 mod work;
 mod world;
 

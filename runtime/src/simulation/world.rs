@@ -9,6 +9,7 @@ use super::free::FreeTorque;
 use super::less_friction::LessFriction;
 use super::plant::Plant;
 use super::push::Push;
+use super::user::UserTorque;
 use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, FreeLaw, JointLaw, Place};
 use crate::model::{Model, ParameterKind, RecursiveModel, RecursiveModelError, Robot};
 
@@ -54,12 +55,15 @@ pub struct World<'m> {
     laws: Vec<(&'static dyn JointLaw, [usize; 2], EffectTerm)>,
     /// Laws over any variables, with their joints.
     free: Vec<(usize, EffectTerm)>,
+    /// Laws that a user wrote down.
+    of_user: Vec<EffectTerm>,
     /// Elastic joints; the inertia of the rotor where base parameters do not tell it apart.
     elastic: Vec<(ElasticJoint, Option<f64>)>,
     coupled: Vec<CoupledFriction>,
     pushes: Vec<ContactForce>,
     less_friction: bool,
     left_out: Vec<EffectKind>,
+    left_out_ids: Vec<&'static str>,
 }
 
 impl<'m> World<'m> {
@@ -80,11 +84,13 @@ impl<'m> World<'m> {
             parameters,
             laws: Vec::new(),
             free: Vec::new(),
+            of_user: Vec::new(),
             elastic: Vec::new(),
             coupled: Vec::new(),
             pushes: Vec::new(),
             less_friction: false,
             left_out: Vec::new(),
+            left_out_ids: Vec::new(),
         }
     }
 
@@ -105,7 +111,7 @@ impl<'m> World<'m> {
 
     /// Puts an effect in. Bodies become part of the parameters, laws of a joint torques; transmissions become elastic
     /// joints. What a plant does not have (errors of the table, skews of the recording, the inertia of a coupled rotor,
-    /// contacts, which belong to the recording they were seen in) or what does not fit the robot is left out and named.
+    /// contacts, which belong to the recording they were seen in, laws of a user over accelerations) or what does not fit the robot is left out and named.
     pub fn put(&mut self, term: &EffectTerm) {
         let n = self.nominal.robot().joints();
         let is_in = match term.effect.form() {
@@ -140,10 +146,16 @@ impl<'m> World<'m> {
                 }
                 _ => false,
             },
+            Form::User => {
+                let sound = UserTorque::new(self.nominal.robot(), term).is_some();
+                self.of_user.extend(sound.then(|| term.clone()));
+                sound
+            }
             Form::Sensitivity(_) | Form::Window => false,
         };
         if !is_in {
             self.left_out.push(term.effect);
+            self.left_out_ids.push(term.id());
         }
     }
 
@@ -222,6 +234,11 @@ impl<'m> World<'m> {
         &self.left_out
     }
 
+    /// Their names in the JSON: those of a user's laws are the user's.
+    pub fn left_out_ids(&self) -> &[&'static str] {
+        &self.left_out_ids
+    }
+
     /// The robot for a motion: pushes act in the motion that they name.
     ///
     /// # Errors
@@ -259,6 +276,9 @@ impl<'m> World<'m> {
             if let Some(torque) = FreeTorque::new(robot, chi, *joint, term) {
                 torques.push(Box::new(torque));
             }
+        }
+        for torque in self.of_user.iter().filter_map(|term| UserTorque::new(robot, term)) {
+            torques.push(Box::new(torque));
         }
         for coupled in &self.coupled {
             torques.push(Box::new(*coupled));

@@ -3,7 +3,7 @@
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::effects::{EffectKind, Place, SmoothingWindow, UserLaw};
 use crate::parallel;
 
 /// An effect at a place.
@@ -24,12 +24,13 @@ pub(in crate::diagnosis) struct Candidate {
 /// An effect at a place with the shapes to try.
 pub(in crate::diagnosis) type Proposal = (EffectKind, Place, Vec<Vec<f64>>);
 
-/// Places and shapes of every effect that this smoothing shows best. `orders[j]` are ripple orders seen on joint j.
+/// Places and shapes of every effect that this smoothing shows best, and of the laws of the user. `orders[j]` are ripple
+/// orders seen on joint j.
 pub(in crate::diagnosis) fn proposals(
     context: &Context<'_>,
     window: SmoothingWindow,
     change: bool,
-    orders: &[Vec<f64>],
+    (orders, laws): (&[Vec<f64>], &[UserLaw]),
 ) -> Vec<Proposal> {
     let robot = context.model.robot();
     let mut list = Vec::new();
@@ -46,6 +47,11 @@ pub(in crate::diagnosis) fn proposals(
             }
             list.push((effect, place, shapes));
         }
+    }
+    let of_user = EffectKind::UserLaw;
+    if of_user.properties().window == window {
+        let fits = |law: &&UserLaw| law.joint() < robot.joints() && law.variables(robot).is_ok();
+        list.extend(laws.iter().filter(fits).map(|law| (of_user, Place::Law(*law), law.grid())));
     }
     list
 }
@@ -84,6 +90,10 @@ pub(in crate::diagnosis) fn make(
             if effect.form().is_curve() {
                 // Of a curve, the motion shows what it passes.
                 trial.needed = 1;
+            }
+            if place.law().is_some() {
+                // A person who wrote a constant down asks for it.
+                trial.needed = trial.columns.len();
             }
             trial
         })

@@ -6,11 +6,12 @@ use crate::diagnosis::explanation::standard_model::StandardModelFit;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
 use crate::diagnosis::rows::design::{Design, RowAt};
 use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rows::free::values;
 use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{BINS, LEAST_DIFFERENCES, LEAST_MISMATCH, ORDERED_BY_VARIABLE};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::Abscissa;
+use crate::effects::{Abscissa, Variable};
 use crate::model::JointIndex;
 
 /// The variable that reveals a term, at a row of its first joint.
@@ -42,6 +43,12 @@ fn since_reversal(s: &Signals, joint: usize, t: usize) -> f64 {
     (s.q[joint][t] - s.q[joint][k]).abs()
 }
 
+/// The first variable of a law of the user.
+fn first_variable(model: &ExtendedModel<'_>, term: &Accepted) -> Option<Variable> {
+    let law = term.place.law()?;
+    law.variables(model.context.model.robot()).ok()?.first().copied()
+}
+
 /// The residual that a term has to explain on its first joint, and the term, over the variable that reveals it.
 pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, k: usize) -> Option<Curve> {
     let joint = *term.own.first()?;
@@ -61,19 +68,34 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
     let along = |r: &RowAt| {
         if properties.along_motion { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 }
     };
+    let variable = first_variable(model, term);
+    let over: Option<Vec<Vec<f64>>> =
+        variable.map(|v| (0..signals.len()).map(|k| values(&model.context, k, v)).collect());
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
         .filter(|&r| signals[design.rows[r].signal].is_target)
         .map(|r| {
             let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
             let sign = along(&design.rows[r]);
-            (abscissa(model, joint, term, &design.rows[r]), sign * (residual[r] + law), sign * law)
+            let at = match &over {
+                Some(of_motion) => of_motion[design.rows[r].signal][design.rows[r].centre],
+                None => abscissa(model, joint, term, &design.rows[r]),
+            };
+            (at, sign * (residual[r] + law), sign * law)
         })
         .collect();
     let mut curve = binned(rows);
-    let name = properties.abscissa.label(model.context.scales[joint].prismatic);
+    let prismatic = |j: usize| model.context.scales[j].prismatic;
+    let name = match variable {
+        Some(variable) => {
+            let number = |j: usize| model.context.model.robot().joint_number(JointIndex(j)).0;
+            let unit = variable.unit(variable.joint().is_some_and(prismatic));
+            format!("{}, {unit}", variable.words(number))
+        }
+        None => properties.abscissa.label(prismatic(joint)).to_owned(),
+    };
     curve.variable =
-        if properties.along_motion { format!("{name} (torques along the motion)") } else { name.into() };
+        if properties.along_motion { format!("{name} (torques along the motion)") } else { name };
     curve.unit = model.context.scales[joint].torque_unit().into();
     Some(curve)
 }

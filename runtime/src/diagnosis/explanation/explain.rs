@@ -58,8 +58,10 @@ pub(in crate::diagnosis) fn explain(
     let is_wave = |f: &Finding| f.term.effect.properties().abscissa == Abscissa::WaveAngle;
     let waves = |joint: usize| findings.iter().any(|f| is_wave(f) && f.joints.contains(&joint));
     let spectra = search.spectra.iter().filter(|s| waves(s.joint)).cloned().collect();
-    let removed =
-        |t: &Accepted| Removed { effect: t.effect.id().into(), joints: named_on(robot, t.effect, t.place) };
+    let removed = |t: &Accepted| Removed {
+        effect: t.effect.id_at(t.place).into(),
+        joints: named_on(robot, t.effect, t.place),
+    };
     let mut diagnosis = Diagnosis {
         robot: robot.name.to_string(),
         before: standard.in_sample.clone(),
@@ -91,6 +93,7 @@ pub(in crate::diagnosis) fn explain(
     };
     stand(model, &mut diagnosis, settings.threads);
     diagnosis.verdict = words::verdict(&diagnosis);
+    diagnosis.verdict.extend(words::of_user(robot, &settings.laws, &search.untried, &diagnosis));
     if let Some(reference) = &model.context.reference {
         diagnosis.verdict.push(words::of_reference(reference.is_diagonal()));
     }
@@ -141,7 +144,7 @@ fn cannot_tell(model: &ExtendedModel<'_>, effects: &[Finding]) -> Vec<CannotTell
     for (term, finding) in model.terms.iter().zip(effects) {
         for rival in term.rivals.iter().filter(|r| r.difference_p_value > TOLD_APART) {
             list.push(CannotTell {
-                between: vec![finding.effect.clone(), rival.effect.id().into()],
+                between: vec![finding.effect.clone(), rival.effect.id_at(rival.place).into()],
                 joints: finding.joints.clone(),
                 experiment: experiment(robot, (term.effect, term.place), (rival.effect, rival.place)),
                 variables: if rival.shape.is_empty() {
@@ -183,7 +186,7 @@ fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
     joints.sort_unstable();
     joints.dedup();
     CannotTell {
-        between: tie.effects.iter().map(|e| e.id().to_string()).collect(),
+        between: (0..2).map(|k| tie.effects[k].id_at(tie.places[k]).to_string()).collect(),
         joints,
         experiment: experiment(robot, (tie.effects[0], tie.places[0]), (tie.effects[1], tie.places[1])),
         variables: Vec::new(),
@@ -196,7 +199,7 @@ pub(in crate::diagnosis) fn small(search: &Search<'_>, settings: &Settings) -> V
     let unit = |own: &[usize]| own.first().map_or("N.m", |&j| context.scales[j].torque_unit());
     let laws = search.small(settings).into_iter();
     laws.map(|law| Small {
-        effect: law.effect.id().into(),
+        effect: law.effect.id_at(law.place).into(),
         joints: named_on(context.model.robot(), law.effect, law.place),
         torque: law.size.law,
         least: law.size.needed,

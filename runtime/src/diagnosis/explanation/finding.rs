@@ -11,7 +11,7 @@ use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue, WithoutIt}
 use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{EffectKind, EffectTerm, Form, Place};
+use crate::effects::{EffectKind, EffectTerm, Form, Place, UserLaw};
 use crate::model::{JointIndex, Robot};
 
 /// A term without amplitudes: what an effect at a place with a shape is.
@@ -76,6 +76,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
 fn variables(robot: &Robot, accepted: &Accepted) -> Vec<String> {
     match accepted.effect.form() {
         Form::Free => free_form::variables(robot, &accepted.shape),
+        Form::User => accepted.place.law().map_or_else(Vec::new, UserLaw::inputs),
         _ => Vec::new(),
     }
 }
@@ -115,7 +116,7 @@ fn alternatives(model: &ExtendedModel<'_>, k: usize) -> Vec<Alternative> {
         if variables.is_empty() { String::new() } else { format!("over {}: ", variables.join(" and ")) }
     };
     let alternative = |rival: &crate::diagnosis::search::term::Rival| Alternative {
-        effect: rival.effect.id().into(),
+        effect: rival.effect.id_at(rival.place).into(),
         joints: named_on(model.context.model.robot(), rival.effect, rival.place),
         why_not: format!(
             "{}explains {:.0} % of what held-out motion leaves open, against {:.0} %",

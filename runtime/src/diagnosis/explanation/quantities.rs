@@ -115,6 +115,10 @@ pub(in crate::diagnosis) fn quantified(
             CoupledRotor { ratio }.parameters(&amplitude, &sigma, ratio_sigma)
         }),
         Form::Free => free_form::swing(model, term, &amplitude, &sigma).map(|swing| vec![swing]),
+        Form::User => term.place.law().map(|law| {
+            let unit = context.scales[law.joint()].torque_unit();
+            law.parameters([&amplitude, &sigma], [&term.shape, &shape_sigma], unit)
+        }),
         Form::Window => None,
     };
     Quantified { parameters: parameters.unwrap_or_default(), amplitude, sigma }

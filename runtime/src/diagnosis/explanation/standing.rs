@@ -30,5 +30,5 @@ pub(in crate::diagnosis) fn terms(model: &ExtendedModel<'_>) -> Vec<(EffectTerm,
 
 /// One of them as it is told.
 pub(in crate::diagnosis) fn told(term: &EffectTerm) -> Standing {
-    Standing { effect: term.effect.id().into(), joints: term.joints.clone(), term: term.clone() }
+    Standing { effect: term.id().into(), joints: term.joints.clone(), term: term.clone() }
 }

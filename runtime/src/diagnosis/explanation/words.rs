@@ -2,8 +2,8 @@
 
 use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
 use crate::diagnosis::rules;
-use crate::effects::{EffectKind, Parameter, Quantities};
-use crate::model::Robot;
+use crate::effects::{EffectKind, Parameter, Place, Quantities, UserLaw};
+use crate::model::{JointIndex, Robot};
 use crate::report::{falls_or_rises, significant};
 
 impl Finding {
@@ -15,6 +15,10 @@ impl Finding {
 
     /// The law with the numbers that were found, in SI units; `None` where no formula of one line says it.
     pub fn formula(&self) -> Option<String> {
+        if let Some(law) = self.term.place.law() {
+            let number = |name: &str| self.parameters.get(name).map(|p| signed(p.value));
+            return Some(law.with_numbers(number));
+        }
         let formula = EffectKind::from_id(&self.effect)?.effect().formula(&self.quantities());
         (!formula.is_empty()).then_some(formula)
     }
@@ -30,6 +34,9 @@ pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Find
             format!("On joints {}", many.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and "))
         }
     };
+    if let Some(law) = f.term.place.law() {
+        return of_law(&place, law, f);
+    }
     if !f.variables.is_empty() {
         return free_form(&place, effect, f);
     }
@@ -43,6 +50,57 @@ pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Find
         100.0 * f.held_out_before,
         100.0 * f.held_out_after
     )
+}
+
+/// A number that may stand anywhere in a formula.
+fn signed(x: f64) -> String {
+    if x < 0.0 { format!("({})", significant(x, 3)) } else { significant(x, 3) }
+}
+
+/// A law of the user with its constants.
+fn of_law(place: &str, law: UserLaw, f: &Finding) -> String {
+    format!(
+        "{place}: your law {}, {}, with {}. Held-out error of its joints {} from {:.2} % to {:.2} %.",
+        law.id(),
+        law.text(),
+        f.quantities().all(),
+        falls_or_rises(f.held_out_before, f.held_out_after),
+        100.0 * f.held_out_before,
+        100.0 * f.held_out_after
+    )
+}
+
+/// What became of the laws of the user that were not named.
+pub(in crate::diagnosis) fn of_user(
+    robot: &Robot,
+    laws: &[UserLaw],
+    untried: &[UserLaw],
+    d: &Diagnosis,
+) -> Vec<String> {
+    let named = |law: &UserLaw| {
+        let terms = d.findings.iter().map(|f| &f.term).chain(d.standing.iter().map(|s| &s.term));
+        terms.into_iter().any(|term| term.place == Place::Law(*law))
+    };
+    let words = |law: &UserLaw| {
+        let number = robot.joint_number(JointIndex(law.joint())).0;
+        let what = format!("Your law {} on joint {number}", law.id());
+        let rival = d.cannot_tell.iter().find_map(|c| {
+            let other = |id: &&String| *id != law.id();
+            c.between.iter().any(|id| id == law.id()).then(|| c.between.iter().find(other)).flatten()
+        });
+        if let Some(rival) = rival {
+            format!("{what} was tried; this motion cannot tell it from {rival}.")
+        } else if untried.contains(law) {
+            format!(
+                "{what} was not tried: on this motion the standard model makes the torque of one of its terms, or the law has no finite value."
+            )
+        } else {
+            format!(
+                "{what} was tried and is not named: this recording does not show it beside what was found."
+            )
+        }
+    };
+    laws.iter().filter(|law| !named(law)).map(words).collect()
 }
 
 /// What depends on variables that the words of its effect do not say.
@@ -155,7 +213,9 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             .findings
             .iter()
             .map(|f| {
-                let title = EffectKind::from_id(&f.effect).map_or("", |k| k.words().title).to_lowercase();
+                let title = EffectKind::from_id(&f.effect)
+                    .map_or(f.effect.as_str(), |k| k.words().title)
+                    .to_lowercase();
                 match f.joints.as_slice() {
                     [] => title,
                     joints => {

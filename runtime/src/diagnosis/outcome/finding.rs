@@ -78,7 +78,7 @@ impl Finding {
     /// A term of a model, with everything else still unknown: no confidence, no errors, no words.
     pub fn of(term: EffectTerm) -> Self {
         Self {
-            effect: term.effect.id().into(),
+            effect: term.id().into(),
             joints: term.joints.clone(),
             confidence: 0.0,
             significance: 0.0,

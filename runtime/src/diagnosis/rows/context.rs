@@ -4,6 +4,7 @@ use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
+use crate::diagnosis::rows::user::user_columns;
 use crate::diagnosis::rules::{DRIVING_BAND, LEAST_LINK_INERTIA, RATE_PER_CUTOFF};
 use crate::effects::{
     At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
@@ -101,6 +102,7 @@ impl<'a> Context<'a> {
             Form::Body(_) => place.link().map(|frame| self.body(signal, frame)),
             Form::Coupled => place.pair().map(|joints| self.coupled(signal, joints, shape)),
             Form::Free => place.joint().and_then(|j| free_columns(self, signal, j, shape)),
+            Form::User => place.law().and_then(|law| user_columns(self, signal, law, shape)),
             Form::Window => None,
         };
         columns.unwrap_or_default()

@@ -10,3 +10,4 @@ pub(in crate::diagnosis) mod prior;
 pub(in crate::diagnosis) mod scales;
 pub(in crate::diagnosis) mod selection;
 pub(in crate::diagnosis) mod signals;
+pub(in crate::diagnosis) mod user;

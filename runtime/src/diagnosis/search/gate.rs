@@ -12,13 +12,14 @@ use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow};
+use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow, UserLaw};
 use crate::parallel;
 use std::sync::OnceLock;
 
 /// Whether a law is a number of the model that changes with time, of one joint or of all.
 fn is_trend(candidate: &Candidate) -> bool {
     candidate.effect.properties().abscissa == Abscissa::Time
+        || candidate.place.law().is_some_and(UserLaw::is_of_time)
 }
 
 /// What a law's evidence and size say.

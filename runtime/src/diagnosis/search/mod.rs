@@ -18,3 +18,4 @@ pub(in crate::diagnosis) mod select;
 pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod state;
 pub(in crate::diagnosis) mod term;
+mod user_law;

@@ -12,13 +12,15 @@ use crate::diagnosis::search::line::{JointLines, all_lines};
 use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::effects::{EffectKind, Place, SmoothingWindow, UserLaw};
 use crate::model::JointIndex;
 use crate::parallel;
 
 /// The search's state.
 pub(in crate::diagnosis) struct Search<'a> {
     pub model: ExtendedModel<'a>,
+    /// Laws of the user that this motion cannot show.
+    pub untried: Vec<UserLaw>,
     /// Candidates on the slow rows.
     pub slow: Vec<Candidate>,
     /// Candidates on the fast rows.
@@ -61,8 +63,9 @@ impl<'a> Search<'a> {
         }
         let orders: Vec<Vec<f64>> = spectra.iter().map(|s| peaks(s, PEAKS)).collect();
         let context = &model.context;
-        let slow = proposals(context, SmoothingWindow::Slow, change, &orders);
-        let mut fast = proposals(context, SmoothingWindow::Fast, change, &orders);
+        let seen = (orders.as_slice(), settings.laws.as_slice());
+        let slow = proposals(context, SmoothingWindow::Slow, change, seen);
+        let mut fast = proposals(context, SmoothingWindow::Fast, change, seen);
         if settings.fast_window >= settings.slow_window {
             // The recording is too slow to hold the ringing and the bursts of compliant transmissions.
             fast.retain(|(effect, ..)| !effect.form().is_fast_only());
@@ -78,8 +81,11 @@ impl<'a> Search<'a> {
         let wanted = |c: &Candidate| !settings.excluded.contains(&(c.effect, c.place));
         slow.retain(|c| wanted(c) && model.slow.is_identifiable(c));
         fast.retain(|c| wanted(c) && model.fast.is_identifiable(c));
+        let is_tried = |law: &UserLaw| slow.iter().any(|c: &Candidate| c.place == Place::Law(*law));
+        let untried = settings.laws.iter().copied().filter(|law| !is_tried(law)).collect();
         Self {
             model,
+            untried,
             slow,
             fast,
             rejected: Vec::new(),

@@ -2,4 +2,4 @@
 
 mod positions;
 
-pub(super) use positions::{MAX_BYTES, Mistake, Node, Place, read_positions};
+pub(crate) use positions::{MAX_BYTES, Mistake, Node, Place, read_positions, read_positions_of};

@@ -2,16 +2,16 @@
 
 use std::collections::HashMap;
 
-use saphyr_parser::{Event, Marker, Parser};
+use saphyr_parser::{Event, Marker, Parser, Span};
 
 /// Longest file that is read, bytes; a recording of a thousand windows needs less than a tenth of it.
-pub(in crate::recording) const MAX_BYTES: usize = 1 << 20;
+pub(crate) const MAX_BYTES: usize = 1 << 20;
 /// Deepest nesting that is read; a recording needs four levels.
 const MAX_DEPTH: usize = 16;
 
 /// Line and column in characters, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::recording) struct Place {
+pub(crate) struct Place {
     pub line: usize,
     pub column: usize,
 }
@@ -27,25 +27,28 @@ impl Place {
 
 /// What is wrong with a file, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::recording) struct Mistake {
+pub(crate) struct Mistake {
     pub place: Place,
     pub message: String,
 }
 
 /// A value and where it starts.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::recording) struct Node {
+pub(crate) struct Node {
     pub place: Place,
     pub content: Content,
 }
 
 /// What is inside of a value.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::recording) enum Content {
+pub(crate) enum Content {
     /// A scalar or an alias.
     Single {
         /// Nothing stands there.
         empty: bool,
+        /// Columns from its place to its first character; `None` where characters of the text stand elsewhere: escapes,
+        /// several lines, an alias.
+        first: Option<usize>,
     },
     Sequence(Vec<Node>),
     /// Keys in the order of the file, each with its place.
@@ -61,6 +64,26 @@ impl Node {
     /// Whether a mapping has this key.
     pub fn has(&self, key: &str) -> bool {
         self.entry(key).is_some()
+    }
+
+    /// The place of a character of a value's text, as far as it is known.
+    pub fn place_of_text(&self, offset: usize) -> Place {
+        match self.content {
+            Content::Single { first: Some(first), .. } => {
+                Place { line: self.place.line, column: self.place.column + first + offset }
+            }
+            _ => self.place,
+        }
+    }
+
+    /// The value of a key, or an item of a list.
+    pub fn value_of(&self, key: &str) -> Option<&Node> {
+        self.find(key)
+    }
+
+    /// The items of a list.
+    pub fn items(&self) -> Option<&[Node]> {
+        if let Content::Sequence(items) = &self.content { Some(items) } else { None }
     }
 
     /// The place of `keys[0]`, of `keys[1]` in its value, and so on, as far as they are there. A number stands for an
@@ -108,12 +131,20 @@ struct Open {
 /// # Errors
 /// Text that is too long, not UTF-8 or not YAML, a tab that indents, nesting that is too deep, a key that is there
 /// twice, a second document.
-pub(in crate::recording) fn read_positions(bytes: &[u8]) -> Result<Option<Node>, Mistake> {
-    let text = text_of(bytes)?;
+pub(crate) fn read_positions(bytes: &[u8]) -> Result<Option<Node>, Mistake> {
+    read_positions_of(bytes, "recording")
+}
+
+/// The same of a file that is no recording but `what`.
+///
+/// # Errors
+/// As [`read_positions`].
+pub(crate) fn read_positions_of(bytes: &[u8], what: &str) -> Result<Option<Node>, Mistake> {
+    let text = text_of(bytes, what)?;
     let mut root = None;
     let mut open: Vec<Open> = Vec::new();
     for event in Parser::new_from_str(text) {
-        let (event, span) = event.map_err(|e| not_yaml(text, Place::of(*e.marker()), e.info()))?;
+        let (event, span) = event.map_err(|e| not_yaml(text, Place::of(*e.marker()), e.info(), what))?;
         let place = Place::of(span.start);
         let finished = match event {
             Event::Scalar(value, ..) => {
@@ -123,12 +154,15 @@ pub(in crate::recording) fn read_positions(bytes: &[u8]) -> Result<Option<Node>,
                     mapping.take_key(value.into_owned(), place)?;
                     continue;
                 }
-                Node { place, content: Content::Single { empty: value.is_empty() } }
+                Node {
+                    place,
+                    content: Content::Single { empty: value.is_empty(), first: first(&value, &span) },
+                }
             }
-            Event::Alias(_) => Node { place, content: Content::Single { empty: false } },
+            Event::Alias(_) => Node { place, content: Content::Single { empty: false, first: None } },
             Event::SequenceStart(..) | Event::MappingStart(..) => {
                 if open.len() == MAX_DEPTH {
-                    return Err(too_deep(place));
+                    return Err(too_deep(place, what));
                 }
                 let content = match event {
                     Event::SequenceStart(..) => Content::Sequence(Vec::new()),
@@ -142,7 +176,7 @@ pub(in crate::recording) fn read_positions(bytes: &[u8]) -> Result<Option<Node>,
                 None => continue,
             },
             Event::DocumentStart(_) if root.is_some() => {
-                let message = "a second document; expected one recording a file".to_owned();
+                let message = format!("a second document; expected one {what} a file");
                 return Err(Mistake { place, message });
             }
             _ => continue,
@@ -152,7 +186,13 @@ pub(in crate::recording) fn read_positions(bytes: &[u8]) -> Result<Option<Node>,
             None => root = Some(finished),
         }
     }
-    Ok(root.filter(|node| node.content != Content::Single { empty: true }))
+    Ok(root.filter(|node| !matches!(node.content, Content::Single { empty: true, .. })))
+}
+
+/// Columns from the start of a scalar to its first character: none, or the quote.
+fn first(value: &str, span: &Span) -> Option<usize> {
+    let written = span.end.index().checked_sub(span.start.index())?;
+    (0..2).find(|quote| written == value.chars().count() + 2 * quote)
 }
 
 impl Open {
@@ -181,10 +221,9 @@ impl Open {
 }
 
 /// The text of a file without a byte-order mark.
-fn text_of(bytes: &[u8]) -> Result<&str, Mistake> {
+fn text_of<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str, Mistake> {
     if bytes.len() > MAX_BYTES {
-        let message =
-            format!("the file is longer than {MAX_BYTES} bytes, the most that a recording YAML has");
+        let message = format!("the file is longer than {MAX_BYTES} bytes, the most that a {what} YAML has");
         return Err(Mistake { place: Place::START, message });
     }
     let text = std::str::from_utf8(bytes).map_err(|e| {
@@ -198,12 +237,12 @@ fn text_of(bytes: &[u8]) -> Result<&str, Mistake> {
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
-fn too_deep(place: Place) -> Mistake {
-    Mistake { place, message: format!("nested deeper than {MAX_DEPTH} levels; a recording needs four") }
+fn too_deep(place: Place, what: &str) -> Mistake {
+    Mistake { place, message: format!("nested deeper than {MAX_DEPTH} levels; a {what} needs four") }
 }
 
 /// What the parser said, or the tab that it stumbled over: the usual cause, which it tells elsewhere.
-fn not_yaml(text: &str, place: Place, info: &str) -> Mistake {
+fn not_yaml(text: &str, place: Place, info: &str, what: &str) -> Mistake {
     let tab = text.lines().enumerate().skip(place.line - 1).take(2).find_map(|(k, line)| {
         let mut indent = line.chars().take_while(|c| c.is_whitespace());
         Some(Place { line: k + 1, column: indent.position(|c| c == '\t')? + 1 })
@@ -213,7 +252,7 @@ fn not_yaml(text: &str, place: Place, info: &str) -> Mistake {
             Mistake { place, message: "not YAML: indented with a tab; expected spaces".to_owned() }
         }
         // The parser has a limit of its own and reads ahead.
-        None if info.contains("recursion limit") => too_deep(place),
+        None if info.contains("recursion limit") => too_deep(place, what),
         None => Mistake { place, message: format!("not YAML: {info}") },
     }
 }

@@ -62,5 +62,5 @@ pub(super) fn follow(
 /// Names of the effects that such a simulation does not have.
 pub(super) fn left_out(model: &dyn Model, chi: &[f64], terms: &[EffectTerm]) -> Vec<String> {
     let world = World::from_base(model, chi).with(terms);
-    world.left_out().iter().map(|effect| effect.id().to_owned()).collect()
+    world.left_out_ids().iter().map(|id| (*id).to_owned()).collect()
 }
