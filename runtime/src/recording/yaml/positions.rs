@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use saphyr_parser::{Event, Marker, Parser, Span};
+use saphyr_parser::{Event, Marker, Parser, ScalarStyle, Span};
 
 /// Longest file that is read, bytes; a recording of a thousand windows needs less than a tenth of it.
 pub(crate) const MAX_BYTES: usize = 1 << 20;
@@ -147,7 +147,7 @@ pub(crate) fn read_positions_of(bytes: &[u8], what: &str) -> Result<Option<Node>
         let (event, span) = event.map_err(|e| not_yaml(text, Place::of(*e.marker()), e.info(), what))?;
         let place = Place::of(span.start);
         let finished = match event {
-            Event::Scalar(value, ..) => {
+            Event::Scalar(value, style, ..) => {
                 if let Some(mapping) = open.last_mut()
                     && mapping.waits_for_key()
                 {
@@ -156,7 +156,7 @@ pub(crate) fn read_positions_of(bytes: &[u8], what: &str) -> Result<Option<Node>
                 }
                 Node {
                     place,
-                    content: Content::Single { empty: value.is_empty(), first: first(&value, &span) },
+                    content: Content::Single { empty: value.is_empty(), first: first(&value, style, &span) },
                 }
             }
             Event::Alias(_) => Node { place, content: Content::Single { empty: false, first: None } },
@@ -190,9 +190,14 @@ pub(crate) fn read_positions_of(bytes: &[u8], what: &str) -> Result<Option<Node>
 }
 
 /// Columns from the start of a scalar to its first character: none, or the quote.
-fn first(value: &str, span: &Span) -> Option<usize> {
+fn first(value: &str, style: ScalarStyle, span: &Span) -> Option<usize> {
+    let quote = match style {
+        ScalarStyle::Plain => 0,
+        ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => 1,
+        ScalarStyle::Literal | ScalarStyle::Folded => return None,
+    };
     let written = span.end.index().checked_sub(span.start.index())?;
-    (0..2).find(|quote| written == value.chars().count() + 2 * quote)
+    (written == value.chars().count() + 2 * quote).then_some(quote)
 }
 
 impl Open {
