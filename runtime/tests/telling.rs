@@ -27,13 +27,14 @@ fn told(robot: &SimulatedRobot, motion: &ExcitingMotion, law: &EffectTerm, seed:
     diagnose(&robot.model, &recording, &[], &settings, &Silent).ok()
 }
 
-/// What a diagnosis names.
-fn named(diagnosis: &Option<Diagnosis>) -> Vec<&str> {
-    diagnosis.iter().flat_map(|d| &d.findings).map(|f| f.effect.as_str()).collect()
+/// What a diagnosis says is there: these laws are smaller than the noise, so that it may call them small.
+fn there(diagnosis: &Option<Diagnosis>) -> Vec<&str> {
+    let findings = diagnosis.iter().flat_map(|d| &d.findings).map(|f| f.effect.as_str());
+    findings.chain(diagnosis.iter().flat_map(|d| &d.small).map(|s| s.effect.as_str())).collect()
 }
 
 /// Simulates each of two laws, as small as an ordinary motion puts them `apart` times the noise apart at most, on the
-/// motion that was made for them, where it must be named and nothing else, and on the ordinary one, where not both are.
+/// motion that was made for them, where it must be told and nothing else, and on the ordinary one, where not both are.
 fn assert_told(effects: [EffectKind; 2], joint: usize, apart: f64) {
     let robot = common::planar();
     let plan = plan(&robot, effects, joint);
@@ -46,8 +47,8 @@ fn assert_told(effects: [EffectKind; 2], joint: usize, apart: f64) {
         let amplitude = law.amplitude.iter().map(|x| x * scale).collect();
         let law = EffectTerm { amplitude, ..law.clone() };
         let id = law.effect.id();
-        assert_eq!(named(&told(&robot, &best.motion, &law, 1)), [id], "on {}", best.what);
-        on_ordinary += usize::from(named(&told(&robot, &plan.ordinary.motion, &law, 1)) == [id]);
+        assert_eq!(there(&told(&robot, &best.motion, &law, 1)), [id], "on {}", best.what);
+        on_ordinary += usize::from(there(&told(&robot, &plan.ordinary.motion, &law, 1)) == [id]);
     }
     assert!(on_ordinary < plan.laws.len(), "an ordinary motion tells {effects:?} as well");
 }

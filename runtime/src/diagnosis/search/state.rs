@@ -175,6 +175,13 @@ impl<'a> Search<'a> {
         self.slow.len() + self.fast.len() + self.more_tries
     }
 
+    /// Whether a candidate of the catalogue could only take the place of a law that was told as small: all that hold beside
+    /// it were in the model when it was taken out.
+    fn rival_of_small(&self, candidate: &Candidate) -> bool {
+        let free = candidate.effect == EffectKind::FreeForm;
+        !self.model.change && !free && self.small.iter().any(|s| s.own == candidate.own)
+    }
+
     /// Whether a candidate is in the model already, or has been taken out of it.
     pub fn is_excluded(&self, candidate: &Candidate) -> bool {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
@@ -185,8 +192,7 @@ impl<'a> Search<'a> {
         }
         !candidate.effect.properties().repeats && self.model.terms.iter().any(same)
             || self.rejected.iter().any(same)
-            || !self.model.change
-                && self.small.iter().any(|s| (s.effect, s.place) == (candidate.effect, candidate.place))
+            || self.rival_of_small(candidate)
     }
 }
 
