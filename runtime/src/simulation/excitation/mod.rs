@@ -9,7 +9,9 @@ mod limits;
 mod motion;
 mod point_to_point;
 mod settings;
+#[cfg(feature = "diagnosis")]
 mod strokes;
+#[cfg(feature = "diagnosis")]
 mod tell;
 #[cfg(test)]
 mod tests;
@@ -21,4 +23,5 @@ pub use limits::peak_torque_share;
 pub use motion::ExcitingMotion;
 pub use point_to_point::{PointToPointMotion, Profile};
 pub use settings::{ExcitationSettings, MotionKind};
+#[cfg(feature = "diagnosis")]
 pub use tell::{TellError, TellPlan, TellSettings, Told, tell};
