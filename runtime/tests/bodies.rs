@@ -2,7 +2,6 @@
 //! no body can be is none.
 #![allow(clippy::unwrap_used)]
 
-#[allow(dead_code, unused_imports, reason = "every test program uses its own part")]
 mod common;
 
 use common::Hidden;

@@ -1,14 +1,13 @@
 //! Recordings judged against a model of the same robot from before it changed.
 #![allow(clippy::unwrap_used)]
 
-#[allow(dead_code, unused_imports, reason = "every test program uses its own part")]
 mod common;
 
 use std::sync::{Arc, LazyLock};
 
-use common::{Hidden, SimulatedRobot};
+use common::{Hidden, SimulatedRobot, term};
 use dynid_runtime::diagnosis::{Diagnosis, Reference, Settings, Silent, diagnose};
-use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
+use dynid_runtime::effects::{EffectKind, EffectTerm, Place};
 use dynid_runtime::model::Model;
 use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, NamedParameter};
 use dynid_runtime::prediction::Errors;
@@ -20,16 +19,7 @@ const MU: f64 = 0.12;
 const STIFFNESS: f64 = 2.0;
 
 fn law(effect: EffectKind, joint: usize, shape: &[f64], amplitude: &[f64]) -> EffectTerm {
-    EffectTerm {
-        effect,
-        place: Place::Joint(joint),
-        joints: Vec::new(),
-        shape: shape.to_vec(),
-        amplitude: amplitude.to_vec(),
-        sigma: vec![0.0; amplitude.len()],
-        scale: Some(TermScale::UNIT),
-        wrenches: Vec::new(),
-    }
+    term(effect, Place::Joint(joint), shape, amplitude)
 }
 
 /// The robot with its own laws, its load friction being `mu`, and with what `more` adds.

@@ -2,7 +2,6 @@
 //! diagnosed.
 #![allow(clippy::unwrap_used)]
 
-#[allow(dead_code, unused_imports, reason = "every test program uses its own part")]
 mod common;
 
 use common::{Hidden, SimulatedRobot};

@@ -12,8 +12,6 @@ pub struct Hidden {
     pub distort: fn(&mut Trajectory),
 }
 
-// Each test program uses its own part of this.
-#[allow(dead_code)]
 impl Hidden {
     /// Nothing.
     pub fn nothing() -> Self {
@@ -32,16 +30,21 @@ impl Hidden {
 
     /// An effect with its shape and amplitudes in SI, as its law defines them.
     pub fn effect(effect: EffectKind, place: Place, shape: &[f64], amplitude: &[f64]) -> Self {
-        let term = EffectTerm {
-            effect,
-            place,
-            joints: Vec::new(),
-            shape: shape.to_vec(),
-            amplitude: amplitude.to_vec(),
-            sigma: vec![0.0; amplitude.len()],
-            scale: Some(TermScale::UNIT),
-            wrenches: Vec::new(),
-        };
+        let term = term(effect, place, shape, amplitude);
         Self::in_robot(move |world| world.put(&term))
+    }
+}
+
+/// An effect with its shape and amplitudes in SI, as its law defines them, as part of a model.
+pub fn term(effect: EffectKind, place: Place, shape: &[f64], amplitude: &[f64]) -> EffectTerm {
+    EffectTerm {
+        effect,
+        place,
+        joints: Vec::new(),
+        shape: shape.to_vec(),
+        amplitude: amplitude.to_vec(),
+        sigma: vec![0.0; amplitude.len()],
+        scale: Some(TermScale::UNIT),
+        wrenches: Vec::new(),
     }
 }

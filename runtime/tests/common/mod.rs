@@ -1,10 +1,10 @@
 //! Two small robots, and recordings of them with known physics beyond the standard model.
 
+// Each test program uses its own part of this.
+#![allow(dead_code, unused_imports)]
+
 mod hidden;
-#[allow(dead_code)]
 mod robots;
 
-pub use hidden::Hidden;
-// Each test program uses its own part of this.
-#[allow(unused_imports)]
+pub use hidden::{Hidden, term};
 pub use robots::{SimulatedRobot, planar, scara};

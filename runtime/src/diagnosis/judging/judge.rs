@@ -132,7 +132,7 @@ impl Regression {
         fold: &'a Fold,
     ) -> Option<Predicted<'a>> {
         if let Some(parts) = parts {
-            let (amplitude, _) = parts.on(&fold.fit.train, &self.sigma, &best.part).solve(candidate)?;
+            let amplitude = self.amplitude_from_rest_of_motion(candidate, (&best.part, parts), fold)?;
             return Some(Predicted::FromRest(parts, amplitude));
         }
         if candidate.fixed.is_some() {

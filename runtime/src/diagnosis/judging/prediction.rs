@@ -71,9 +71,19 @@ impl Regression {
         Some(Prediction::new(&fold.fit, trial, &part, amplitude))
     }
 
-    /// The same on a single motion: refitting all standard parameters to a part of it would drown every candidate in
+    /// Amplitudes on a single motion: refitting all standard parameters to a part of it would drown every candidate in
     /// their extrapolation. The trial is residualised on the `whole` motion, and only its amplitude is fitted to the
     /// segments of the fold.
+    pub fn amplitude_from_rest_of_motion(
+        &self,
+        candidate: &Candidate,
+        (whole, parts): (&Residualised, &BySegment),
+        fold: &Fold,
+    ) -> Option<DVector<f64>> {
+        parts.on(&fold.fit.train, &self.sigma, whole).solve(candidate).map(|(amplitude, _)| amplitude)
+    }
+
+    /// What a trial with these amplitudes changes.
     pub fn predict_from_rest_of_motion<'a>(
         &'a self,
         candidate: &Candidate,
@@ -81,7 +91,7 @@ impl Regression {
         (whole, parts): (&Residualised, &BySegment),
         fold: &Fold,
     ) -> Option<Prediction<'a>> {
-        let (amplitude, _) = parts.on(&fold.fit.train, &self.sigma, whole).solve(candidate)?;
+        let amplitude = self.amplitude_from_rest_of_motion(candidate, (whole, parts), fold)?;
         Some(Prediction::new(&self.fit, trial, whole, amplitude))
     }
 }

@@ -146,7 +146,7 @@ impl Signals {
 
     fn leave_known_out(&mut self) {
         for (torque, known) in self.torque.iter_mut().zip(self.known.iter().flatten()) {
-            torque.iter_mut().zip(known).for_each(|(t, k)| *t -= k);
+            leave_out(torque, known);
         }
     }
 
@@ -202,7 +202,7 @@ impl Signals {
             Some(r) if r.stride == 1 => {
                 let mut torque = shifted(&r.torque[joint], r.delay * r.rate);
                 if let Some(known) = &self.known {
-                    torque.iter_mut().zip(&known[joint]).for_each(|(t, k)| *t -= k);
+                    leave_out(&mut torque, &known[joint]);
                 }
                 (torque, RECORDED_BAND * r.rate)
             }
@@ -218,6 +218,11 @@ impl Signals {
     pub fn time(&self, t: usize) -> f64 {
         self.start + t as f64 / self.rate
     }
+}
+
+/// Takes a known torque out of one that was recorded.
+fn leave_out(torque: &mut [f64], known: &[f64]) {
+    torque.iter_mut().zip(known).for_each(|(t, k)| *t -= k);
 }
 
 /// The signal `samples` later: linear interpolation, the ends held.
