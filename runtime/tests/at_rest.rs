@@ -3,8 +3,11 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{Hidden, SimulatedRobot, planar, scara};
-use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Settings, Silent, diagnose};
+use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Reference, Settings, Silent, diagnose};
+use dynid_runtime::effects::{EffectKind, Place};
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
 use rand::{RngExt, SeedableRng};
@@ -55,13 +58,15 @@ fn diagnosed(
     diagnose(&robot.model, &[recording], baseline, &settings, &Silent)
 }
 
-/// The planar robot holding still with part of its static friction in its motors, and pushes.
-fn standing(pushes: &[(usize, f64, f64)]) -> Diagnosis {
-    let robot = planar();
-    let baseline = robot.record(&robot.motions(2, 8.0, 51), &Hidden::nothing(), 51);
-    let rest = |_: f64| [vec![0.4, 0.5], vec![0.0; 2], vec![0.0; 2]];
+/// The pose at which the planar robot holds still.
+const POSE: [f64; 2] = [0.4, 0.5];
+
+/// The planar robot holding still with part of its static friction, and `more`, in its motors, and pushes: (joint, instant,
+/// height).
+fn at_rest(robot: &SimulatedRobot, pushes: &[(usize, f64, f64)], more: [f64; 2]) -> Trajectory {
+    let rest = |_: f64| [POSE.to_vec(), vec![0.0; 2], vec![0.0; 2]];
     let outside = |t: f64| {
-        let mut torque = vec![1.5, -0.8];
+        let mut torque = vec![1.5 + more[0], -0.8 + more[1]];
         for &(joint, from, height) in pushes {
             if (0.0..1.0).contains(&(t - from)) {
                 torque[joint] += height * (std::f64::consts::PI * (t - from)).sin();
@@ -69,7 +74,29 @@ fn standing(pushes: &[(usize, f64, f64)]) -> Diagnosis {
         }
         torque
     };
-    diagnosed(&robot, recorded(&robot, 10.0, 1, rest, outside), &baseline).unwrap()
+    recorded(robot, 10.0, 1, rest, outside)
+}
+
+/// The same beside a baseline in which it moves.
+fn standing(pushes: &[(usize, f64, f64)]) -> Diagnosis {
+    let robot = planar();
+    let baseline = robot.record(&robot.motions(2, 8.0, 51), &Hidden::nothing(), 51);
+    diagnosed(&robot, at_rest(&robot, pushes, [0.0; 2]), &baseline).unwrap()
+}
+
+/// The same beside a model of the robot, which has a spring on joint 2.
+fn standing_beside_a_model(pushes: &[(usize, f64, f64)]) -> Diagnosis {
+    const STIFFNESS: f64 = 12.0;
+    let robot = planar();
+    let spring = Hidden::effect(EffectKind::Spring, Place::Joint(1), &[], &[STIFFNESS, 0.0]);
+    let moving = robot.record(&robot.motions(3, 8.0, 51), &spring, 51);
+    let mut settings = Settings::default();
+    settings.threads = 1;
+    let before = diagnose(&robot.model, &moving, &[], &settings, &Silent).unwrap();
+    assert_eq!(before.findings.iter().map(|f| f.effect.as_str()).collect::<Vec<_>>(), ["spring"]);
+    settings.reference = Reference::of(&before).map(Arc::new);
+    let recording = at_rest(&robot, pushes, [0.0, STIFFNESS * POSE[1]]);
+    diagnose(&robot.model, &[recording], &[], &settings, &Silent).unwrap()
 }
 
 #[test]
@@ -94,6 +121,18 @@ fn a_robot_that_holds_still_within_its_friction_shows_nothing() {
     let diagnosis = standing(&[(0, 2.0, 1.5)]);
     assert!(diagnosis.findings.is_empty(), "{:?}", diagnosis.verdict);
     assert!(diagnosis.cannot_tell.is_empty());
+}
+
+#[test]
+fn a_robot_that_holds_still_is_judged_against_a_model_with_its_laws() {
+    let nothing = standing_beside_a_model(&[(0, 2.0, 1.5)]);
+    assert!(nothing.findings.is_empty(), "{:?}", nothing.verdict);
+    // The spring of the model holds 6 N.m, four times what friction does: without it there would be another load.
+    assert!(nothing.cannot_tell.is_empty(), "{:?}", nothing.verdict);
+    let pushed = standing_beside_a_model(&[(1, 6.0, -6.0)]);
+    assert_eq!(pushed.findings.iter().map(|f| f.effect.as_str()).collect::<Vec<_>>(), ["contact"]);
+    assert_eq!(pushed.findings[0].contacts.len(), 1);
+    assert!(pushed.held_out.how.contains("reference"));
 }
 
 #[test]

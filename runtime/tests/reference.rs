@@ -139,6 +139,7 @@ fn a_file_with_standard_deviations_alone_still_is_a_reference_and_that_is_said()
     assert!(told.verdict.iter().any(|line| line.contains("no covariance")), "{:?}", told.verdict);
     // With the covariance of its file it is the model itself.
     let amplitudes: Vec<usize> = found.terms().iter().map(|t| t.amplitude.len()).collect();
+    saved.standstill = Some(found.sampling.standstill_speeds.clone());
     saved.covariance = Covariance::new(robot, &amplitudes, found.covariance.clone().unwrap());
     assert_eq!(saved.reference(robot).unwrap(), reference());
 }

@@ -11,6 +11,7 @@ use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
 use dynid_runtime::estimation::choose_bandwidth;
 use dynid_runtime::law_file;
+use dynid_runtime::model::JointIndex;
 use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, NamedParameter, difference, doubt};
 use dynid_runtime::signal::{Preparation, SpeedFault, contradicting_speeds};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
@@ -87,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         None => None,
     };
-    let contradictions = speed_words(&contradicting(&measured, &arguments.sampling), model.robot());
+    let speeds = contradicting(&measured, &arguments.sampling);
     let bar = Bar::new("diagnosis");
     let outcome = match &test {
         Some(test) => {
@@ -101,8 +102,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (ConfirmationError::Diagnosis(error), _) => diagnosis_failure(&source.recording, error),
         (error, _) => Failure::Data(format!("{}: {error}", source.recording.display())),
     };
-    let mut diagnosis = outcome.map_err(|error| and_of_speeds(failure(error), &contradictions))?;
-    diagnosis.verdict.extend(contradictions.iter().map(|words| format!("{}.", capital(words))));
+    let robot = model.robot();
+    let mut diagnosis =
+        outcome.map_err(|error| and_of_speeds(failure(error), &speed_words(&speeds, robot)))?;
+    // The speed of a joint that stands is noise.
+    let moves = |f: &SpeedFault| {
+        !diagnosis.not_judged.iter().any(|n| n.joint == robot.joint_number(JointIndex(f.joint)).0)
+    };
+    let speeds: Vec<SpeedFault> = speeds.into_iter().filter(moves).collect();
+    diagnosis.verdict.extend(speed_words(&speeds, robot).iter().map(|words| format!("{}.", capital(words))));
     let extras = Extras {
         fitted: fitted(&measured, &diagnosis, &arguments.sampling),
         tested: match (&test, &arguments.test) {
@@ -167,7 +175,8 @@ fn settings(options: &DiagnosisOptions, joints: usize) -> Settings {
 fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<Result<ClosedLoop, String>> {
     let duration: f64 =
         measured.trajectories.iter().filter_map(|t| Some(t.time.last()? - t.time.first()?)).sum();
-    if diagnosis.findings.is_empty() || (duration > QUICK && !asked) {
+    let nothing_moves = diagnosis.not_judged.len() == measured.dynamics.model().robot().joints();
+    if diagnosis.findings.is_empty() || nothing_moves || (duration > QUICK && !asked) {
         return None;
     }
     let bar = Bar::new("simulation");
@@ -234,6 +243,7 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
     Identified {
         effects: diagnosis.terms(),
         delay: diagnosis.delay,
+        standstill: Some(diagnosis.sampling.standstill_speeds.clone()),
         covariance: diagnosis.covariance.clone().and_then(|upper| {
             let amplitudes: Vec<usize> = diagnosis.terms().iter().map(|t| t.amplitude.len()).collect();
             Covariance::new(robot, &amplitudes, upper)

@@ -72,8 +72,11 @@ impl Motions {
         let (slowest, slowest_fast) = match given {
             Some(speeds) => (speeds.clone(), speeds),
             None => {
-                let slow: Vec<f64> =
+                let mut slow: Vec<f64> =
                     top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
+                // Where nothing moves, the reference knows what is slow.
+                let before = settings.reference.as_ref().and_then(|r| r.standstill()).unwrap_or_default();
+                slow.iter_mut().zip(before).for_each(|(slow, before)| *slow = slow.max(*before));
                 let fast = slow.iter().map(|v| v / rules::FAST_STANDSTILL_DIVISOR).collect();
                 (slow, fast)
             }

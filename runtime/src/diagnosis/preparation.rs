@@ -145,7 +145,8 @@ impl Fitted {
     ) -> Result<Self, DiagnosisError> {
         let mut motions = Motions::new(model, trajectories, baseline, settings)?;
         let mut aligned = motions.aligned(model);
-        let moving = Moving::of(&aligned);
+        let reference = motions.settings().reference.as_ref();
+        let moving = Moving::of(&aligned, reference.map(|r| r.knows_friction(model.robot())));
         if moving.fitted.contains(&false) {
             motions.hold_still(&moving.fitted);
             aligned = motions.aligned(model);
@@ -169,13 +170,24 @@ fn check_rows(
     moving: &Moving,
 ) -> Result<Vec<usize>, DiagnosisError> {
     if !moving.fitted.contains(&true) {
-        return Err(nothing_moves(model, moving));
+        // At rest beside a reference nothing is fitted: its parameters are known.
+        let known = design.prior.is_some() && moving.friction_known.contains(&true);
+        return if known { Ok(Vec::new()) } else { Err(nothing_moves(model, moving)) };
     }
     let parameters = design.parameters;
-    let free = fit.undetermined(rules::UNDETERMINED).into_iter().filter(|&k| k < parameters).count();
-    let few = free * rules::PARAMETERS_PER_UNDETERMINED <= parameters && !moving.fitted.contains(&false);
-    let left_over = if few { Vec::new() } else { left_over(design, &fit.sigma) };
-    let (rows, fitted) = (design.rows.len(), parameters - if few { free } else { left_over.len() });
+    let free: Vec<usize> =
+        fit.undetermined(rules::UNDETERMINED).into_iter().filter(|&k| k < parameters).collect();
+    let few =
+        free.len() * rules::PARAMETERS_PER_UNDETERMINED <= parameters && !moving.fitted.contains(&false);
+    let left_over = match &design.prior {
+        _ if few => Vec::new(),
+        // What a reference knows needs no motion.
+        Some(_) => free.clone(),
+        None => left_over(design, &fit.sigma),
+    };
+    let known = fit.known_beforehand(design).floor() as usize;
+    let not_fitted = known + if few { free.len() } else { left_over.len() };
+    let (rows, fitted) = (design.rows.len(), parameters.saturating_sub(not_fitted).max(1));
     let needed = rules::ROWS_PER_PARAMETER * fitted;
     if rows < needed {
         return Err(DiagnosisError::TooShort {
@@ -196,6 +208,9 @@ pub(super) fn nothing_moves(model: &dyn Model, moving: &Moving) -> DiagnosisErro
 
 /// Refuses recordings that the standard model has nothing to do with.
 fn check_fit(design: &Design, fit: &Fit) -> Result<(), DiagnosisError> {
+    if design.rows.is_empty() {
+        return Ok(());
+    }
     let (mut left, mut all) = (0.0, 0.0);
     for (j, s) in fit.sigma.iter().enumerate() {
         let rows = design.of_joint(j);

@@ -74,7 +74,8 @@ impl Pushes {
     /// All of them, and those at rest.
     pub fn with_those_at_rest(&self, prepared: &Prepared, search: &Search<'_>) -> Option<Contacts> {
         let motions = &prepared.motions;
-        let rest = standing::at_rest(&search.model.context, &prepared.moving.fitted, &motions.slowest);
+        let rest =
+            standing::at_rest(&search.model.context, &prepared.moving.friction_known, &motions.slowest);
         Contacts::joined(
             Contacts::joined(self.contacts.clone(), self.of_single_joints.clone()),
             rest.contacts(motions.signals.len()),

@@ -12,7 +12,7 @@ use super::predict::torques_on;
 use super::rows::prior::Prior;
 use super::rows::signals::Signals;
 use crate::effects::EffectTerm;
-use crate::model::Model;
+use crate::model::{Model, ParameterKind, Robot};
 use nalgebra::DMatrix;
 
 /// A model of the robot before it changed.
@@ -25,6 +25,8 @@ pub struct Reference {
     /// Unknowns of `covariance` that the reference determines.
     known: Vec<usize>,
     diagonal: bool,
+    /// Speeds below which a joint stands, rad/s or m/s, where they are known.
+    standstill: Option<Vec<f64>>,
 }
 
 /// Why a model cannot be a reference.
@@ -56,7 +58,7 @@ impl Reference {
         }
         let known: Vec<usize> =
             (0..unknowns).filter(|&k| covariance[(k, k)].is_finite() && covariance[(k, k)] > 0.0).collect();
-        let reference = Self { chi, effects, delay, covariance, known, diagonal };
+        let reference = Self { chi, effects, delay, covariance, known, diagonal, standstill: None };
         let all: Vec<usize> = (0..unknowns).collect();
         if reference.prior(&all).is_none() {
             return Err(NoReference { what: "its covariance is not positive definite".to_owned() });
@@ -72,7 +74,15 @@ impl Reference {
             let (i, k) = (i.min(k), i.max(k));
             upper.get(i * n + k - i * (i + 1) / 2).copied().unwrap_or(0.0)
         });
-        Self::new(diagnosis.model.chi.clone(), diagnosis.terms(), diagnosis.delay, covariance, false).ok()
+        let (chi, delay) = (diagnosis.model.chi.clone(), diagnosis.delay);
+        let reference = Self::new(chi, diagnosis.terms(), delay, covariance, false).ok()?;
+        Some(reference.standing_below(diagnosis.sampling.standstill_speeds.clone()))
+    }
+
+    /// The same with the speeds below which each joint stood in its recording, rad/s or m/s: one in which nothing moves does
+    /// not show them.
+    pub fn standing_below(self, speeds: Vec<f64>) -> Self {
+        Self { standstill: Some(speeds), ..self }
     }
 
     /// Its laws.
@@ -88,6 +98,23 @@ impl Reference {
     /// Whether only variances are known, no covariances.
     pub fn is_diagonal(&self) -> bool {
         self.diagonal
+    }
+
+    /// Speeds below which a joint stands, where it knows them.
+    pub(super) fn standstill(&self) -> Option<&[f64]> {
+        self.standstill.as_deref()
+    }
+
+    /// Whether it knows the dry friction of each joint.
+    pub(super) fn knows_friction(&self, robot: &Robot) -> Vec<bool> {
+        let joint_of = robot.joint_of_frame();
+        let is_known = |j: usize| {
+            self.known.iter().filter_map(|&k| robot.base.get(k)).any(|base| {
+                let parameter = &robot.standard[base.standard];
+                parameter.kind == ParameterKind::Fc && joint_of[parameter.frame] == Some(j)
+            })
+        };
+        (0..robot.joints()).map(is_known).collect()
     }
 
     /// Laws whose columns stand beside those of the model: those with free amplitudes that are torques of the robot.

@@ -129,6 +129,14 @@ impl FreeLaw {
         (rest.len() == wanted && !same).then_some(Self { together, axes })
     }
 
+    /// Whether a shape means a curve over the position of this joint and nothing else.
+    pub(super) fn is_over_position_of(shape: &[f64], joint: usize) -> bool {
+        let law = Self::from_shape(shape, joint + 1);
+        law.is_some_and(
+            |law| matches!(law.axes[..], [Axis { variable: Variable::Position(j), .. }] if j == joint),
+        )
+    }
+
     /// Amplitudes, that is columns.
     pub fn amplitudes(&self) -> usize {
         let curves: usize = self.axes.iter().map(Axis::curve).sum();

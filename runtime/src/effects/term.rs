@@ -4,6 +4,7 @@ use super::catalogue::EffectKind;
 use super::compliance::Transmission;
 use super::contact::ContactForce;
 use super::form::Form;
+use super::free_law::FreeLaw;
 use super::joint_law::Scale;
 use super::place::Place;
 use super::sensitivity::Distortion;
@@ -32,9 +33,15 @@ pub struct EffectTerm {
 }
 
 impl EffectTerm {
-    /// Its name in the JSON: that of the effect, or of the user's law.
+    /// Its name in the JSON: that of the effect, or of the user's law. A curve over nothing but the position of its joint has
+    /// the name of the effect that says so.
     pub fn id(&self) -> &'static str {
-        self.effect.id_at(self.place)
+        match (self.effect.form(), self.place.joint()) {
+            (Form::Free, Some(j)) if FreeLaw::is_over_position_of(&self.shape, j) => {
+                EffectKind::PositionDependentTorque.id()
+            }
+            _ => self.effect.id_at(self.place),
+        }
     }
 
     /// What is wrong with a recording, where the term is that and nothing of the robot.

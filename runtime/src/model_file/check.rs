@@ -66,6 +66,15 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
         return Ok(());
     };
     table::check(robot)?;
+    if let Some(speeds) = &identified.standstill {
+        let (found, joints) = (speeds.len(), robot.joints());
+        if found != joints {
+            return wrong("standstill", format!("{found} speeds, but the robot has {joints} joints"));
+        }
+        if let Some(j) = speeds.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
+            return wrong(&format!("standstill[{j}]"), "it must be a speed, not below zero".to_owned());
+        }
+    }
     let stated = identified.fingerprint.as_deref().unwrap_or("");
     let own = fingerprint(robot);
     if stated != own {

@@ -89,7 +89,11 @@ impl Identified {
             _ => 0.0,
         });
         let diagonal = places.iter().any(Option::is_none);
-        Reference::new(chi, self.effects.clone(), self.delay, covariance, diagonal)
-            .map_err(|error| wrong("covariance", &error.to_string()))
+        let reference = Reference::new(chi, self.effects.clone(), self.delay, covariance, diagonal)
+            .map_err(|error| wrong("covariance", &error.to_string()))?;
+        Ok(match &self.standstill {
+            Some(speeds) => reference.standing_below(speeds.clone()),
+            None => reference,
+        })
     }
 }

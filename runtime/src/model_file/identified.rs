@@ -71,6 +71,9 @@ pub struct Identified {
     /// How parameters and amplitudes vary together, where it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance: Option<Covariance>,
+    /// Speeds below which the joints stood in the recording that it is from, rad/s or m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standstill: Option<Vec<f64>>,
     /// [`fingerprint`] of the table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fingerprint: Option<String>,
@@ -203,6 +206,7 @@ impl Identified {
             delay: 0.0,
             noise: rows.noise,
             covariance: None,
+            standstill: None,
             fingerprint: Some(fingerprint(robot)),
             table: Some(robot.clone()),
         }

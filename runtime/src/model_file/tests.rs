@@ -108,6 +108,8 @@ fn no_field_that_cannot_be_is_believed() {
         ("/effects/0/effect", json!("gremlins"), "gremlins"),
         ("/band", json!(0.0), "band"),
         ("/band", json!("wide"), "wide"),
+        ("/standstill", json!([0.1]), "standstill"),
+        ("/standstill", json!([0.1, -0.1]), "standstill[1]"),
         ("/delay", json!(null), "not a saved model"),
         ("/per_joint", json!([0.1]), "per_joint"),
         ("/schema_version", json!(99), "schema_version"),

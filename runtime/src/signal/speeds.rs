@@ -2,7 +2,8 @@
 //!
 //! Both are filtered alike. Recorded speeds are then regressed on the derivative of their own joint's position, and on
 //! those of the other joints, at every lag up to [`LONGEST_LAG`]. Noise of the recorded speeds makes the regression less
-//! sure and nothing else, so that a noisy column is not told from a quiet one; a unit, a sign, a swapped column or a delay
+//! sure and nothing else; noise of the positions makes its factor smaller, by no more than the inverse regression tells
+//! (bounds of errors in variables; Frisch 1934). A noisy column is not told from a quiet one; a unit, a sign, a swapped column or a delay
 //! is off by far more than its standard error.
 
 use super::{Preparation, VelocitySource, prepare};
@@ -93,7 +94,10 @@ fn fault(motions: &[Compared], j: usize, free: f64) -> Option<SpeedFault> {
     }
     let error = ((1.0 / own.share - 1.0).max(0.0) / free.max(1.0)).sqrt() * own.factor.abs();
     let at_once = line(motions, j, j, 0.0)?;
-    let off = (own.factor - 1.0).abs() > OFF.max(SURE * error);
+    // Noise of the positions makes the derivative larger than the speed: the factor is between the regression of the
+    // column on the derivative and the inverse of that of the derivative on the column.
+    let margin = OFF.max(SURE * error);
+    let off = own.factor > 1.0 + margin || own.factor / own.share < 1.0 - margin;
     // A delay explains what the column without it leaves.
     let gain = (own.share - at_once.share) / (1.0 - own.share).max(1e-12) * free;
     let late = if own.late.abs() > LATE && gain > SURE * SURE { own.late } else { 0.0 };
@@ -168,6 +172,14 @@ mod tests {
         for noise in [0.0, 0.5, 5.0, 50.0] {
             assert_eq!(told(truth, noise), [], "noise {noise}");
         }
+        // Noise of the positions, which the derivative has and the speeds have not, makes their factor small.
+        let mut shaking = recording(truth, 0.0);
+        let mut random = Pcg64::seed_from_u64(9);
+        for q in shaking[0].position.iter_mut().flatten() {
+            *q += 0.03 * (random.random::<f64>() - 0.5);
+        }
+        let preparation = Preparation { cutoff: Some(20.0), ..Preparation::default() };
+        assert_eq!(contradicting_speeds(&shaking, &preparation), []);
         // Some milliseconds of a drive's filter, and a joint that stands.
         assert_eq!(told(|t| truth(t - 0.004), 0.01), []);
     }

@@ -42,13 +42,15 @@ impl AtRest {
     }
 }
 
-/// Looks at all motions of the recording that is diagnosed. `fitted` are the joints whose friction the model knows;
+/// Looks at all motions of the recording that is diagnosed. `known` are the joints whose friction is known;
 /// below the speeds of `slowest` a joint stands.
-pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, fitted: &[bool], slowest: &[f64]) -> AtRest {
+pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, known: &[bool], slowest: &[f64]) -> AtRest {
+    let laws = laws_at_rest(context);
     let coulomb: Vec<Option<f64>> = coulomb(context)
         .into_iter()
-        .zip(fitted)
-        .map(|(c, fitted)| Some(c).filter(|c| *fitted && c.is_finite() && *c > 0.0))
+        .zip(&laws.friction)
+        .zip(known)
+        .map(|((c, more), known)| Some(c + more).filter(|c| *known && c.is_finite() && *c > 0.0))
         .collect();
     let mut found = AtRest {
         wrenches: Vec::new(),
@@ -69,8 +71,10 @@ pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, fitted: &[bool], slow
         if !still.contains(&true) {
             continue;
         }
-        let beyond: Vec<Vec<f64>> =
-            beyond_gravity(context, s).into_iter().map(|x| x[inside.clone()].to_vec()).collect();
+        let beyond: Vec<Vec<f64>> = beyond_gravity(context, s, laws.torque.get(k))
+            .into_iter()
+            .map(|x| x[inside.clone()].to_vec())
+            .collect();
         let standing = Standing {
             rate: s.rate,
             start: s.time(inside.start),
@@ -101,18 +105,48 @@ pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, fitted: &[bool], slow
     found
 }
 
-/// Torque beyond gravity and offset, `[j][t]`, as if nothing moved: at rest speeds and accelerations are noise.
-fn beyond_gravity(context: &Context<'_>, s: &Signals) -> Vec<Vec<f64>> {
+/// What the laws of a reference are at rest.
+struct LawsAtRest {
+    /// Torque in the middle of the band of dry friction, `[motion][j][t]`; none without laws.
+    torque: Vec<Vec<Vec<f64>>>,
+    /// The most that they add to the dry friction of each joint.
+    friction: Vec<f64>,
+}
+
+/// The laws of a reference as nothing moves: the mean of both directions, and half of the difference, which is friction.
+fn laws_at_rest(context: &Context<'_>) -> LawsAtRest {
+    let mut friction = vec![0.0_f64; context.model.robot().joints()];
+    let toward = |speed: f64| {
+        let at: Vec<Signals> = context.signals.iter().map(|s| resting(s, s.q.clone(), speed)).collect();
+        context.reference.as_ref()?.torques(context.model, &at).ok()
+    };
+    let (Some(mut torque), Some(back)) = (toward(SLOW), toward(-SLOW)) else {
+        return LawsAtRest { torque: Vec::new(), friction };
+    };
+    for (forth, back) in torque.iter_mut().zip(&back) {
+        for ((forth, back), most) in forth.iter_mut().zip(back).zip(&mut friction) {
+            for (f, b) in forth.iter_mut().zip(back) {
+                *most = most.max(0.5 * (*f - b));
+                *f = 0.5 * (*f + b);
+            }
+        }
+    }
+    LawsAtRest { torque, friction }
+}
+
+/// Torque beyond gravity, offset and `laws`, `[j][t]`, as if nothing moved: at rest speeds and accelerations are noise.
+fn beyond_gravity(context: &Context<'_>, s: &Signals, laws: Option<&Vec<Vec<f64>>>) -> Vec<Vec<f64>> {
     let model = ModelTorques::new(context.model, &context.chi, &resting(s, s.q.clone(), 0.0));
-    (0..s.q.len())
-        .map(|j| {
-            s.torque[j]
-                .iter()
-                .zip(model.total[j].iter().zip(&model.friction[j]))
-                .map(|(y, (total, friction))| y - (total - friction))
-                .collect()
-        })
-        .collect()
+    let mut beyond = s.whole_torque();
+    for (j, beyond) in beyond.iter_mut().enumerate() {
+        for (y, (total, friction)) in beyond.iter_mut().zip(model.total[j].iter().zip(&model.friction[j])) {
+            *y -= total - friction;
+        }
+        if let Some(laws) = laws {
+            beyond.iter_mut().zip(&laws[j]).for_each(|(y, law)| *y -= law);
+        }
+    }
+    beyond
 }
 
 /// Dry friction of each joint: the most that any joints may have together where they turn a common motor.

@@ -118,7 +118,9 @@ fn found(
     let held = model.fast.held_out(false)?;
     findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
     let before = before(model, ended, named_skew)?;
-    Ok((findings, held_out(model, ended.standard, &held, before)))
+    // Without a finding the model is the standard one.
+    let held = if findings.is_empty() { &ended.standard.held } else { &held };
+    Ok((findings, held_out(model, ended.standard, held, before)))
 }
 
 /// What was there before, and how all that the model has varies together.

@@ -9,7 +9,7 @@ use crate::diagnosis::rows::motion::Moving;
 use crate::diagnosis::rules::LEAST_ROWS;
 use crate::model::{JointIndex, Model, Robot};
 
-/// The outcome for a recording in which no joint moves, beside a baseline in which they do.
+/// The outcome for a recording in which no joint moves, beside a baseline in which they do, or a reference.
 /// `None` where the robot does not stand for long enough either, or no joint's friction is known.
 pub(in crate::diagnosis) fn explain(
     context: &Context<'_>,
@@ -18,6 +18,7 @@ pub(in crate::diagnosis) fn explain(
     sampling: Sampling,
 ) -> Option<Diagnosis> {
     let robot = context.model.robot();
+    let before_it = if context.reference.is_some() { "reference" } else { "baseline" };
     let known: Vec<usize> = (0..rest.coulomb.len()).filter(|&j| rest.coulomb[j].is_some()).collect();
     if rest.time == 0.0 || known.is_empty() {
         return None;
@@ -41,7 +42,9 @@ pub(in crate::diagnosis) fn explain(
         before: before.clone(),
         after: after.clone(),
         held_out: HeldOut {
-            how: "gravity and static friction, as the baseline has them, while the robot holds still".into(),
+            how: format!(
+                "gravity and static friction, as the {before_it} has them, while the robot holds still"
+            ),
             before: before.relative_error.unwrap_or_default(),
             after: after.relative_error.unwrap_or_default(),
             per_joint_before: before.per_joint,
@@ -137,5 +140,8 @@ pub(in crate::diagnosis) fn name_not_judged(diagnosis: &mut Diagnosis, model: &d
             why: format!("it has to move: {} usable rows, {LEAST_ROWS} are needed", moving.rows[j]),
         })
         .collect();
-    diagnosis.verdict.extend(words::not_judged(&diagnosis.not_judged));
+    // Where nothing moves, the verdict is about that already.
+    if diagnosis.not_judged.len() < model.robot().joints() {
+        diagnosis.verdict.extend(words::not_judged(&diagnosis.not_judged));
+    }
 }

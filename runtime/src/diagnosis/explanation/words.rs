@@ -2,7 +2,7 @@
 
 use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
 use crate::diagnosis::rules;
-use crate::effects::{EffectKind, Parameter, Place, Quantities, UserLaw};
+use crate::effects::{EffectKind, FreeLaw, Parameter, Place, Quantities, UserLaw};
 use crate::model::{JointIndex, Robot};
 use crate::report::{falls_or_rises, significant};
 
@@ -38,7 +38,7 @@ pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Find
         return of_law(&place, law, f);
     }
     if !f.variables.is_empty() {
-        return free_form(&place, effect, f);
+        return free_form(robot, &place, f);
     }
     let detail = effect.effect().detail(&f.quantities());
     format!(
@@ -104,15 +104,22 @@ pub(in crate::diagnosis) fn of_user(
 }
 
 /// What depends on variables that the words of its effect do not say.
-fn free_form(place: &str, effect: EffectKind, f: &Finding) -> String {
+fn free_form(robot: &Robot, place: &str, f: &Finding) -> String {
+    let number = |j: usize| robot.joint_number(JointIndex(j)).0;
+    let law = FreeLaw::from_shape(&f.term.shape, robot.joints());
+    let variables: Vec<String> = law
+        .iter()
+        .flat_map(|law| &law.axes)
+        .map(|axis| format!("the {}", axis.variable.words(number)))
+        .collect();
     let proposal = f
         .proposal
         .as_ref()
         .map_or_else(String::new, |formula| format!(" A proposal that fits it within its band: {formula}."));
     format!(
         "{place}: a torque that depends on {}, and on nothing else; {}.{proposal} Held-out error of its joints {} from {:.2} % to {:.2} %.",
-        f.variables.join(" and "),
-        effect.effect().detail(&f.quantities()),
+        variables.join(" and "),
+        f.term.effect.effect().detail(&f.quantities()),
         falls_or_rises(f.held_out_before, f.held_out_after),
         100.0 * f.held_out_before,
         100.0 * f.held_out_after

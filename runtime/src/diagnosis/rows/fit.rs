@@ -136,6 +136,13 @@ impl Fit {
         DVector::from_fn(self.chi.len(), |k, _| inverse[(k, k)] * self.scale[k] * self.scale[k])
     }
 
+    /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].
+    pub fn known_beforehand(&self, design: &Design) -> f64 {
+        let inverse = self.factor.inverse();
+        let covariance = |i: usize, k: usize| inverse[(i, k)] * self.scale[i] * self.scale[k];
+        design.prior.as_ref().map_or(0.0, |prior| prior.parameters(covariance))
+    }
+
     /// Columns that the segments do not determine: the part that the others do not make is below `least` of their
     /// norm, or they are zero.
     pub fn undetermined(&self, least: f64) -> Vec<usize> {

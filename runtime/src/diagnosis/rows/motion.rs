@@ -12,16 +12,21 @@ pub(in crate::diagnosis) struct Moving {
     pub judged: Vec<bool>,
     /// Joints with enough rows in it or in the baseline: they take part in the fit.
     pub fitted: Vec<bool>,
+    /// Joints whose dry friction is known: from the fit, or from a reference.
+    pub friction_known: Vec<bool>,
 }
 
 impl Moving {
-    /// Of all rows.
-    pub fn of(design: &Design) -> Self {
+    /// Of all rows, and of what a reference knows.
+    pub fn of(design: &Design, known: Option<Vec<bool>>) -> Self {
         let rows: Vec<usize> =
             (0..design.joints).map(|j| design.count(j, |g| design.segments[g].is_target)).collect();
+        let fitted: Vec<bool> = (0..design.joints).map(|j| design.of_joint(j).len() >= LEAST_ROWS).collect();
+        let known = known.unwrap_or_else(|| vec![false; design.joints]);
         Self {
+            friction_known: fitted.iter().zip(known).map(|(fitted, known)| *fitted || known).collect(),
             judged: rows.iter().map(|&r| r >= LEAST_ROWS).collect(),
-            fitted: (0..design.joints).map(|j| design.of_joint(j).len() >= LEAST_ROWS).collect(),
+            fitted,
             rows,
         }
     }

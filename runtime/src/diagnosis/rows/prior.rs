@@ -34,6 +34,15 @@ impl Prior {
         self
     }
 
+    /// How many parameters it stands for in a fit with this covariance, all information together: the part of each unknown
+    /// that it knows, summed. What is left of their number are the parameters that the rows have to tell (effective number
+    /// of parameters; Bishop, Pattern Recognition and Machine Learning, 3.5.3).
+    pub fn parameters(&self, covariance: impl Fn(usize, usize) -> f64) -> f64 {
+        let of = |a: usize, b: usize| self.information[(a, b)] * covariance(self.columns[b], self.columns[a]);
+        let places = 0..self.columns.len();
+        places.clone().flat_map(|a| places.clone().map(move |b| (a, b))).map(|(a, b)| of(a, b)).sum()
+    }
+
     /// Adds it to the normal equations of a fit.
     pub fn add_to(&self, g: &mut DMatrix<f64>, v: &mut DVector<f64>) {
         for (a, &i) in self.columns.iter().enumerate() {
@@ -53,5 +62,27 @@ impl Prior {
             products[(i, y)] += self.right[a];
             products[(y, i)] += self.right[a];
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_stands_for_as_many_parameters_as_rows_need_not_tell() {
+        let covariance = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 9.0]);
+        let prior = Prior::of_covariance(&covariance, vec![1.0, 2.0], vec![0, 2]).expect("it is positive");
+        // Three unknowns, of which it knows two, beside rows with so much information on all of them.
+        let parameters = |of_rows: f64| {
+            let (mut g, mut v) = (DMatrix::identity(3, 3) * of_rows, DVector::zeros(3));
+            prior.add_to(&mut g, &mut v);
+            let inverse = g.try_inverse().expect("rows tell all of them");
+            prior.parameters(|i, k| inverse[(i, k)])
+        };
+        approx::assert_relative_eq!(parameters(1e-9), 2.0, epsilon = 1e-6);
+        assert!(parameters(1e9) < 1e-6);
+        // Eigenvalues 1/4 and 1/9 beside 1, were they not correlated.
+        assert!((0.2..0.4).contains(&parameters(1.0)), "{}", parameters(1.0));
     }
 }

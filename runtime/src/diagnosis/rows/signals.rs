@@ -144,6 +144,15 @@ impl Signals {
         self.leave_known_out();
     }
 
+    /// Torques as they were recorded, with what was known and taken out of them, `[j][t]`.
+    pub fn whole_torque(&self) -> Vec<Vec<f64>> {
+        let mut torque = self.torque.clone();
+        for (torque, known) in torque.iter_mut().zip(self.known.iter().flatten()) {
+            torque.iter_mut().zip(known).for_each(|(t, k)| *t += k);
+        }
+        torque
+    }
+
     fn leave_known_out(&mut self) {
         for (torque, known) in self.torque.iter_mut().zip(self.known.iter().flatten()) {
             leave_out(torque, known);

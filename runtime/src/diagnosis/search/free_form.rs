@@ -50,8 +50,10 @@ impl Search<'_> {
                 continue;
             }
             let nearly = NEARLY_AS_MUCH * most_gained;
-            // What the catalogue says with fewer numbers is no new law, even where it is not certain.
-            if !self.ranked(Some(j)).iter().any(|r| r.verdict.total() >= nearly) {
+            // What the catalogue says with fewer numbers is no new law, even where it is not certain or was told as small.
+            if !self.ranked(Some(j)).iter().any(|r| r.verdict.total() >= nearly)
+                && self.most_of_small(j) < nearly
+            {
                 chosen.push((law, rivals));
             }
         }
@@ -76,6 +78,16 @@ impl Search<'_> {
         self.more_tries = 0;
         self.slow.truncate(first);
         found
+    }
+
+    /// The most that a law which was told as small on a joint, or one of its rivals, gains beside the model as it is.
+    fn most_of_small(&self, joint: usize) -> f64 {
+        let gains = [SmoothingWindow::Slow, SmoothingWindow::Fast].into_iter().flat_map(|window| {
+            let candidates = self.candidates(window).iter();
+            let small = candidates.filter(|c| c.own.contains(&joint) && self.rival_of_small(c));
+            small.filter_map(move |c| Some(self.model.regression(window).judge(c)?.total()))
+        });
+        gains.fold(0.0, f64::max)
     }
 
     /// Takes out what the last term of the model, a law over any variables, shows to have been its imitators: laws of

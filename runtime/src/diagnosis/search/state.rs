@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
 
     /// Whether a candidate of the catalogue could only take the place of a law that was told as small: all that hold beside
     /// it were in the model when it was taken out.
-    fn rival_of_small(&self, candidate: &Candidate) -> bool {
+    pub(super) fn rival_of_small(&self, candidate: &Candidate) -> bool {
         let free = candidate.effect == EffectKind::FreeForm;
         !self.model.change && !free && self.small.iter().any(|s| s.own == candidate.own)
     }
