@@ -7,6 +7,7 @@ use dynid_runtime::estimation::{
     ObserveRecordingError, ObservedRecording, RecordedSettings, observe_recording,
 };
 use dynid_runtime::model::Robot;
+use dynid_runtime::plausibility::Judged;
 use dynid_runtime::recording::{Manifest, RecordingError, RowReport, Side, Trajectory, load};
 use dynid_runtime::signal::{Motion, SignalError, SpeedFault, contradicting_speeds, prepare_all};
 
@@ -61,6 +62,16 @@ pub struct Recorded {
 }
 
 impl Recorded {
+    /// What its plausibility is judged by.
+    pub fn judged(&self) -> Judged<'_> {
+        Judged {
+            model: self.dynamics.model(),
+            motions: &self.motions,
+            settings: &self.settings,
+            motor_side: self.side == Side::Motor,
+        }
+    }
+
     /// The robot and the title, on one line.
     pub fn heading(&self) -> String {
         heading(self.dynamics.model().robot(), &self.title)

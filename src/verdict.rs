@@ -8,13 +8,14 @@ use dynid_runtime::model::{JointIndex, Robot};
 use dynid_runtime::plausibility::{
     AngleUnit, ChannelFault, Instead, Judged, Signal, Verdict, faulty_channel, judge,
 };
-use dynid_runtime::recording::Side;
 use dynid_runtime::report::{percent, significant};
 
 use crate::failure::Failure;
 use crate::models;
-use crate::recorded::Recorded;
 use crate::words::table_doubts;
+
+/// What a person does who wants an answer all the same.
+const ALL_THE_SAME: &str = "(--implausible goes on all the same)";
 
 /// Checks that the recording can be one of its robot; warnings for the person, if there are any to give.
 ///
@@ -23,59 +24,29 @@ use crate::words::table_doubts;
 /// free fit explains of a joint.
 pub fn check(
     path: &Path,
-    recorded: &Recorded,
+    judged: &Judged<'_>,
     torques: &Observation,
     estimated: &Estimate,
 ) -> Result<Vec<String>, Failure> {
-    let model = recorded.dynamics.model();
-    let judged = Judged {
-        model,
-        motions: &recorded.motions,
-        settings: &recorded.settings,
-        motor_side: recorded.side == Side::Motor,
-    };
-    let robot = model.robot();
-    if let Some(fault) = faulty_channel(robot, &recorded.motions) {
-        return Err(Failure::Data(format!(
-            "{}: {}. (--implausible identifies all the same)",
-            path.display(),
-            fault_words(&fault, robot)
-        )));
-    }
+    let robot = judged.model.robot();
+    check_channels(path, judged)?;
     let mut warnings = table_doubts(robot);
-    let doubts: String =
-        warnings.iter().map(|doubt| format!(". In the table of {}, {doubt}", robot.name)).collect();
-    let refused = |words: String| {
-        let words = words.trim_end_matches('.');
-        Err(Failure::Data(format!(
-            "{}: {words}{doubts}. (--implausible identifies all the same)",
-            path.display()
-        )))
-    };
-    match judge(&judged, torques, estimated, models::all()) {
-        Verdict::Better { own, worst: (joint, error), instead } => {
-            let names: Vec<String> = instead.iter().map(|(what, _)| words(what, robot)).collect();
-            let Some((first, best)) = instead.first() else { return Ok(warnings) };
-            refused(format!(
-                "this cannot be a recording of {} as it is described: the best parameters that such a robot can have \
-                 leave {} of the torques unexplained (joint {}: {}); {} leaves {}. {}",
-                robot.name,
-                percent(own),
-                robot.joint_number(joint),
-                percent(error),
-                names.join(" or "),
-                percent(*best),
-                advice(first),
-            ))
-        }
-        Verdict::Impossible { joint, error } => refused(format!(
-            "no {} can have made this recording: without negative inertias or friction that drives, the best parameters \
+    let verdict = judge(judged, torques, estimated, models::all());
+    if let Some(words) = better_words(robot, &verdict) {
+        return Err(refused(path, robot, &words));
+    }
+    match verdict {
+        Verdict::Impossible { joint, error } => {
+            let words = format!(
+                "no {} can have made this recording: without negative inertias or friction that drives, the best parameters \
              leave {} of the torque of joint {} unexplained. It is a recording of another robot, or the sign, order, unit \
              or offset of a column is wrong",
-            robot.name,
-            percent(error),
-            robot.joint_number(joint)
-        )),
+                robot.name,
+                percent(error),
+                robot.joint_number(joint)
+            );
+            Err(refused(path, robot, &words))
+        }
         Verdict::Strained { possible, free } => {
             warnings.push(format!(
             "some parameters are none that a robot can have (a negative inertia, friction that drives): the best possible \
@@ -88,6 +59,67 @@ pub fn check(
         }
         _ => Ok(warnings),
     }
+}
+
+/// Checks that a recording has no mistake that explains it far better than its description. What the diagnosis looks for
+/// itself, a position that is off, is none.
+///
+/// # Errors
+/// [`Failure::Data`] with the mistake.
+pub fn check_mistakes(
+    path: &Path,
+    judged: &Judged<'_>,
+    torques: &Observation,
+    estimated: &Estimate,
+) -> Result<(), Failure> {
+    let robot = judged.model.robot();
+    check_channels(path, judged)?;
+    let verdict = judge(judged, torques, estimated, models::all());
+    let is_known = |verdict: &Verdict| match verdict {
+        Verdict::Better { instead, .. } => matches!(instead.first(), Some((Instead::Offset { .. }, _))),
+        _ => false,
+    };
+    match better_words(robot, &verdict).filter(|_| !is_known(&verdict)) {
+        Some(words) => Err(refused(path, robot, &words)),
+        None => Ok(()),
+    }
+}
+
+fn check_channels(path: &Path, judged: &Judged<'_>) -> Result<(), Failure> {
+    let robot = judged.model.robot();
+    match faulty_channel(robot, judged.motions) {
+        Some(fault) => {
+            Err(Failure::Data(format!("{}: {}. {ALL_THE_SAME}", path.display(), fault_words(&fault, robot))))
+        }
+        None => Ok(()),
+    }
+}
+
+fn refused(path: &Path, robot: &Robot, words: &str) -> Failure {
+    let words = words.trim_end_matches('.');
+    let doubts: String = table_doubts(robot)
+        .iter()
+        .map(|doubt| format!(". In the table of {}, {doubt}", robot.name))
+        .collect();
+    Failure::Data(format!("{}: {words}{doubts}. {ALL_THE_SAME}", path.display()))
+}
+
+/// What would explain the recording far better, where something would.
+fn better_words(robot: &Robot, verdict: &Verdict) -> Option<String> {
+    let Verdict::Better { own, worst: (joint, error), instead } = verdict else { return None };
+    let (first, best) = instead.first()?;
+    let names: Vec<String> = instead.iter().map(|(what, _)| words(what, robot)).collect();
+    Some(format!(
+        "this cannot be a recording of {} as it is described: the best parameters that such a robot can have leave {} of \
+         the torques unexplained (joint {}: {}); {} leaves {}. {}",
+        robot.name,
+        percent(*own),
+        robot.joint_number(*joint),
+        percent(*error),
+        names.join(" or "),
+        percent(*best),
+        advice(first),
+    ))
 }
 
 /// What is wrong with a channel, and what to look at.

@@ -7,7 +7,7 @@ use crate::score::Score;
 use crate::words::line;
 
 /// Edges between classes of confidence.
-const EDGES: [f64; 5] = [0.0, 0.99, 0.999, 0.9999, 1.01];
+const EDGES: [f64; 5] = [0.0, 0.9, 0.93, 0.939, 1.01];
 
 /// Standard deviations of an interval that holds 95 of 100.
 const INTERVAL: f64 = 1.96;

@@ -112,7 +112,7 @@ fn pushes_against_a_robot_that_holds_still_are_found_at_their_times() {
         assert!(seen.window[0] > from - 0.2 && seen.window[1] < from + 1.2, "{seen:?}");
         assert_eq!(seen.joint_torques.iter().map(|t| t.joint).collect::<Vec<_>>(), [joint]);
     }
-    assert!(contact.confidence > 0.99);
+    assert!(contact.confidence > 0.93);
     assert_eq!(diagnosis.not_judged.len(), 2);
 }
 

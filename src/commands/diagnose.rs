@@ -1,6 +1,7 @@
 //! `dynid diagnose REC`: which physics is missing, where, and does adding it help on held-out motion?
 
 mod compare;
+mod mistakes;
 mod reference;
 
 use std::path::{Path, PathBuf};
@@ -50,6 +51,9 @@ pub(super) struct Arguments {
     /// recording (up to 30 s of motion it is done anyway)
     #[arg(long)]
     closed_loop: bool,
+    /// Diagnose even where a wrong sign, order, unit or robot explains the recording far better
+    #[arg(long)]
+    implausible: bool,
     /// Save the model with the effects that were found
     #[arg(long)]
     out: Option<PathBuf>,
@@ -73,6 +77,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Some(path), _) => of_the_same_robot(measure(&source.other(path))?, &measured, path)?.trajectories,
         (None, _) => Vec::new(),
     };
+    if !arguments.implausible {
+        mistakes::check(&source.recording, &measured, &arguments.sampling)?;
+    }
     let mut settings = settings(&arguments.sampling, model.robot().joints());
     if let Some(path) = &arguments.reference {
         settings.reference = Some(Arc::new(reference::read(path, model.robot())?));

@@ -163,9 +163,9 @@ fn doubts(
 ) -> Result<Vec<String>, Failure> {
     let path = &arguments.recording.recording;
     if found.method == Method::IdimWls {
-        return verdict::check(path, recorded, torques, found);
+        return verdict::check(path, &recorded.judged(), torques, found);
     }
-    verdict::check(path, recorded, torques, &estimate(torques, &EstimateSettings::default()))
+    verdict::check(path, &recorded.judged(), torques, &estimate(torques, &EstimateSettings::default()))
 }
 
 fn summary(

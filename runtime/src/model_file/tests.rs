@@ -55,6 +55,7 @@ fn model() -> Identified {
     let parameters = robot.base.iter().map(|b| named(&b.name)).collect();
     Identified {
         delay: 1e-3,
+        standstill: Some(vec![0.1; 2]),
         effects: vec![
             term(EffectKind::Stribeck, Place::Joint(0), &[0.1], &[2.0]),
             term(EffectKind::FrictionDrift, Place::Joint(0), &[2.0, 4.0], &[1.0, 1.0]),

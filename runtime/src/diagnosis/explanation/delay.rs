@@ -2,7 +2,7 @@
 
 use crate::diagnosis::candidates::trial::delay_columns;
 use crate::diagnosis::error::{DiagnosisError, SingularDesign};
-use crate::diagnosis::explanation::finding::unit_term;
+use crate::diagnosis::explanation::finding::{told, unit_term};
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::judging::regression::Regression;
@@ -63,7 +63,7 @@ pub(in crate::diagnosis) fn finding(
     let evidence = Evidence::student(skew.abs() / sigma.max(1e-300), blocks.len().saturating_sub(1) as f64);
     let value = ParameterValue { value: skew, sigma, unit: "s".into() };
     let mut finding = Finding {
-        confidence: evidence.confidence(1),
+        confidence: told(evidence.confidence(1)),
         significance: evidence.significance,
         parameters: [("delay".to_string(), value)].into_iter().collect(),
         held_out_before: unaware.error_on(&all),

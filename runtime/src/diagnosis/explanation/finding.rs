@@ -8,11 +8,16 @@ use crate::diagnosis::explanation::quantities::{Quantified, quantified, uncertai
 use crate::diagnosis::explanation::standard_model::estimated;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue, WithoutIt};
-use crate::diagnosis::rules::HIGHEST_CONFIDENCE;
+use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, RIGHT_NAMES};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{EffectKind, EffectTerm, Form, Place, UserLaw};
 use crate::model::{JointIndex, Robot};
+
+/// The confidence that is told: that what was found is no accident, and that it has the right name.
+pub(in crate::diagnosis) fn told(no_accident: f64) -> f64 {
+    no_accident.clamp(0.0, HIGHEST_CONFIDENCE) * RIGHT_NAMES
+}
 
 /// A term without amplitudes: what an effect at a place with a shape is.
 pub(in crate::diagnosis) fn unit_term(effect: EffectKind, place: Place, shape: Vec<f64>) -> EffectTerm {
@@ -51,7 +56,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     let after = regression.held_out(false)?.error_on(&accepted.shows_on);
     let before = reduced.regression(window).held_out(false)?.error_on(&accepted.shows_on);
     let mut finding = Finding {
-        confidence: accepted.confidence,
+        confidence: told(accepted.confidence),
         significance: accepted.significance,
         parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
         held_out_before: before,
@@ -146,7 +151,7 @@ pub(in crate::diagnosis) fn of_contacts(contacts: &Contacts) -> Finding {
         parameters.insert("joint".into(), value(most.joint as f64, "1"));
     }
     let mut finding = Finding {
-        confidence: (1.0 - contacts.doubt).clamp(0.0, HIGHEST_CONFIDENCE),
+        confidence: told(1.0 - contacts.doubt),
         parameters,
         held_out_before: (contacts.before / contacts.torque).sqrt(),
         held_out_after: (contacts.after / contacts.torque).sqrt(),

@@ -1,10 +1,10 @@
 //! Torque ripple that was seen as lines, as findings.
 
 use crate::diagnosis::candidates::order_line::Line;
-use crate::diagnosis::explanation::finding::{named_on, unit_term};
+use crate::diagnosis::explanation::finding::{named_on, told, unit_term};
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::Finding;
-use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, LINE_COVERED, SEARCHES};
+use crate::diagnosis::rules::{LINE_COVERED, SEARCHES};
 use crate::diagnosis::search::line::JointLines;
 use crate::diagnosis::search::state::Search;
 use crate::effects::{EffectKind, EffectTerm, Form, Place};
@@ -15,8 +15,9 @@ use crate::effects::{EffectKind, EffectTerm, Form, Place};
 pub(in crate::diagnosis) fn findings(search: &Search<'_>, least_confidence: f64) -> Vec<Finding> {
     let tried: usize = search.lines.iter().map(|l| l.tried).sum();
     let least = 1.0 - (1.0 - least_confidence) / SEARCHES;
-    let of_joint =
-        |(j, found): (usize, &JointLines)| finding(search, j, found, tried).filter(|f| f.confidence >= least);
+    let of_joint = |(j, found): (usize, &JointLines)| {
+        finding(search, j, found, tried).filter(|f| f.confidence >= told(least))
+    };
     search.lines.iter().enumerate().filter_map(of_joint).collect()
 }
 
@@ -41,7 +42,7 @@ fn finding(search: &Search<'_>, joint: usize, found: &JointLines, tried: usize) 
     let share: f64 = lines.iter().map(|l| l.share).sum::<f64>().min(1.0);
     let before = strongest.rms / found.torque.max(1e-300);
     let mut finding = Finding {
-        confidence: (1.0 - doubt).clamp(0.0, HIGHEST_CONFIDENCE),
+        confidence: told(1.0 - doubt),
         significance: strongest.amplitude() / strongest.sigma.max(1e-300),
         parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
         held_out_before: before,

@@ -1,6 +1,6 @@
 //! Times that were wrong by a factor, as a finding.
 
-use crate::diagnosis::explanation::finding::unit_term;
+use crate::diagnosis::explanation::finding::{told, unit_term};
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::judging::significance::Evidence;
@@ -34,7 +34,7 @@ pub(in crate::diagnosis) fn finding(
     let before = wrong.errors.relative_error.unwrap_or_default();
     let after = held.errors().relative_error.unwrap_or_default();
     let mut finding = Finding {
-        confidence: evidence.confidence(1),
+        confidence: told(evidence.confidence(1)),
         significance: evidence.significance,
         parameters: quantity.iter().map(|p| (p.name.clone(), p.into())).collect(),
         held_out_before: before,
