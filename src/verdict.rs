@@ -29,7 +29,7 @@ pub fn check(
     estimated: &Estimate,
 ) -> Result<Vec<String>, Failure> {
     let robot = judged.model.robot();
-    check_channels(path, judged)?;
+    check_channels(path, judged, |_| true)?;
     let mut warnings = table_doubts(robot);
     let verdict = judge(judged, torques, estimated, models::all());
     if let Some(words) = better_words(robot, &verdict) {
@@ -62,7 +62,7 @@ pub fn check(
 }
 
 /// Checks that a recording has no mistake that explains it far better than its description. What the diagnosis looks for
-/// itself, a position that is off, is none.
+/// itself, a position that is off or a wrong rate, is none.
 ///
 /// # Errors
 /// [`Failure::Data`] with the mistake.
@@ -73,7 +73,9 @@ pub fn check_mistakes(
     estimated: &Estimate,
 ) -> Result<(), Failure> {
     let robot = judged.model.robot();
-    check_channels(path, judged)?;
+    let of_time =
+        |fault: &ChannelFault| matches!(fault, ChannelFault::Slow { .. } | ChannelFault::TooFast { .. });
+    check_channels(path, judged, |fault| !of_time(fault))?;
     let verdict = judge(judged, torques, estimated, models::all());
     let is_known = |verdict: &Verdict| match verdict {
         Verdict::Better { instead, .. } => matches!(instead.first(), Some((Instead::Offset { .. }, _))),
@@ -85,9 +87,13 @@ pub fn check_mistakes(
     }
 }
 
-fn check_channels(path: &Path, judged: &Judged<'_>) -> Result<(), Failure> {
+fn check_channels(
+    path: &Path,
+    judged: &Judged<'_>,
+    counts: impl Fn(&ChannelFault) -> bool,
+) -> Result<(), Failure> {
     let robot = judged.model.robot();
-    match faulty_channel(robot, judged.motions) {
+    match faulty_channel(robot, judged.motions).filter(counts) {
         Some(fault) => {
             Err(Failure::Data(format!("{}: {}. {ALL_THE_SAME}", path.display(), fault_words(&fault, robot))))
         }

@@ -69,6 +69,9 @@ fn a_value_that_no_robot_can_have_is_marked_in_print_and_in_the_page() {
     folder.write("recording.yaml", &MANIFEST.replace("unit: N.m}", "unit: N.m, gain: [1, -1]}"));
     let refused = folder.run(&["identify", "recording.yaml"]);
     assert_refused(&refused, 1, &["recording.yaml", "sign", "joint 2", "--implausible"]);
+    // What a diagnosis would find in it is a part of the mistake.
+    let refused = folder.run(&["diagnose", "recording.yaml"]);
+    assert_refused(&refused, 1, &["recording.yaml", "sign", "joint 2", "--implausible"]);
     let words = ["identify", "recording.yaml", "--implausible", "--report", "r.html", "--out", "m.json"];
     let output = folder.run(&words);
     let said = words_of(&output);
