@@ -201,6 +201,8 @@ pub(super) const PRESLIDING_NUISANCE: f64 = 0.002;
 
 /// Most candidates of a round whose evidence is worked out. Times only: those further down explain too little.
 pub(super) const MOST_CHECKED: usize = 30;
+/// Part of the error of all joints that must stay for the joint on which most is gained to be told too. Words only.
+pub(super) const SHOWS_IN_ALL: f64 = 0.95;
 /// Rivals that are told. Words only.
 pub(super) const RIVALS: usize = 5;
 /// A law is tried as the first of a pair where its p-value is below this. Judgement: lets one in a hundred accidents

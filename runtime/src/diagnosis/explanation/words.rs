@@ -200,6 +200,21 @@ fn something_missing(d: &Diagnosis) -> String {
     format!("Something is missing that cannot be named, most of it on joint {}: {how}", most.joint)
 }
 
+/// The joint on which most is gained, where all joints together, of which others have the larger torques, hardly show it.
+fn of_one_joint(d: &Diagnosis) -> Option<String> {
+    if d.held_out.after < rules::SHOWS_IN_ALL * d.held_out.before {
+        return None;
+    }
+    let gain = |f: &Finding| f.held_out_after / f.held_out_before;
+    let of_one = d.findings.iter().filter(|f| f.joints.len() == 1 && gain(f) < rules::SHOWS_IN_ALL);
+    let most = of_one.min_by(|a, b| gain(a).total_cmp(&gain(b)))?;
+    let [before, after] = [most.held_out_before, most.held_out_after].map(|x| 100.0 * x);
+    Some(format!(
+        " of all joints together, and falls from {before:.2} % to {after:.2} % on joint {}",
+        most.joints[0]
+    ))
+}
+
 /// The verdict first.
 pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
     let mut lines = Vec::new();
@@ -234,11 +249,12 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             .collect();
         lines.push(format!("The standard model leaves out: {}.", names.join("; ")));
         lines.push(format!(
-            "With it, the error on motion that was held out ({}) {} from {:.2} % to {:.2} %.",
+            "With it, the error on motion that was held out ({}) {} from {:.2} % to {:.2} %{}.",
             d.held_out.how,
             falls_or_rises(d.held_out.before, d.held_out.after),
             100.0 * d.held_out.before,
-            100.0 * d.held_out.after
+            100.0 * d.held_out.after,
+            of_one_joint(d).unwrap_or_default()
         ));
     }
     if unexplained {
