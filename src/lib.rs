@@ -20,5 +20,6 @@ pub mod robots;
 pub mod saved;
 pub mod speeds;
 pub mod truth;
+pub mod urdf_files;
 pub mod verdict;
 pub mod words;

@@ -5,6 +5,7 @@ mod demo;
 mod diagnose;
 mod excite;
 mod identify;
+mod import;
 mod paper;
 mod robots;
 mod show;
@@ -37,6 +38,8 @@ enum Command {
     Excite(excite::Arguments),
     /// Identify a robot's parameters from a recording
     Identify(identify::Arguments),
+    /// Write the table of a URDF as a robot YAML
+    Import(import::Arguments),
     /// Predict the torques of a recording with an identified model
     Validate(validate::Arguments),
     /// Find out which physics is missing, where, and whether adding it helps on held-out motion
@@ -88,6 +91,7 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Challenge(arguments) => challenge::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Import(arguments) => import::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
     }
