@@ -7,6 +7,8 @@
 //! whose next axis is the same line, has neither offset nor height. A link with several joints has one x only: those that
 //! it does not suit have gamma and b.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::document::{JointType, Urdf};
@@ -70,7 +72,7 @@ pub(crate) fn frames(urdf: &Urdf, tree: &Tree) -> Frames {
         let mut carrier = moving.parent.map_or_else(Pose::identity, |p| chosen[p]);
         if chooser.normal_from(&carrier, k).is_none() {
             // A frame square to the parent's, from which the axis has a normal nearby.
-            let screw = Screw { alpha: std::f64::consts::FRAC_PI_2, ..ZERO };
+            let screw = Screw { alpha: FRAC_PI_2, ..ZERO };
             result.rows.push(Row { parent, kind: JointKind::Fixed, screw, body: None });
             parent = result.rows.len();
             carrier = carrier.then(&screw.pose());
@@ -94,8 +96,10 @@ const ZERO: Screw = Screw { gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, 
 /// The row with what is zero to rounding as zero.
 fn tidied(screw: Screw) -> Screw {
     let zero = |x: f64| if x.abs() <= EXACT { 0.0 } else { x };
+    // Half a turn is the same in both directions.
+    let angle = |x: f64| if (x + PI).abs() <= EXACT { PI } else { zero(x) };
     let Screw { gamma, b, alpha, d, theta, r } = screw;
-    Screw { gamma: zero(gamma), b: zero(b), alpha: zero(alpha), d: zero(d), theta: zero(theta), r: zero(r) }
+    Screw { gamma: angle(gamma), b: zero(b), alpha: angle(alpha), d: zero(d), theta: angle(theta), r: zero(r) }
 }
 
 impl Chooser<'_> {

@@ -176,7 +176,7 @@ impl Writer<'_> {
 
     fn drive(&self) -> String {
         let gears: Vec<Option<f64>> = (0..self.tree.bodies.len()).map(|k| self.joint(k).gear).collect();
-        if gears.iter().all(Option::is_none) {
+        if gears.iter().flatten().all(|gear| *gear == 1.0) {
             return String::new();
         }
         let gears: Vec<String> = gears.iter().map(|gear| number(gear.unwrap_or(1.0))).collect();

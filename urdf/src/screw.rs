@@ -96,11 +96,6 @@ impl Screw {
         .iter()
         .fold(Pose::identity(), |sum, next| sum.then(next))
     }
-
-    /// Whether gamma and b are zero, so that the x axis of the parent is the common normal.
-    pub fn is_serial(&self) -> bool {
-        self.gamma.abs() <= EXACT && self.b.abs() <= EXACT
-    }
 }
 
 /// The vector or its opposite: the one within a quarter turn of x; at a quarter turn the one along y.
@@ -143,6 +138,6 @@ mod tests {
         let pose = Pose::from_xyz_rpy([0.2, 0.3, 0.1], [1e-5, 0.0, 0.0]);
         assert_eq!(Screw::of(&pose), None);
         let meeting = Pose { translation: Vector3::zeros(), rotation: Matrix3::identity() };
-        assert!(Screw::of(&meeting).is_some_and(|screw| screw.is_serial()));
+        assert!(Screw::of(&meeting).is_some_and(|screw| screw == Screw { gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 }));
     }
 }
