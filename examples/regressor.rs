@@ -37,7 +37,8 @@ fn run(robot: &str, states: &Path) -> Result<serde_json::Value, Box<dyn std::err
     let model = dynamics.model();
     let robot = model.robot();
     let states: Vec<[Vec<f64>; 3]> = serde_json::from_str(&std::fs::read_to_string(states)?)?;
-    let standard = robot.nominal.as_ref().map_or_else(|| vec![0.0; robot.standard.len()], |n| n.standard.to_vec());
+    let standard =
+        robot.nominal.as_ref().map_or_else(|| vec![0.0; robot.standard.len()], |n| n.standard.to_vec());
     let chi = robot.base_from_standard(&standard);
     let n = robot.joints();
     if states.iter().flatten().any(|x| x.len() != n) {

@@ -171,9 +171,19 @@ impl UrdfOptions {
         let gravity = match self.gravity[..] {
             [] => known.gravity,
             [x, y, z] => [x, y, z],
-            _ => return Err(Failure::Input(format!("--gravity has {} numbers, expected 3", self.gravity.len()))),
+            _ => {
+                return Err(Failure::Input(format!(
+                    "--gravity has {} numbers, expected 3",
+                    self.gravity.len()
+                )));
+            }
         };
-        Ok(dynid_urdf::ImportOptions { base: self.base.clone(), tip: self.tip.clone(), snap: self.snap, gravity })
+        Ok(dynid_urdf::ImportOptions {
+            base: self.base.clone(),
+            tip: self.tip.clone(),
+            snap: self.snap,
+            gravity,
+        })
     }
 }
 

@@ -43,9 +43,10 @@ pub fn imported(path: &Path, options: &ImportOptions) -> Result<(Imported, Robot
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let imported = dynid_urdf::import(&urdf, &name, options).map_err(|mistakes| refused(path, &mistakes))?;
     imported.warnings.iter().for_each(|warning| warn(&located(path, warning)));
-    let table = parse(&format!("table of {}", path.display()), imported.yaml.as_bytes()).map_err(|mistakes| {
-        Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
-    })?;
+    let table =
+        parse(&format!("table of {}", path.display()), imported.yaml.as_bytes()).map_err(|mistakes| {
+            Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+        })?;
     Ok((imported, table))
 }
 

@@ -91,7 +91,8 @@ impl<'a> Reader<'a> {
                 }
                 _ => {
                     let (name, found) = (attribute.name(), shown(word));
-                    let hint = if word.contains("${") { " (an expression of xacro: expand it first)" } else { "" };
+                    let hint =
+                        if word.contains("${") { " (an expression of xacro: expand it first)" } else { "" };
                     self.report(place, format!("'{name}': '{found}' is not a finite number{hint}"));
                 }
             }

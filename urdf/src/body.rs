@@ -48,7 +48,8 @@ impl Body {
         let first = rotation * self.first;
         let inertia = rotation * self.inertia * rotation.transpose();
         // J' = J - [p][f] - [f][p] - M [p][p], with [a][b] = b aT - (a.b) E.
-        let product = |a: &Vector3<f64>, b: &Vector3<f64>| b * a.transpose() - Matrix3::from_diagonal_element(a.dot(b));
+        let product =
+            |a: &Vector3<f64>, b: &Vector3<f64>| b * a.transpose() - Matrix3::from_diagonal_element(a.dot(b));
         let moved = inertia - product(&p, &first) - product(&first, &p) - product(&p, &p) * self.mass;
         Self { mass: self.mass, first: first + p * self.mass, inertia: (moved + moved.transpose()) * 0.5 }
     }

@@ -11,6 +11,7 @@ use crate::attributes::Reader;
 use crate::body::Body;
 use crate::mistake::{Mistake, Place, START, shown};
 use crate::pose::Pose;
+use crate::text::plain;
 
 /// Longest file that is read, bytes: meshes lie in files of their own.
 const MAX_BYTES: usize = 1 << 24;
@@ -103,7 +104,8 @@ pub(crate) struct Limit {
 /// Every mistake of the file, in its order; just one where it is no XML.
 pub fn read(bytes: &[u8], snap: f64) -> Result<Urdf, Vec<Mistake>> {
     let text = utf8(bytes).map_err(|mistake| vec![mistake])?;
-    let options = roxmltree::ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..Default::default() };
+    let options =
+        roxmltree::ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..Default::default() };
     let document = Document::parse_with_options(text, options).map_err(|error| {
         let at = error.pos();
         let place = Place { line: at.row.max(1) as usize, column: at.col.max(1) as usize };
@@ -155,7 +157,9 @@ fn read_robot(reader: &mut Reader<'_>, root: Node<'_, '_>, snap: f64) -> Option<
         reader.report(place, format!("expected <robot>, found <{found}>"));
         return None;
     }
-    if let Some(macros) = root.descendants().find(|n| n.tag_name().namespace().is_some_and(|s| s.contains("xacro"))) {
+    if let Some(macros) =
+        root.descendants().find(|n| n.tag_name().namespace().is_some_and(|s| s.contains("xacro")))
+    {
         let place = reader.place_of(macros);
         reader.report(place, "xacro that is not expanded: run `xacro FILE.xacro > FILE.urdf` first");
         return None;
@@ -190,7 +194,7 @@ fn read_robot(reader: &mut Reader<'_>, root: Node<'_, '_>, snap: f64) -> Option<
         let words = format!(
             "angles such as 1.5708 are taken as they stand, up to {off:.1e} rad from a multiple of pi/4: base parameters \
              appear that no motion shows; where right angles are meant, --snap {} takes them so",
-            10_f64.powf(off.log10().ceil())
+            plain(10_f64.powi(off.log10().ceil() as i32))
         );
         reader.warn(place, words);
     }
@@ -215,7 +219,12 @@ fn read_origin(reader: &mut Reader<'_>, node: Node<'_, '_>, snap: f64, rounded: 
     Pose::from_xyz_rpy(xyz, rpy)
 }
 
-fn read_link(reader: &mut Reader<'_>, node: Node<'_, '_>, snap: f64, rounded: &mut Option<f64>) -> Option<Link> {
+fn read_link(
+    reader: &mut Reader<'_>,
+    node: Node<'_, '_>,
+    snap: f64,
+    rounded: &mut Option<f64>,
+) -> Option<Link> {
     let name = reader.required(node, "name")?.to_owned();
     let place = reader.place_of(node);
     let inertial = first(node, "inertial").and_then(|node| read_inertial(reader, node, &name, snap, rounded));
@@ -244,15 +253,24 @@ fn read_inertial(
     let mass = mass.and_then(|node| reader.required_number(node, "value"));
     let inertia = inertia.map(|node| {
         ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].map(|name| match name {
-            // Products of inertia that are not there are zero to every reader.
-            "ixy" | "ixz" | "iyz" => Some(reader.number(node, name).unwrap_or(0.0)),
+            "ixy" | "ixz" | "iyz" if node.attribute(name).is_none() => {
+                let place = reader.place_of(node);
+                reader.warn(
+                    place,
+                    format!(
+                        "no '{name}': taken as 0, while some readers then leave out the whole <inertial>"
+                    ),
+                );
+                Some(0.0)
+            }
             _ => reader.required_number(node, name),
         })
     });
     let (mass, [xx, xy, xz, yy, yz, zz]) = (mass?, inertia?);
     let moments = [xx?, xy?, xz?, yy?, yz?, zz?];
     if mass < 0.0 {
-        reader.report(place, format!("the mass of link '{}' is {mass} kg: expected none below 0", shown(link)));
+        reader
+            .report(place, format!("the mass of link '{}' is {mass} kg: expected none below 0", shown(link)));
         return None;
     }
     let at_centre = Body::at_centre(mass, moments);
@@ -283,7 +301,10 @@ fn read_joint(
             let found = shown(other);
             reader.report(
                 place,
-                format!("joint '{}' has type '{found}': expected revolute, continuous, prismatic or fixed", shown(&name)),
+                format!(
+                    "joint '{}' has type '{found}': expected revolute, continuous, prismatic or fixed",
+                    shown(&name)
+                ),
             );
             return None;
         }
@@ -303,7 +324,8 @@ fn read_joint(
     };
     let (parent, child) = (end("parent"), end("child"));
     let origin = read_origin(reader, node, snap, rounded);
-    let axis = if kind == JointType::Fixed { Some(Vector3::x()) } else { read_axis(reader, node, &name, snap) };
+    let axis =
+        if kind == JointType::Fixed { Some(Vector3::x()) } else { read_axis(reader, node, &name, snap) };
     let dynamics = first(node, "dynamics");
     let mut friction = |name: &str| {
         let node = dynamics?;
@@ -321,7 +343,21 @@ fn read_joint(
     let limit = read_limit(reader, node, kind);
     let (parent, child, axis) = (parent?, child?, axis?);
     let range = node.range();
-    Some(Joint { name, place, range, kind, parent, child, origin, axis, limit, damping, friction, mimic, gear: None })
+    Some(Joint {
+        name,
+        place,
+        range,
+        kind,
+        parent,
+        child,
+        origin,
+        axis,
+        limit,
+        damping,
+        friction,
+        mimic,
+        gear: None,
+    })
 }
 
 fn read_axis(reader: &mut Reader<'_>, node: Node<'_, '_>, joint: &str, snap: f64) -> Option<Vector3<f64>> {
@@ -335,7 +371,10 @@ fn read_axis(reader: &mut Reader<'_>, node: Node<'_, '_>, joint: &str, snap: f64
         return None;
     }
     if (length - 1.0).abs() > UNIT {
-        reader.warn(place, format!("the axis of joint '{}' has length {length:.4}: taken as a direction", shown(joint)));
+        reader.warn(
+            place,
+            format!("the axis of joint '{}' has length {length:.4}: taken as a direction", shown(joint)),
+        );
     }
     let unit = vector / length;
     // What is along a coordinate axis stays exactly there.
@@ -377,7 +416,10 @@ fn check_mimics(reader: &mut Reader<'_>, joints: &[Joint]) {
         let Some(mimic) = &joint.mimic else { continue };
         if !joints.iter().any(|other| other.name == mimic.of) {
             let (name, of) = (shown(&joint.name), shown(&mimic.of));
-            reader.report(mimic.place, format!("joint '{name}' mimics '{of}', which is not a joint of the file"));
+            reader.report(
+                mimic.place,
+                format!("joint '{name}' mimics '{of}', which is not a joint of the file"),
+            );
         }
     }
 }
@@ -409,7 +451,11 @@ fn connect(reader: &mut Reader<'_>, place: Place, links: &mut [Link], joints: &[
             let (first, second) = (&links[roots[0]], &links[second]);
             reader.report(
                 second.place,
-                format!("link '{}' hangs together with nothing: the root is '{}'", shown(&second.name), shown(&first.name)),
+                format!(
+                    "link '{}' hangs together with nothing: the root is '{}'",
+                    shown(&second.name),
+                    shown(&first.name)
+                ),
             );
         }
         [root] => {

@@ -62,7 +62,8 @@ pub(crate) fn frames(urdf: &Urdf, tree: &Tree) -> Frames {
     }
     let axis = |moving: &Moving| urdf.joints[moving.joint].axis;
     let lines = tree.bodies.iter().zip(&links);
-    let lines = lines.map(|(m, link)| Line { point: link.translation, axis: link.rotation * axis(m) }).collect();
+    let lines =
+        lines.map(|(m, link)| Line { point: link.translation, axis: link.rotation * axis(m) }).collect();
     let own = tree.bodies.iter().map(|m| axis(m) == Vector3::z()).collect();
     let chooser = Chooser { links, lines, bodies: &tree.bodies, own };
     let mut result = Frames { rows: Vec::new(), number: Vec::new(), in_link: Vec::new() };
@@ -99,7 +100,14 @@ fn tidied(screw: Screw) -> Screw {
     // Half a turn is the same in both directions.
     let angle = |x: f64| if (x + PI).abs() <= EXACT { PI } else { zero(x) };
     let Screw { gamma, b, alpha, d, theta, r } = screw;
-    Screw { gamma: angle(gamma), b: zero(b), alpha: angle(alpha), d: zero(d), theta: angle(theta), r: zero(r) }
+    Screw {
+        gamma: angle(gamma),
+        b: zero(b),
+        alpha: angle(alpha),
+        d: zero(d),
+        theta: angle(theta),
+        r: zero(r),
+    }
 }
 
 impl Chooser<'_> {
@@ -113,7 +121,8 @@ impl Chooser<'_> {
 
     /// Frame of a body seen from its carrier's.
     fn frame(&self, carrier: &Pose, body: usize) -> Pose {
-        let next: Vec<usize> = (0..self.bodies.len()).filter(|&k| self.bodies[k].parent == Some(body)).collect();
+        let next: Vec<usize> =
+            (0..self.bodies.len()).filter(|&k| self.bodies[k].parent == Some(body)).collect();
         let only = if let [only] = next[..] { Some(only) } else { None };
         if self.own[body] && only.is_none_or(|child| self.is_serial(&self.links[body], child)) {
             return self.links[body];
@@ -129,8 +138,10 @@ impl Chooser<'_> {
             }
         };
         let x = plain.rotation * x;
-        let towards = |x: Vector3<f64>| Pose { rotation: axes(x, self.lines[body].axis), translation: origin };
-        let offset = |pose: &Pose| Screw::of(&carrier.inverse().then(pose)).map_or(f64::MAX, |s| s.theta.abs());
+        let towards =
+            |x: Vector3<f64>| Pose { rotation: axes(x, self.lines[body].axis), translation: origin };
+        let offset =
+            |pose: &Pose| Screw::of(&carrier.inverse().then(pose)).map_or(f64::MAX, |s| s.theta.abs());
         let (there, back) = (towards(x), towards(-x));
         if offset(&back) < offset(&there) - 1e-9 { back } else { there }
     }
@@ -142,7 +153,8 @@ impl Chooser<'_> {
         let (x, origin) = match self.normal_from(carrier, body) {
             Some(Normal::Parallel(apart)) => (apart / apart.norm(), apart),
             Some(Normal::Skew { along, on_line, .. }) => {
-                let point = carrier.inverse().then(&Pose { translation: line.point, ..Pose::identity() }).translation;
+                let point =
+                    carrier.inverse().then(&Pose { translation: line.point, ..Pose::identity() }).translation;
                 (along, point + axis * on_line)
             }
             _ => (Vector3::x(), Vector3::zeros()),

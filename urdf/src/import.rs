@@ -87,9 +87,13 @@ fn held(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
 }
 
 fn without_mass(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
-    let massless = |links: &[(usize, Pose)]| links.iter().all(|(link, _)| urdf.links[*link].inertial.is_none());
+    let massless =
+        |links: &[(usize, Pose)]| links.iter().all(|(link, _)| urdf.links[*link].inertial.is_none());
     let words = |link: usize| {
-        let words = format!("link '{}' has no <inertial>: its parameters are taken as 0", shown(&urdf.links[link].name));
+        let words = format!(
+            "link '{}' has no <inertial>: its parameters are taken as 0",
+            shown(&urdf.links[link].name)
+        );
         Mistake::new(urdf.links[link].place, words)
     };
     tree.bodies.iter().filter(|m| massless(&m.links)).map(|m| words(m.links[0].0)).collect()
@@ -165,7 +169,8 @@ impl Writer<'_> {
         };
         let parent = if row.parent + 1 == j { String::new() } else { format!("parent: {}, ", row.parent) };
         let (gamma, b) = (angle(screw.gamma), length(screw.b));
-        let branch = if gamma == "0" && b == "0" { String::new() } else { format!("gamma: {gamma}, b: {b}, ") };
+        let branch =
+            if gamma == "0" && b == "0" { String::new() } else { format!("gamma: {gamma}, b: {b}, ") };
         let (alpha, d) = (angle(screw.alpha), length(screw.d));
         let name = row.body.map_or("between two axes that are nearly parallel", |k| &self.joint(k).name);
         let text = format!(
@@ -180,7 +185,10 @@ impl Writer<'_> {
             return String::new();
         }
         let gears: Vec<String> = gears.iter().map(|gear| number(gear.unwrap_or(1.0))).collect();
-        format!("drive: {{gear: [{}]}}            # mechanicalReduction of the transmissions\n", gears.join(", "))
+        format!(
+            "drive: {{gear: [{}]}}            # mechanicalReduction of the transmissions\n",
+            gears.join(", ")
+        )
     }
 
     /// Limits that every joint has; the reader takes no list with gaps.
@@ -210,7 +218,8 @@ impl Writer<'_> {
                 let _ = writeln!(text, "  # {key}: the URDF gives none for {}", missing.join(", "));
             }
         }
-        let head = if text.lines().all(|line| line.trim_start().starts_with('#')) { "# limits:" } else { "limits:" };
+        let head =
+            if text.lines().all(|line| line.trim_start().starts_with('#')) { "# limits:" } else { "limits:" };
         format!("{head}                           # those of the URDF\n{text}")
     }
 

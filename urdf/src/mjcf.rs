@@ -59,7 +59,9 @@ fn body(text: &mut String, skeleton: &Skeleton, k: usize, depth: usize) {
 fn joint(text: &mut String, segment: &Segment, indent: &str) {
     let kind = if segment.kind == JointKind::Prismatic { "slide" } else { "hinge" };
     let axis = segment.axis;
-    let range = segment.position.map_or_else(String::new, |[low, high]| format!(" range=\"{} {}\"", plain(low), plain(high)));
+    let range = segment
+        .position
+        .map_or_else(String::new, |[low, high]| format!(" range=\"{} {}\"", plain(low), plain(high)));
     let _ = writeln!(
         text,
         "{indent}  <joint name=\"{}\" type=\"{kind}\" axis=\"{} {} {}\"{range} armature=\"{}\" damping=\"{}\" \

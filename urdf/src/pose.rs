@@ -64,7 +64,8 @@ impl Pose {
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     let eighths = (angle / FRAC_PI_4).round();
     if eighths.abs() < 64.0 && (angle - eighths * FRAC_PI_4).abs() <= 4.0 * f64::EPSILON * angle.abs() {
-        const SIN: [f64; 8] = [0.0, FRAC_1_SQRT_2, 1.0, FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2, -1.0, -FRAC_1_SQRT_2];
+        const SIN: [f64; 8] =
+            [0.0, FRAC_1_SQRT_2, 1.0, FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2, -1.0, -FRAC_1_SQRT_2];
         let k = (eighths as i64).rem_euclid(8) as usize;
         return (SIN[k], SIN[(k + 2) % 8]);
     }

@@ -138,6 +138,8 @@ mod tests {
         let pose = Pose::from_xyz_rpy([0.2, 0.3, 0.1], [1e-5, 0.0, 0.0]);
         assert_eq!(Screw::of(&pose), None);
         let meeting = Pose { translation: Vector3::zeros(), rotation: Matrix3::identity() };
-        assert!(Screw::of(&meeting).is_some_and(|screw| screw == Screw { gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 }));
+        assert!(Screw::of(&meeting).is_some_and(
+            |screw| screw == Screw { gamma: 0.0, b: 0.0, alpha: 0.0, d: 0.0, theta: 0.0, r: 0.0 }
+        ));
     }
 }

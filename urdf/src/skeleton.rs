@@ -82,7 +82,8 @@ pub fn armatures(robot: &Robot, standard: &[f64]) -> Vec<f64> {
         .filter(|&f| frames[f].is_some())
         .map(|f| value(robot, standard, f, ParameterKind::Ia))
         .collect();
-    let gear = |m: usize, j: usize| robot.drive.gear.get(m * n + j).copied().unwrap_or(f64::from(u8::from(m == j)));
+    let gear =
+        |m: usize, j: usize| robot.drive.gear.get(m * n + j).copied().unwrap_or(f64::from(u8::from(m == j)));
     let squares = nalgebra::DMatrix::from_fn(n, n, |j, m| gear(m, j) * gear(m, j));
     let right = nalgebra::DVector::from_column_slice(&ia);
     match squares.clone().lu().solve(&right) {
@@ -100,7 +101,8 @@ impl Skeleton {
         // For each frame the segment that carries it, and its pose there.
         let mut carried: Vec<(Option<usize>, Pose)> = Vec::new();
         for (k, frame) in robot.frames.iter().enumerate() {
-            let (carrier, pose) = frame.parent.and_then(|p| carried.get(p)).copied().unwrap_or((None, Pose::identity()));
+            let (carrier, pose) =
+                frame.parent.and_then(|p| carried.get(p)).copied().unwrap_or((None, Pose::identity()));
             let origin = pose.then(&row_pose(frame));
             let body = body_of_frame(robot, standard, k);
             let Some(j) = joints[k] else {
@@ -142,7 +144,11 @@ impl Skeleton {
                 joint: joint.name.clone(),
                 parent: moving.parent,
                 origin: moving.origin,
-                kind: if joint.kind == JointType::Prismatic { JointKind::Prismatic } else { JointKind::Revolute },
+                kind: if joint.kind == JointType::Prismatic {
+                    JointKind::Prismatic
+                } else {
+                    JointKind::Revolute
+                },
                 axis: joint.axis,
                 position: joint.limit.position,
                 velocity: joint.limit.velocity,
@@ -203,7 +209,11 @@ pub(crate) fn matched(table: &Skeleton, template: &Skeleton) -> Result<Vec<Pose>
     for (k, (pose, other)) in poses.iter().enumerate() {
         let (own, named) = (&table.segments[k], &template.segments[k]);
         let unlike = |what: String| {
-            Unlike(format!("joint {} of the model is not '{}' of the template: {what}", own.joint.trim_start_matches("joint"), named.joint))
+            Unlike(format!(
+                "joint {} of the model is not '{}' of the template: {what}",
+                own.joint.trim_start_matches("joint"),
+                named.joint
+            ))
         };
         if own.kind != named.kind || own.parent != named.parent {
             return Err(unlike("one is revolute and one prismatic, or another link carries it".to_owned()));

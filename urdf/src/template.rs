@@ -55,7 +55,11 @@ impl<'a> Template<'a> {
     ///
     /// # Errors
     /// Links that are not there, as in an import; or a table whose axes are elsewhere.
-    pub fn new(urdf: &'a Urdf, robot: &Robot, options: &ImportOptions) -> Result<Self, Result<Unlike, Vec<Mistake>>> {
+    pub fn new(
+        urdf: &'a Urdf,
+        robot: &Robot,
+        options: &ImportOptions,
+    ) -> Result<Self, Result<Unlike, Vec<Mistake>>> {
         let tree = urdf.tree(options.base.as_deref(), options.tip.as_deref()).map_err(Err)?;
         let root = urdf.pose_in_root(tree.base);
         let gravity = root.rotation.transpose() * Vector3::from(options.gravity);
@@ -197,7 +201,12 @@ fn edit_link(text: &str, link: Node<'_, '_>, body: &Body) -> Option<Edit> {
     }
     let (spaces, newline) = indent(text, link.range().start);
     let inside = format!("{spaces}  ");
-    Some(inserted(text, link, &format!("{newline}{inside}{}", inertial(body, &inside, newline)?), &format!("{newline}{spaces}")))
+    Some(inserted(
+        text,
+        link,
+        &format!("{newline}{inside}{}", inertial(body, &inside, newline)?),
+        &format!("{newline}{spaces}"),
+    ))
 }
 
 fn edit_joint(text: &str, joint: Node<'_, '_>, friction: &JointFriction) -> Vec<Edit> {
@@ -231,13 +240,19 @@ fn inserted(text: &str, node: Node<'_, '_>, content: &str, before_end: &str) -> 
     let range = node.range();
     let source = &text[range.clone()];
     if let Some(open) = source.strip_suffix("/>") {
-        let name: String = source[1..].chars().take_while(|c| !c.is_whitespace() && *c != '/' && *c != '>').collect();
+        let name: String =
+            source[1..].chars().take_while(|c| !c.is_whitespace() && *c != '/' && *c != '>').collect();
         let start = range.start + open.trim_end().len();
         return Edit { start, end: range.end, text: format!(">{content}{before_end}</{name}>") };
     }
     // After the last child that is no white space, or after the opening tag.
     let last = node.last_element_child().map(|child| child.range().end);
-    let open = || range.start + node.first_child().map_or_else(|| source.rfind("</").unwrap_or(0), |c| c.range().start - range.start);
+    let open = || {
+        range.start
+            + node
+                .first_child()
+                .map_or_else(|| source.rfind("</").unwrap_or(0), |c| c.range().start - range.start)
+    };
     let start = last.unwrap_or_else(open);
     Edit { start, end: start, text: content.to_owned() }
 }

@@ -42,7 +42,11 @@ impl Urdf {
                 let known: Vec<String> = self.links.iter().take(12).map(|link| shown(&link.name)).collect();
                 let more = if self.links.len() > 12 { ", ..." } else { "" };
                 let place = self.links[self.root].place;
-                let words = format!("there is no link '{}' for {what}: links are {}{more}", shown(name), known.join(", "));
+                let words = format!(
+                    "there is no link '{}' for {what}: links are {}{more}",
+                    shown(name),
+                    known.join(", ")
+                );
                 vec![Mistake::new(place, words)]
             })
         };
@@ -63,7 +67,8 @@ impl Urdf {
             for &j in self.links[link].children.iter().rev() {
                 let joint = &self.joints[j];
                 let there = pose.then(&joint.origin);
-                let moves = joint.kind != JointType::Fixed && path.as_ref().is_none_or(|path| path.contains(&j));
+                let moves =
+                    joint.kind != JointType::Fixed && path.as_ref().is_none_or(|path| path.contains(&j));
                 if !moves {
                     if joint.kind != JointType::Fixed {
                         tree.held.push(j);
@@ -78,7 +83,8 @@ impl Urdf {
             }
         }
         if tree.bodies.is_empty() && mistakes.is_empty() {
-            let words = "no joint moves there: expected at least one that is revolute, continuous or prismatic";
+            let words =
+                "no joint moves there: expected at least one that is revolute, continuous or prismatic";
             mistakes.push(Mistake::new(self.links[base].place, words));
         }
         tree.held.sort_unstable();
@@ -130,7 +136,8 @@ impl Urdf {
     fn in_order(&self, tree: Tree) -> Tree {
         let mut order = Vec::new();
         let children = |parent: Option<usize>| -> Vec<usize> {
-            let mut of: Vec<usize> = (0..tree.bodies.len()).filter(|&k| tree.bodies[k].parent == parent).collect();
+            let mut of: Vec<usize> =
+                (0..tree.bodies.len()).filter(|&k| tree.bodies[k].parent == parent).collect();
             of.sort_by_key(|&k| std::cmp::Reverse(tree.bodies[k].joint));
             of
         };

@@ -21,7 +21,11 @@ pub fn write_urdf(skeleton: &Skeleton) -> String {
     if !upright {
         let pose = Pose { rotation: upright_rotation(&skeleton.gravity), translation: Vector3::zeros() };
         text.push_str("  <link name=\"world\"/>\n  <joint name=\"world_to_base\" type=\"fixed\">\n");
-        let _ = writeln!(text, "    <parent link=\"world\"/>\n    <child link=\"{base}\"/>\n    {}\n  </joint>", origin(&pose));
+        let _ = writeln!(
+            text,
+            "    <parent link=\"world\"/>\n    <child link=\"{base}\"/>\n    {}\n  </joint>",
+            origin(&pose)
+        );
     }
     let _ = writeln!(text, "  <link name=\"{base}\"/>");
     for segment in &skeleton.segments {
@@ -43,17 +47,39 @@ fn joint(text: &mut String, skeleton: &Skeleton, segment: &Segment) {
     };
     let parent = segment.parent.map_or(&skeleton.base, |p| &skeleton.segments[p].link);
     let _ = writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&segment.joint));
-    let _ = writeln!(text, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>", escaped(parent), escaped(&segment.link));
+    let _ = writeln!(
+        text,
+        "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>",
+        escaped(parent),
+        escaped(&segment.link)
+    );
     let axis = segment.axis;
-    let _ = writeln!(text, "    {}\n    <axis xyz=\"{} {} {}\"/>", origin(&segment.origin), plain(axis.x), plain(axis.y), plain(axis.z));
+    let _ = writeln!(
+        text,
+        "    {}\n    <axis xyz=\"{} {} {}\"/>",
+        origin(&segment.origin),
+        plain(axis.x),
+        plain(axis.y),
+        plain(axis.z)
+    );
     let position = segment.position.map_or_else(String::new, |[low, high]| {
         format!("lower=\"{}\" upper=\"{}\" ", plain(low), plain(high))
     });
     // Readers demand both; 0 is read as not known.
     let (effort, velocity) = (segment.effort.unwrap_or(0.0), segment.velocity.unwrap_or(0.0));
-    let _ = writeln!(text, "    <limit {position}effort=\"{}\" velocity=\"{}\"/>", plain(effort), plain(velocity));
+    let _ = writeln!(
+        text,
+        "    <limit {position}effort=\"{}\" velocity=\"{}\"/>",
+        plain(effort),
+        plain(velocity)
+    );
     if segment.damping != 0.0 || segment.friction != 0.0 {
-        let _ = writeln!(text, "    <dynamics damping=\"{}\" friction=\"{}\"/>", plain(segment.damping), plain(segment.friction));
+        let _ = writeln!(
+            text,
+            "    <dynamics damping=\"{}\" friction=\"{}\"/>",
+            plain(segment.damping),
+            plain(segment.friction)
+        );
     }
     text.push_str("  </joint>\n");
 }

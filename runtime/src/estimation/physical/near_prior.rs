@@ -28,8 +28,13 @@ const UNKNOWN: f64 = 1e3;
 /// The first weight of the prior, with which the data hardly count, and the factor from one to the next.
 const FIRST: f64 = 1e12;
 const NEXT: f64 = 0.1;
-/// The last weight: beyond it the distance changes by less than a thousandth.
+/// The last weight, and the change of the distance over a decade, relative to it and to one parameter, that ends the way
+/// earlier.
 const LAST: f64 = 1e-8;
+const SETTLED: f64 = 1e-3;
+/// Newton's decrement at which a minimum is found, relative to the objective, and at which rounding may end the search.
+const PRECISION: f64 = 1e-12;
+const ROUNDING: f64 = 1e-6;
 /// Newton steps for one weight; some ten are usual.
 const MOST_STEPS: usize = 200;
 /// Bisections of the logarithm of the weight between two of a decade.
@@ -114,8 +119,14 @@ pub fn near_prior(
         && *gamma > LAST
     {
         let next = gamma * NEXT;
-        let found = search.minimum(next, x.clone())?;
+        // Where rounding takes over, the way is at its end.
+        let Ok(found) = search.minimum(next, x.clone()) else { break };
+        let [before, after] = [x, &found].map(|x| search.distance(x));
+        let settled = next < 1.0 && before - after < SETTLED * (1.0 + after);
         path.push((next, found));
+        if settled {
+            break;
+        }
     }
     let distances: Vec<f64> = path.iter().map(|(_, x)| search.distance(x)).collect();
     let least = distances.last().copied().unwrap_or_default();
@@ -233,8 +244,14 @@ impl Search {
         }
     }
 
-    fn add_data(&mut self, robot: &Robot, chi: &[f64], covariance: &DMatrix<f64>) -> Result<(), NearPriorError> {
-        let is_known = |k: &usize| covariance[(*k, *k)] > 0.0 && covariance.row(*k).iter().all(|x| x.is_finite());
+    fn add_data(
+        &mut self,
+        robot: &Robot,
+        chi: &[f64],
+        covariance: &DMatrix<f64>,
+    ) -> Result<(), NearPriorError> {
+        let is_known =
+            |k: &usize| covariance[(*k, *k)] > 0.0 && covariance.row(*k).iter().all(|x| x.is_finite());
         let known: Vec<usize> = (0..chi.len()).filter(is_known).collect();
         if known.is_empty() {
             return Err(NearPriorError::NoInformation);
@@ -341,10 +358,10 @@ impl Search {
             if !decrement.is_finite() {
                 return Err(NearPriorError::NotConverged);
             }
-            if decrement < 1e-14 {
+            let before = value(&x).ok_or(NearPriorError::NotConverged)?;
+            if decrement < PRECISION * (1.0 + before.abs()) {
                 return Ok(x);
             }
-            let before = value(&x).ok_or(NearPriorError::NotConverged)?;
             let mut share = 1.0;
             let next = loop {
                 let next = &x - &step * share;
@@ -359,7 +376,7 @@ impl Search {
             match next {
                 Some(next) => x = next,
                 // What is left to gain is below the rounding of the objective.
-                None if decrement < 1e-6 * (1.0 + before.abs()) => return Ok(x),
+                None if decrement < ROUNDING * (1.0 + before.abs()) => return Ok(x),
                 None => return Err(NearPriorError::NotConverged),
             }
         }
@@ -375,7 +392,9 @@ impl Search {
             let own = &self.normal / gamma;
             hessian += &own;
             let scale = hessian.diagonal().map(|d| 1.0 / d.sqrt());
-            let both = |m: DMatrix<f64>| DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * scale[i] * scale[j]);
+            let both = |m: DMatrix<f64>| {
+                DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * scale[i] * scale[j])
+            };
             let part = factored(both(hessian))?.solve(&both(own));
             Some(part.diagonal().iter().map(|x| x.clamp(0.0, 1.0)).collect())
         });
@@ -406,3 +425,7 @@ fn scaled_solution(mut matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVe
 fn at(combination: &Combination, x: &DVector<f64>) -> f64 {
     combination.iter().map(|&(k, coefficient)| coefficient * x[k]).sum()
 }
+
+#[cfg(test)]
+#[path = "near_prior_tests.rs"]
+mod tests;

@@ -123,7 +123,9 @@ pub(super) fn rotors(robot: &Robot, inertia: impl Fn(usize) -> f64) -> (Vec<Comb
     let start = &squared * &at_motor;
     match squared.try_inverse() {
         Some(inverse) => {
-            let row = |m: usize| (0..n).filter(|&j| inverse[(m, j)] != 0.0).map(|j| (own[j], inverse[(m, j)])).collect();
+            let row = |m: usize| {
+                (0..n).filter(|&j| inverse[(m, j)] != 0.0).map(|j| (own[j], inverse[(m, j)])).collect()
+            };
             ((0..n).map(row).collect(), (0..n).map(|j| (own[j], start[j])).collect())
         }
         None => {
