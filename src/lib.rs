@@ -10,6 +10,7 @@ pub mod errors;
 pub mod failure;
 pub mod models;
 pub mod motions;
+pub mod near_bodies;
 pub mod output;
 pub mod pages;
 pub mod paper_tables;

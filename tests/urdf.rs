@@ -12,6 +12,7 @@ use dynid_codegen::numeric_robot;
 use dynid_codegen::robot::parse;
 use dynid_runtime::model::{ParameterKind, RecursiveModel, Robot, torques_at};
 use dynid_urdf::{ImportOptions, Skeleton, import, read, write_urdf};
+use proptest::prelude::*;
 
 fn inputs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/urdf")
@@ -175,6 +176,80 @@ fn what_is_wrong_in_a_urdf_is_told_with_its_place() {
     std::fs::write(folder.path("w.urdf"), b"<robot name=\"\xff\"/>").unwrap();
     let output = folder.run(&["show", "w.urdf"]);
     assert!(error_of(&output).contains("w.urdf:1:14: the file is not UTF-8"), "{}", error_of(&output));
+}
+
+#[test]
+fn a_file_of_one_long_line_is_read_in_no_time() {
+    let mut text = String::from("<robot name=\"arm\"><link name=\"l0\"/>");
+    for k in 0..40_000 {
+        let kind = if k % 2 == 0 { "fixed" } else { "revolute" };
+        text.push_str(&format!("<link name=\"l{}\"/>", k + 1));
+        text.push_str(
+            joint(&format!("j{k}"), kind, [&format!("l{k}"), &format!("l{}", k + 1)], "").trim_end(),
+        );
+    }
+    let start = std::time::Instant::now();
+    let urdf = read((text + "</robot>").as_bytes(), 1e-8).unwrap();
+    let mistakes = import(&urdf, "arm.urdf", &ImportOptions::default()).unwrap_err();
+    assert!(mistakes[0].to_string().contains("20000 frames"), "{mistakes:?}");
+    let chain = ImportOptions { base: Some("l39990".to_owned()), ..ImportOptions::default() };
+    assert_eq!(import(&urdf, "arm.urdf", &chain).unwrap().joints.len(), 5);
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
+/// What a number, a name or a tag may become.
+const PIECES: [&str; 16] = [
+    "1e308",
+    "-1e9",
+    "1e-300",
+    "nan",
+    "inf",
+    "0",
+    "-0.0",
+    "1.5708",
+    "3.14159265359",
+    "${x}",
+    "",
+    "base",
+    "fixed",
+    "mimic",
+    "<",
+    "\"",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_becomes_of_a_urdf_it_is_answered(
+        which in 0..2_usize,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0..PIECES.len(), 0..4_u8), 1..5),
+    ) {
+        let name = ["leaning.urdf", "twins.urdf"][which];
+        let mut text = std::fs::read_to_string(inputs().join(name)).unwrap();
+        for (at, piece, kind) in changes {
+            // Words between quotes, spaces and brackets.
+            let ends: Vec<usize> = text.match_indices(['"', ' ', '<', '>', '/']).map(|(k, _)| k).collect();
+            let k = at.index(ends.len().max(2) - 1);
+            let Some((start, end)) = ends.get(k).zip(ends.get(k + 1)).map(|(a, b)| (a + 1, *b)) else { break };
+            match kind {
+                0 | 1 => text.replace_range(start..end, PIECES[piece]),
+                2 => text.replace_range(start..end, ""),
+                _ => { let again = text[start..end].to_owned(); text.insert_str(end, &again); }
+            }
+        }
+        let options = ImportOptions::default();
+        if let Ok(urdf) = read(text.as_bytes(), options.snap)
+            && let Ok(imported) = import(&urdf, name, &options)
+            && let Err(mistakes) = parse("table", imported.yaml.as_bytes())
+        {
+            // Only what is larger than a robot is not in a table.
+            for mistake in mistakes {
+                let words = mistake.to_string();
+                prop_assert!(words.contains("expected at"), "{}\n{}", words, imported.yaml);
+            }
+        }
+    }
 }
 
 #[test]

@@ -268,3 +268,35 @@ fn the_five_lines_of_the_readme_make_a_better_urdf() {
     assert_eq!(rest(&better), rest(TEMPLATE));
     assert!(folder.path("better.xml").is_file() && folder.path("better.urdf.json").is_file());
 }
+
+#[test]
+fn physical_parameters_predict_as_well_and_are_exported_as_they_are() {
+    let output = FOLDER.run(&[
+        "identify",
+        "recording.yaml",
+        "--physical",
+        "--prior",
+        "leaning.urdf",
+        "--out",
+        "physical.json",
+    ]);
+    assert!(output.status.success(), "{}", error_of(&output));
+    assert!(words_of(&output).contains("from the data, %"), "{}", words_of(&output));
+    let error = |model: &str| {
+        let output = FOLDER.run(&["validate", model, "recording.yaml", "--json", "-"]);
+        common::json_of(&output)["relative_error"].as_f64().unwrap()
+    };
+    let (free, bodies) = (error("model.json"), error("physical.json"));
+    assert!(bodies < 1.02 * free, "{free} {bodies}");
+    // The prior is satisfied by the parameters then: nothing moves.
+    let output = FOLDER.run(&["export", "physical.json", "--to", "urdf", "--out", "physical.urdf"]);
+    assert!(output.status.success(), "{}", error_of(&output));
+    let model: serde_json::Value = serde_json::from_str(&text("physical.json")).unwrap();
+    let nominal = model["table"]["nominal"]["standard"].as_array().unwrap();
+    for ((name, value), kept) in written("physical.urdf.json").iter().zip(nominal) {
+        let kept = kept.as_f64().unwrap();
+        assert!((value - kept).abs() <= 1e-6 * (1e-3 + kept.abs()), "{name}: {value} {kept}");
+    }
+    let output = FOLDER.run(&["identify", "recording.yaml", "--physical", "--prior", "other.yaml"]);
+    assert_eq!(output.status.code(), Some(2), "{}", error_of(&output));
+}

@@ -29,15 +29,15 @@ ROBOTS = [
     ("xarm_description/urdf/xarm7.urdf", None, "link_eef"),
     ("z1_description/urdf/z1.urdf", None, None),
     ("tiago_description/robots/tiago_no_hand.urdf", "torso_fixed_link", "arm_7_link"),
-    ("centauro_description/urdf/centauro.urdf", "torso_2", "arm1_7"),
+    ("centauro_description/urdf/centauro.urdf", "torso_2", "arm1_6"),
     ("laikago_description/urdf/laikago.urdf", None, None),
-    ("baxter_description/urdf/baxter.urdf", None, "left_gripper_base"),
+    ("baxter_description/urdf/baxter.urdf", None, "left_hand"),
     ("so_arm_description/urdf/so101.urdf", None, None),
     ("double_pendulum_description/urdf/double_pendulum_simple.urdf", None, None),
     ("finger_edu_description/robots/finger_edu.urdf", None, None),
     ("allegro_hand_description/urdf/allegro_right_hand.urdf", None, None),
     ("solo_description/robots/solo12.urdf", None, None),
-    ("romeo_description/urdf/romeo_small.urdf", "torso", "LeftFoot"),
+    ("romeo_description/urdf/romeo_small.urdf", "torso", "l_sole"),
     ("pr2_description/urdf/pr2.urdf", None, "r_wrist_roll_link"),
 ]
 

@@ -1,5 +1,7 @@
 //! Attributes of XML elements as numbers, with their places.
 
+use std::cell::Cell;
+
 use crate::mistake::{Mistake, Place, shown};
 use roxmltree::{Attribute, Document, Node};
 
@@ -10,6 +12,8 @@ const LARGEST: f64 = 1e9;
 pub(crate) struct Reader<'a> {
     document: &'a Document<'a>,
     lines: Vec<usize>,
+    /// Start of a line, a byte of it, and the characters between them: a file of one line is counted once.
+    counted: Cell<(usize, usize, usize)>,
     pub mistakes: Vec<Mistake>,
     pub warnings: Vec<Mistake>,
 }
@@ -19,14 +23,18 @@ impl<'a> Reader<'a> {
         let text = document.input_text();
         let starts = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(at, _)| at + 1);
         let lines = std::iter::once(0).chain(starts).collect();
-        Self { document, lines, mistakes: Vec::new(), warnings: Vec::new() }
+        Self { document, lines, counted: Cell::new((0, 0, 0)), mistakes: Vec::new(), warnings: Vec::new() }
     }
 
     /// Line and column of a byte.
     pub fn place(&self, byte: usize) -> Place {
         let line = self.lines.partition_point(|&start| start <= byte).max(1);
-        let text = self.document.input_text().get(self.lines[line - 1]..byte).unwrap_or_default();
-        Place { line, column: text.chars().count() + 1 }
+        let start = self.lines[line - 1];
+        let (known, at, count) = self.counted.get();
+        let (at, count) = if known == start && at <= byte { (at, count) } else { (start, 0) };
+        let count = count + self.document.input_text().get(at..byte).unwrap_or_default().chars().count();
+        self.counted.set((start, byte, count));
+        Place { line, column: count + 1 }
     }
 
     pub fn place_of(&self, node: Node<'_, '_>) -> Place {

@@ -1,6 +1,6 @@
 //! A URDF as its XML says: links, joints, and where in the file they stand.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -112,7 +112,8 @@ pub fn read(bytes: &[u8], snap: f64) -> Result<Urdf, Vec<Mistake>> {
         // The library's words end with the place.
         let words = error.to_string();
         let words = words.rsplit_once(" at ").map_or(words.as_str(), |(before, _)| before);
-        vec![Mistake::new(place, format!("not XML: {}", shown(words)))]
+        let hint = if words.contains("xacro") { ": xacro has to be expanded first" } else { "" };
+        vec![Mistake::new(place, format!("not XML: {}{hint}", shown(words)))]
     })?;
     let mut reader = Reader::new(&document);
     let urdf = read_robot(&mut reader, document.root_element(), snap);
@@ -177,9 +178,10 @@ fn read_robot(reader: &mut Reader<'_>, root: Node<'_, '_>, snap: f64) -> Option<
         links.push(link);
     }
     let mut joints: Vec<Joint> = Vec::new();
+    let mut names = HashSet::new();
     for node in elements(root, "joint") {
         let Some(joint) = read_joint(reader, node, snap, &by_name, &mut rounded) else { continue };
-        if joints.iter().any(|known| known.name == joint.name) {
+        if !names.insert(joint.name.clone()) {
             reader.report(joint.place, format!("joint '{}' is there twice", shown(&joint.name)));
             continue;
         }
@@ -412,9 +414,10 @@ fn read_transmission(reader: &mut Reader<'_>, node: Node<'_, '_>, joints: &mut [
 }
 
 fn check_mimics(reader: &mut Reader<'_>, joints: &[Joint]) {
+    let names: HashSet<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
     for joint in joints {
         let Some(mimic) = &joint.mimic else { continue };
-        if !joints.iter().any(|other| other.name == mimic.of) {
+        if !names.contains(mimic.of.as_str()) {
             let (name, of) = (shown(&joint.name), shown(&mimic.of));
             reader.report(
                 mimic.place,

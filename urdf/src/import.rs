@@ -10,7 +10,7 @@ use crate::frames::{Frames, Row, frames};
 use crate::mistake::{Mistake, shown};
 use crate::pose::Pose;
 use crate::text::{angle, length, number, plain, quoted, tidy, variable};
-use crate::tree::Tree;
+use crate::tree::{Tree, too_many};
 use dynid_description::JointKind;
 use dynid_description::ParameterKind;
 use dynid_description::bounds::{MAX_FRAMES, NEGLIGIBLE};
@@ -53,16 +53,10 @@ pub struct Imported {
 pub fn import(urdf: &Urdf, file: &str, options: &ImportOptions) -> Result<Imported, Vec<Mistake>> {
     let tree = urdf.tree(options.base.as_deref(), options.tip.as_deref())?;
     let frames = frames(urdf, &tree);
-    if let Some(row) = frames.rows.get(MAX_FRAMES) {
-        let joint = row.body.map_or(tree.bodies.len() - 1, |k| k);
-        let joint = &urdf.joints[tree.bodies[joint].joint];
-        let words = format!(
-            "{} joints need {} frames from '{}' on; a table has at most {MAX_FRAMES}: --base and --tip choose a chain",
-            tree.bodies.len(),
-            frames.rows.len(),
-            shown(&urdf.links[tree.base].name)
-        );
-        return Err(vec![Mistake::new(joint.place, words)]);
+    if frames.rows.len() > MAX_FRAMES {
+        let joint = frames.rows[MAX_FRAMES].body.unwrap_or(tree.bodies.len() - 1);
+        let place = urdf.joints[tree.bodies[joint].joint].place;
+        return Err(vec![too_many(frames.rows.len(), place, &urdf.links[tree.base].name)]);
     }
     let mut warnings = urdf.warnings.clone();
     warnings.extend(held(urdf, &tree));

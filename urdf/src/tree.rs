@@ -2,8 +2,9 @@
 
 use crate::body::Body;
 use crate::document::{JointType, Urdf};
-use crate::mistake::{Mistake, shown};
+use crate::mistake::{Mistake, Place, shown};
 use crate::pose::Pose;
+use dynid_description::bounds::MAX_FRAMES;
 
 /// The part of a URDF that a table describes.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +27,15 @@ pub(crate) struct Moving {
     pub origin: Pose,
     /// Links with their poses in the frame of the joint's child link, which is the first.
     pub links: Vec<(usize, Pose)>,
+}
+
+/// More joints than a table has.
+pub(crate) fn too_many(count: usize, place: Place, base: &str) -> Mistake {
+    let words = format!(
+        "{count} frames for the joints from '{}' on; a table has at most {MAX_FRAMES}: --base and --tip choose a chain",
+        shown(base)
+    );
+    Mistake::new(place, words)
 }
 
 impl Urdf {
@@ -51,10 +61,10 @@ impl Urdf {
             })
         };
         let base = base.map_or(Ok(self.root), |name| found(name, "--base"))?;
-        let path = match tip {
-            None => None,
-            Some(name) => Some(self.path(base, found(name, "--tip")?)?),
-        };
+        let mut moves = vec![tip.is_none(); self.joints.len()];
+        if let Some(name) = tip {
+            self.path(base, found(name, "--tip")?)?.into_iter().for_each(|j| moves[j] = true);
+        }
         let mut tree = Tree { base, bodies: Vec::new(), held: Vec::new() };
         let mut mistakes = Vec::new();
         // Depth first, in the order of the file.
@@ -67,9 +77,7 @@ impl Urdf {
             for &j in self.links[link].children.iter().rev() {
                 let joint = &self.joints[j];
                 let there = pose.then(&joint.origin);
-                let moves =
-                    joint.kind != JointType::Fixed && path.as_ref().is_none_or(|path| path.contains(&j));
-                if !moves {
+                if joint.kind == JointType::Fixed || !moves[j] {
                     if joint.kind != JointType::Fixed {
                         tree.held.push(j);
                     }
@@ -81,6 +89,10 @@ impl Urdf {
                     open.push((joint.child, Some(tree.bodies.len() - 1), Pose::identity()));
                 }
             }
+        }
+        if tree.bodies.len() > MAX_FRAMES {
+            let place = self.joints[tree.bodies[MAX_FRAMES].joint].place;
+            return Err(vec![too_many(tree.bodies.len(), place, &self.links[base].name)]);
         }
         if tree.bodies.is_empty() && mistakes.is_empty() {
             let words =

@@ -97,14 +97,14 @@ pub(super) fn tell(fitted: &Fitted, to: Target, what: &str, out: &Path) -> Resul
             robot: &robot.name,
             model: what,
             not_in_the_format: left_out,
-            distance: near.map(|(_, near)| [near.distance, near.least]),
+            distance: near.map(|(_, bodies)| [bodies.near.distance, bodies.near.least]),
             standard_parameters: (0..robot.standard.len())
                 .map(|k| Written {
                     name: &robot.standard[k].name,
                     value: fitted.standard[k],
                     unit: robot.standard[k].kind.unit(robot.frames[robot.standard[k].frame].kind),
                     prior: fitted.prior[k],
-                    from_data: near.map(|(_, near)| near.from_data[k]),
+                    from_data: near.map(|(_, bodies)| bodies.near.from_data[k]),
                 })
                 .collect(),
             base_parameters: (0..robot.base.len())
