@@ -157,9 +157,7 @@ struct Search {
     bodies: Vec<Known>,
     /// Rotor inertias at the motors: combination, weight, scale.
     rotors: Vec<(Combination, f64, f64)>,
-    /// Friction and offsets.
-    loose: Vec<usize>,
-    /// Parameters that are fixed at 0.
+    /// Parameters that stay as they start: of frames that carry nothing, and friction that the data do not show.
     fixed: Vec<usize>,
     start: DVector<f64>,
     determined: usize,
@@ -189,7 +187,6 @@ impl Search {
             normal: DMatrix::zeros(standard, standard),
             bodies: Vec::new(),
             rotors: Vec::new(),
-            loose: Vec::new(),
             fixed: Vec::new(),
             start: DVector::zeros(standard),
             determined: 0,
@@ -198,12 +195,14 @@ impl Search {
             search.add_body(robot, prior, frame)?;
         }
         search.add_rotors(robot, prior);
+        search.add_data(robot, chi, covariance)?;
+        // Friction and offsets have no prior: where no data show them there is nothing to say.
         for (k, p) in robot.standard.iter().enumerate() {
-            if !ParameterKind::INERTIAL.contains(&p.kind) && p.kind != ParameterKind::Ia {
-                search.loose.push(k);
+            let is_loose = !ParameterKind::INERTIAL.contains(&p.kind) && p.kind != ParameterKind::Ia;
+            if is_loose && search.normal[(k, k)] == 0.0 {
+                search.fixed.push(k);
             }
         }
-        search.add_data(robot, chi, covariance)?;
         Ok(search)
     }
 
@@ -309,7 +308,6 @@ impl Search {
             }
             sum += weight * (value / scale - (value / scale).ln() - 1.0);
         }
-        sum += self.loose.iter().map(|&k| 0.5 * (x[k] / UNKNOWN).powi(2)).sum::<f64>();
         sum.is_finite().then_some(sum)
     }
 
@@ -337,10 +335,6 @@ impl Search {
                     hessian[(i, j)] += weight * a * b / (value * value);
                 }
             }
-        }
-        for &k in &self.loose {
-            gradient[k] += x[k] / (UNKNOWN * UNKNOWN);
-            hessian[(k, k)] += 1.0 / (UNKNOWN * UNKNOWN);
         }
         self.fixed.iter().for_each(|&k| hessian[(k, k)] = 1.0);
         Some((gradient, hessian))
