@@ -143,9 +143,8 @@ fn what_is_wrong_in_a_urdf_is_told_with_its_place() {
         (whole(&joint("j2", "revolute", ["b", "c"], "<origin xyz=\"0 0\"/>")), &["w.urdf:6:", "3 numbers"]),
         (whole(&joint("j2", "revolute", ["b", "c"], "<origin rpy=\"${pi} 0 0\"/>")), &["w.urdf:6:", "xacro"]),
         (
-            format!(
-                "<robot name=\"arm\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:arm/></robot>"
-            ),
+            "<robot name=\"arm\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:arm/></robot>"
+                .to_owned(),
             &["w.urdf:2:1", "xacro", "expanded"],
         ),
         (
