@@ -31,7 +31,7 @@ ROBOTS = [
     ("tiago_description/robots/tiago_no_hand.urdf", "torso_fixed_link", "arm_7_link"),
     ("centauro_description/urdf/centauro.urdf", "torso_2", "arm1_6"),
     ("laikago_description/urdf/laikago.urdf", None, None),
-    ("baxter_description/urdf/baxter.urdf", None, "left_hand"),
+    ("baxter_description/urdf/baxter.urdf", None, "left_gripper"),
     ("so_arm_description/urdf/so101.urdf", None, None),
     ("double_pendulum_description/urdf/double_pendulum_simple.urdf", None, None),
     ("finger_edu_description/robots/finger_edu.urdf", None, None),
