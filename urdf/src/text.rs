@@ -84,6 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::approx_constant, reason = "the rounding of a file")]
     fn numbers_are_as_short_as_they_may_be() {
         assert_eq!(number(0.1 + 0.2), "0.3");
         assert_eq!(number(-1.23456789012345e-7), "-1.23456789012345e-7");
