@@ -14,7 +14,7 @@ use crate::ranges;
 pub struct Source {
     /// The recording: a YAML that names the robot, the files and the columns
     pub recording: PathBuf,
-    /// Another robot than the one the recording names: a name, or the path of a robot YAML
+    /// Another robot than the one the recording names: a name, or the path of a robot YAML or a URDF
     #[arg(long)]
     pub robot: Option<String>,
     /// Use only what comes after this time, s
