@@ -14,6 +14,7 @@ use dynid_runtime::estimation::{
 use dynid_runtime::model::{RecursiveModel, Robot};
 use dynid_runtime::model_file;
 use dynid_runtime::recording::{Column, Layout, Manifest, Rows, TableReader, load};
+use dynid_urdf::{ImportOptions, Skeleton, Template, write_mjcf, write_urdf};
 
 /// An arm of two joints.
 const ARM: &str = "
@@ -49,6 +50,24 @@ pub fn robot(bytes: &[u8]) {
     let finite = robot.base.iter().flat_map(|b| b.combination.iter()).all(|(_, c)| c.is_finite());
     assert!(finite, "a base parameter is not finite");
     let _ = RecursiveModel::new(robot);
+}
+
+/// A URDF, to its table and into a copy of it. What is written as a YAML is one.
+pub fn urdf(bytes: &[u8]) {
+    let options = ImportOptions::default();
+    let Ok(urdf) = dynid_urdf::read(bytes, options.snap) else { return };
+    let Ok(imported) = dynid_urdf::import(&urdf, "arm.urdf", &options) else { return };
+    // A number may be larger than a robot's; everything else is as the reader wants it.
+    let Some(robot) = robot_of(imported.yaml.as_bytes()) else { return };
+    let standard: Vec<f64> = robot.nominal.as_ref().map_or_else(Vec::new, |n| n.standard.to_vec());
+    if let Ok(template) = Template::new(&urdf, &robot, &options)
+        && let Ok(text) = template.patched(bytes, &robot, &standard, &[])
+    {
+        assert!(dynid_urdf::read(text.as_bytes(), options.snap).is_ok(), "{text}");
+    }
+    let skeleton = Skeleton::of_table(&robot, &standard);
+    let _ = write_mjcf(&skeleton);
+    let _ = dynid_urdf::read(write_urdf(&skeleton).as_bytes(), options.snap);
 }
 
 /// The YAML of a recording; its files are not there.

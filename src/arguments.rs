@@ -6,6 +6,7 @@ use clap::Args;
 use dynid_runtime::estimation::observe::{ObserveSettings, Standstill};
 use dynid_runtime::prediction::Comparison;
 
+use crate::failure::Failure;
 use crate::ranges;
 
 /// Which recording is read.
@@ -13,7 +14,7 @@ use crate::ranges;
 pub struct Source {
     /// The recording: a YAML that names the robot, the files and the columns
     pub recording: PathBuf,
-    /// Another robot than the one the recording names: a name, or the path of a robot YAML
+    /// Another robot than the one the recording names: a name, or the path of a robot YAML or a URDF
     #[arg(long)]
     pub robot: Option<String>,
     /// Use only what comes after this time, s
@@ -135,6 +136,55 @@ pub struct DiagnosisOptions {
         value_name = ranges::THREADS,
     )]
     pub threads: usize,
+}
+
+/// Which part of a URDF is a robot's table, and how it is read.
+#[derive(Debug, Clone, Args)]
+pub struct UrdfOptions {
+    /// The link that does not move [default: the root]
+    #[arg(long)]
+    pub base: Option<String>,
+    /// The last link of a chain; other joints are held at 0 [default: every joint beyond the base moves]
+    #[arg(long)]
+    pub tip: Option<String>,
+    /// Angles of the URDF this close to a multiple of pi/4 are taken for it, rad: 0.0001 for a file that writes 1.5708
+    #[arg(
+        long,
+        default_value_t = dynid_urdf::ImportOptions::default().snap,
+        allow_negative_numbers = true,
+        value_parser = ranges::snap,
+        value_name = ranges::SNAP,
+    )]
+    pub snap: f64,
+    /// Gravity in the frame of the URDF's root link, m/s2, as three numbers with commas [default: 0,0,-9.81]
+    #[arg(long, allow_negative_numbers = true, value_delimiter = ',', value_parser = ranges::gravity, value_name = ranges::GRAVITY)]
+    pub gravity: Vec<f64>,
+}
+
+impl UrdfOptions {
+    /// As the import takes them.
+    ///
+    /// # Errors
+    /// Another number of entries of gravity than three.
+    pub fn import(&self) -> Result<dynid_urdf::ImportOptions, Failure> {
+        let known = dynid_urdf::ImportOptions::default();
+        let gravity = match self.gravity[..] {
+            [] => known.gravity,
+            [x, y, z] => [x, y, z],
+            _ => {
+                return Err(Failure::Input(format!(
+                    "--gravity has {} numbers, expected 3",
+                    self.gravity.len()
+                )));
+            }
+        };
+        Ok(dynid_urdf::ImportOptions {
+            base: self.base.clone(),
+            tip: self.tip.clone(),
+            snap: self.snap,
+            gravity,
+        })
+    }
 }
 
 impl RowOptions {

@@ -18,6 +18,8 @@ macro_rules! range {
 }
 
 range!("a band, Hz", band, BAND: f64, 0.01 to 1e5);
+range!("a tolerance of angles, rad", snap, SNAP: f64, 0.0 to 0.1);
+range!("an acceleration of gravity, m/s2", gravity, GRAVITY: f64, -1e4 to 1e4);
 range!("equations a second, Hz", rows_rate, ROWS_RATE: f64, 0.01 to 1e6);
 range!("a cut-off, Hz", cutoff, CUTOFF: f64, 0.01 to 1e6);
 range!("a speed of standstill, rad/s or m/s", standstill, STANDSTILL: f64, 0.0 to 1e4);

@@ -1,4 +1,4 @@
-//! Which robot is meant: one that was generated at build time, or a YAML given by path.
+//! Which robot is meant: one that was generated at build time, or a YAML or URDF given by path.
 
 use std::path::{Path, PathBuf};
 
@@ -7,10 +7,12 @@ use dynid_codegen::numeric_robot;
 use dynid_codegen::robot::parse_with_warnings;
 use dynid_runtime::model::{Model, RecursiveModel, Robot};
 use dynid_runtime::regular_file;
+use dynid_urdf::ImportOptions;
 
 use crate::failure::{Failure, file_failure};
 use crate::models;
 use crate::output::warn;
+use crate::urdf_files::{imported, is_urdf};
 
 /// Longest robot YAML that is read, bytes.
 const LONGEST: u64 = 1 << 20;
@@ -45,7 +47,8 @@ pub fn resolve(name: &str, beside: Option<&Path>) -> Result<Dynamics, Failure> {
     if let Some(model) = models::find(name) {
         return Ok(Dynamics::Generated(model));
     }
-    let looks_like_a_path = name.ends_with(".yaml") || name.ends_with(".yml") || name.contains('/');
+    let looks_like_a_path =
+        [".yaml", ".yml", ".urdf"].iter().any(|end| name.ends_with(end)) || name.contains('/');
     if !looks_like_a_path {
         return Err(unknown(name));
     }
@@ -82,20 +85,28 @@ pub fn found_again(dynamics: &Dynamics, name: &str, beside: Option<&Path>) -> St
     }
 }
 
-/// The bytes of a robot YAML. That they are too many, or no text, is told with the other mistakes.
+/// The bytes of a robot YAML, those of its table for a URDF. That they are too many, or no text, is told with the other
+/// mistakes.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the file.
 pub fn read_yaml(path: &Path) -> Result<Vec<u8>, Failure> {
+    if is_urdf(path) {
+        return Ok(imported(path, &ImportOptions::default())?.0.yaml.into_bytes());
+    }
     regular_file::read(path, LONGEST).map_err(|error| file_failure("read the robot", path, &error))
 }
 
-/// Reads a robot YAML into the numbers that the runtime works with. What is allowed in it but probably not meant is
+/// Reads a robot YAML, or a URDF, into the numbers that the runtime works with. What is allowed in it but probably not meant is
 /// told on standard error.
 ///
 /// # Errors
 /// [`Failure::Input`] with every mistake, one a line.
 pub fn read(path: &Path) -> Result<Robot, Failure> {
+    if is_urdf(path) {
+        let (_, table) = imported(path, &ImportOptions::default())?;
+        return Ok(numeric_robot(&table, &base_set(&table)));
+    }
     let text = read_yaml(path)?;
     let (table, warnings) = parse_with_warnings(&path.display().to_string(), &text).map_err(|mistakes| {
         Failure::Input(mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
@@ -107,7 +118,7 @@ pub fn read(path: &Path) -> Result<Robot, Failure> {
 fn unknown(name: &str) -> Failure {
     let known: Vec<String> = models::all().iter().map(|m| m.robot().name.to_string()).collect();
     Failure::Input(format!(
-        "there is no robot '{name}': known are {}; or give the path of a robot YAML",
+        "there is no robot '{name}': known are {}; or give the path of a robot YAML or a URDF",
         known.join(", ")
     ))
 }

@@ -10,8 +10,9 @@ mod targets;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 6] = [
+const TARGETS: [(&str, Target); 7] = [
     ("robot", targets::robot),
+    ("urdf", targets::urdf),
     ("manifest", targets::manifest),
     ("table", targets::table),
     ("array", targets::array),

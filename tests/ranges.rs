@@ -35,13 +35,15 @@ fn assert_answer(output: &Output, words: &str) {
 static FOLDER: LazyLock<Folder> = LazyLock::new(|| {
     let folder = Folder::new("ranges");
     folder.write("motion.csv", &moving(600)).write("recording.yaml", MANIFEST);
+    folder.write("arm.urdf", include_str!("urdf/twins.urdf"));
     let output = folder.run(&["identify", "recording.yaml", "--out", "m.json"]);
     assert!(output.status.success(), "{}", error_of(&output));
     folder
 });
 
 /// Commands with options of numbers, each as fast as it can be.
-const COMMANDS: [&str; 6] = [
+const COMMANDS: [&str; 7] = [
+    "import arm.urdf --out arm.yaml",
     "identify recording.yaml",
     "validate m.json recording.yaml",
     "diagnose recording.yaml",
@@ -76,7 +78,12 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, joints of the robot, and a seed, which may be any.
-const OTHERS: [&str; 21] = [
+const OTHERS: [&str; 26] = [
+    "--prior",
+    "--to",
+    "--template",
+    "--base",
+    "--tip",
     "--laws",
     "--joint",
     "--tell",

@@ -22,7 +22,7 @@ use crate::words::joint_number;
 /// What to search, and where to put it.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A robot's name, or the path of a robot YAML
+    /// A robot's name, or the path of a robot YAML or a URDF
     robot: String,
     /// Folder for motions.yaml, which names a CSV and a figure for each motion
     #[arg(long)]

@@ -1,6 +1,7 @@
 //! `dynid identify REC`: parameters from a recording.
 
 mod method;
+mod physical;
 mod simulated;
 
 use std::path::{Path, PathBuf};
@@ -53,6 +54,12 @@ pub(super) struct Arguments {
     /// Identify even where no such robot can have made the recording
     #[arg(long)]
     implausible: bool,
+    /// Standard parameters that bodies can have, nearest to a prior; the model is saved with them
+    #[arg(long)]
+    physical: bool,
+    /// The prior: a URDF, a robot YAML with nominal parameters, or a model [default: the robot's nominal parameters]
+    #[arg(long, requires = "physical")]
+    prior: Option<PathBuf>,
     /// Also print what is regrouped into each parameter
     #[arg(long)]
     base: bool,
@@ -75,9 +82,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         if arguments.method.method().is_power() { &[power, Equations::Torque] } else { &[Equations::Torque] };
     let recorded::Observed { recorded, observations, whole } =
         recorded::read_observed(&arguments.recording, &arguments.sampling, equations)?;
-    let (identified, estimate) = identify(&recorded, whole, &observations, arguments)?;
+    let (mut identified, estimate) = identify(&recorded, whole, &observations, arguments)?;
+    let mut words = summary(&recorded, &identified, &estimate, arguments);
+    if let Some(torques) = observations.last().filter(|_| arguments.physical) {
+        let robot = recorded.dynamics.model().robot();
+        let bodies = physical::make_physical(&mut identified, robot, torques, arguments.prior.as_deref())?;
+        words.push_str(&format!("\n\n{bodies}"));
+    }
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        print(&summary(&recorded, &identified, &estimate, arguments));
+        print(&words);
     }
     if let Some(path) = &arguments.json {
         // A triangle of numbers that only a saved model is asked for.

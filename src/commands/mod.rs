@@ -4,7 +4,9 @@ mod challenge;
 mod demo;
 mod diagnose;
 mod excite;
+mod export;
 mod identify;
+mod import;
 mod paper;
 mod robots;
 mod show;
@@ -35,8 +37,12 @@ enum Command {
     Robots,
     /// Search motions that make a robot's parameters observable
     Excite(excite::Arguments),
+    /// Write a model in the format of another tool
+    Export(export::Arguments),
     /// Identify a robot's parameters from a recording
     Identify(identify::Arguments),
+    /// Write the table of a URDF as a robot YAML
+    Import(import::Arguments),
     /// Predict the torques of a recording with an identified model
     Validate(validate::Arguments),
     /// Find out which physics is missing, where, and whether adding it helps on held-out motion
@@ -88,6 +94,8 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Challenge(arguments) => challenge::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
+        Command::Import(arguments) => import::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
     }

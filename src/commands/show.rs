@@ -13,7 +13,7 @@ use crate::words::table_doubts;
 /// What to show.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A robot of `dynid robots`, or the path of a robot YAML
+    /// A robot of `dynid robots`, or the path of a robot YAML or a URDF
     robot: String,
     /// What is regrouped into each base parameter
     #[arg(long)]

@@ -25,7 +25,7 @@ use robot::{Parameters, missing, parameters, plant, saved_model};
 /// What to simulate, and where to put it.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A robot's name (its nominal parameters are used), the path of a robot YAML, or a model saved by `identify`
+    /// A robot's name (its nominal parameters are used), the path of a robot YAML or a URDF, or a model saved by `identify`
     robot: String,
     /// Folder for the recording
     #[arg(long)]

@@ -71,7 +71,9 @@ pub use factor::{BLOCK_ROWS, Factor};
 pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
 pub use method::{Method, Solver};
 pub use outcome::{BlockWeight, EquationError, Essential, Estimate, ParameterEstimate};
-pub use physical::{NearestBody, PhysicalFit, nearest_body, physical_fit};
+pub use physical::{
+    NearPrior, NearPriorError, NearestBody, PhysicalFit, Prior, near_prior, nearest_body, physical_fit,
+};
 pub use piecewise::Piecewise;
 pub use recorded::{
     ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording,

@@ -58,6 +58,27 @@ fn amplitude_name(effect: usize, k: usize) -> String {
 }
 
 impl Identified {
+    /// Covariance of the base parameters of a robot, in its order, with the standard deviations that the file names and the
+    /// correlations that it has; a row of zeros is of what is not determined, or not known.
+    pub fn base_covariance(&self, robot: &Robot) -> DMatrix<f64> {
+        let sigma = |name: &str| {
+            let named = self.base_parameters.iter().find(|p| p.name == name);
+            named.and_then(|p| p.sigma).filter(|s| s.is_finite() && *s > 0.0).unwrap_or(0.0)
+        };
+        let sigma: Vec<f64> = robot.base.iter().map(|b| sigma(&b.name)).collect();
+        let place = |name: &str| self.covariance.as_ref()?.of.iter().position(|own| own == name);
+        let places: Vec<Option<usize>> = robot.base.iter().map(|b| place(&b.name)).collect();
+        let correlation = |i: usize, k: usize| {
+            let (Some(known), Some(a), Some(b)) = (&self.covariance, places[i], places[k]) else {
+                return 0.0;
+            };
+            let size = (known.entry(a, a) * known.entry(b, b)).sqrt();
+            if size > 0.0 { known.entry(a, b) / size } else { 0.0 }
+        };
+        let n = sigma.len();
+        DMatrix::from_fn(n, n, |i, k| sigma[i] * sigma[k] * if i == k { 1.0 } else { correlation(i, k) })
+    }
+
     /// The model as a reference that recordings of the same robot are judged against. What the file has no covariance of
     /// is taken to vary by itself, with its standard deviation.
     ///

@@ -127,7 +127,7 @@ impl Problem {
 
 /// The Cholesky factor of a matrix with a diagonal of ones. At the rim of what is possible rounding can take its
 /// definiteness; a little on the diagonal gives it back, and the step still descends.
-fn factored(matrix: DMatrix<f64>) -> Option<Cholesky<f64, nalgebra::Dyn>> {
+pub(super) fn factored(matrix: DMatrix<f64>) -> Option<Cholesky<f64, nalgebra::Dyn>> {
     [0.0, 1e-13, 1e-11, 1e-9].into_iter().find_map(|more| {
         let mut lifted = matrix.clone();
         (0..lifted.nrows()).for_each(|k| lifted[(k, k)] += more);

@@ -6,6 +6,7 @@
 
 mod body;
 mod interior_point;
+mod near_prior;
 mod problem;
 mod pseudo_inertia;
 
@@ -16,6 +17,7 @@ use crate::model::Robot;
 use problem::Problem;
 
 pub use body::{NearestBody, nearest_body};
+pub use near_prior::{NearPrior, NearPriorError, Prior, near_prior};
 
 /// The best fit whose parameters belong to real bodies and whose friction dissipates.
 #[derive(Debug, Clone, PartialEq)]

@@ -96,38 +96,45 @@ impl Problem {
         }
     }
 
-    /// Ja = ((N∘N)ᵀ)⁻¹ Ia by (26), rows scaled by N_mm²; where there is no inverse, Ia stands for Ja.
     fn rotors(&mut self, robot: &Robot) {
-        let n = robot.joints();
-        let frames = robot.joint_of_frame();
-        let mut inertia = vec![None; n];
-        for (frame, joint) in frames.iter().enumerate() {
-            if let Some(j) = joint {
-                inertia[*j] = parameter(robot, frame, ParameterKind::Ia);
-            }
+        let (positive, start) = rotors(robot, |_| 0.1);
+        self.positive.extend(positive);
+        start.into_iter().for_each(|(k, value)| self.start[k] = value);
+    }
+}
+
+/// The rotor inertias at the motors as combinations of the standard parameters Ia, and the Ia that have them start at
+/// `inertia`, motor by motor and in units of the joint.
+///
+/// Ja = ((N∘N)ᵀ)⁻¹ Ia by (26), rows scaled by N_mm²; where there is no inverse, Ia stands for Ja.
+pub(super) fn rotors(robot: &Robot, inertia: impl Fn(usize) -> f64) -> (Vec<Combination>, Vec<(usize, f64)>) {
+    let n = robot.joints();
+    let frames = robot.joint_of_frame();
+    let mut own = vec![None; n];
+    for (frame, joint) in frames.iter().enumerate() {
+        if let Some(j) = joint {
+            own[*j] = parameter(robot, frame, ParameterKind::Ia);
         }
-        let Some(inertia) = inertia.into_iter().collect::<Option<Vec<usize>>>() else { return };
-        let gear = &robot.drive.gear;
-        let squared = DMatrix::from_fn(n, n, |m, j| (gear[m * n + j] / gear[m * n + m]).powi(2)).transpose();
-        let start = &squared * DVector::from_element(n, 0.1);
-        match squared.try_inverse() {
-            Some(inverse) => {
-                for m in 0..n {
-                    let row = (0..n).filter(|&j| inverse[(m, j)] != 0.0);
-                    self.positive.push(row.map(|j| (inertia[j], inverse[(m, j)])).collect());
-                    self.start[inertia[m]] = start[m];
-                }
-            }
-            None => {
-                for &k in &inertia {
-                    self.positive.push(vec![(k, 1.0)]);
-                    self.start[k] = 0.1;
-                }
-            }
+    }
+    let Some(own) = own.into_iter().collect::<Option<Vec<usize>>>() else { return Default::default() };
+    let gear = &robot.drive.gear;
+    let squared = DMatrix::from_fn(n, n, |m, j| (gear[m * n + j] / gear[m * n + m]).powi(2)).transpose();
+    let at_motor = DVector::from_fn(n, |m, _| inertia(m));
+    let start = &squared * &at_motor;
+    match squared.try_inverse() {
+        Some(inverse) => {
+            let row = |m: usize| {
+                (0..n).filter(|&j| inverse[(m, j)] != 0.0).map(|j| (own[j], inverse[(m, j)])).collect()
+            };
+            ((0..n).map(row).collect(), (0..n).map(|j| (own[j], start[j])).collect())
+        }
+        None => {
+            let alone = own.iter().map(|&k| vec![(k, 1.0)]).collect();
+            (alone, (0..n).map(|j| (own[j], at_motor[j])).collect())
         }
     }
 }
 
-fn parameter(robot: &Robot, frame: usize, kind: ParameterKind) -> Option<usize> {
+pub(super) fn parameter(robot: &Robot, frame: usize, kind: ParameterKind) -> Option<usize> {
     robot.standard.iter().position(|p| p.frame == frame && p.kind == kind)
 }

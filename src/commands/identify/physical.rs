@@ -1,0 +1,86 @@
+//! `identify --physical`: standard parameters that bodies can have, and the base parameters of these bodies.
+
+use std::path::Path;
+
+use dynid_runtime::estimation::observe::Observation;
+use dynid_runtime::model::Robot;
+use dynid_runtime::model_file::{Identified, difference};
+use dynid_runtime::prediction::observed_errors;
+use dynid_runtime::report::percent;
+use dynid_urdf::{ImportOptions, Template};
+
+use crate::failure::Failure;
+use crate::near_bodies::NearBodies;
+use crate::robots::resolve;
+use crate::saved::read_model;
+use crate::urdf_files::{self, is_urdf, refused};
+
+/// Makes a model one of bodies: its base parameters become theirs, its table's nominal values their standard parameters.
+/// Returns what to say of it. `prior` is a URDF, a robot YAML or a model; the robot's nominal values where it is not given.
+///
+/// # Errors
+/// [`Failure::Input`] for a prior of another robot, [`Failure::Data`] where nothing says how near the parameters must be.
+pub(super) fn make_physical(
+    identified: &mut Identified,
+    robot: &Robot,
+    torques: &Observation,
+    prior: Option<&Path>,
+) -> Result<String, Failure> {
+    let bodies = match prior {
+        Some(path) if is_urdf(path) => {
+            let options = ImportOptions::default();
+            let urdf = urdf_files::parsed(path, &urdf_files::bytes(path)?, options.snap)?;
+            let template = Template::new(&urdf, robot, &options).map_err(|error| match error {
+                Ok(unlike) => Failure::Input(format!("{}: {unlike}", path.display())),
+                Err(mistakes) => refused(path, &mistakes),
+            })?;
+            NearBodies::new(identified, robot, nominal(robot).as_deref(), Some(&template))
+        }
+        Some(path) => NearBodies::new(identified, robot, Some(&nominal_of(path, robot)?), None),
+        None => NearBodies::new(identified, robot, nominal(robot).as_deref(), None),
+    };
+    let bodies = bodies.map_err(|error| Failure::Data(error.to_string()))?;
+    let words = bodies.words(identified, robot);
+    let errors = observed_errors(torques, &bodies.near.chi);
+    let words = format!(
+        "{words}\nrelative error of the torques {} -> {} with bodies",
+        percent(identified.relative_error),
+        percent(errors.relative_error)
+    );
+    identified.relative_error = errors.relative_error;
+    identified.per_joint = errors.per_joint;
+    for (parameter, base) in identified.base_parameters.iter_mut().zip(&bodies.near.chi) {
+        parameter.value = *base;
+    }
+    if let Some(table) = &mut identified.table {
+        let mut values = table.nominal.clone().unwrap_or_else(|| dynid_runtime::model::Nominal {
+            standard: Vec::new().into(),
+            kp: Vec::new().into(),
+            kd: Vec::new().into(),
+            ki: Vec::new().into(),
+            position_noise: Vec::new().into(),
+            torque_noise: Vec::new().into(),
+        });
+        values.standard = bodies.near.standard.into();
+        table.nominal = Some(values);
+    }
+    Ok(words)
+}
+
+fn nominal(robot: &Robot) -> Option<Vec<f64>> {
+    robot.nominal.as_ref().map(|nominal| nominal.standard.to_vec())
+}
+
+/// Nominal standard parameters of a robot YAML or of a model's table.
+fn nominal_of(path: &Path, robot: &Robot) -> Result<Vec<f64>, Failure> {
+    let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
+    let other = if path.extension().is_some_and(|extension| extension == "json") {
+        read_model(path)?.table.ok_or_else(|| wrong("a model without its table is no prior".to_owned()))?
+    } else {
+        resolve(&path.display().to_string(), None)?.model().robot().clone()
+    };
+    if let Some(what) = difference(&other, robot) {
+        return Err(wrong(format!("its table is not that of the recording's robot: {what}")));
+    }
+    nominal(&other).ok_or_else(|| wrong("it has no nominal parameters".to_owned()))
+}

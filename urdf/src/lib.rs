@@ -1,0 +1,48 @@
+//! From a URDF to the modified Denavit-Hartenberg table that dynid works with, and back. Text in, text out: nothing here
+//! reads or writes a file.
+//!
+//! ```
+//! use dynid_urdf::{ImportOptions, import, read};
+//!
+//! let urdf = br#"<robot name="arm">
+//!   <link name="base"/>
+//!   <joint name="shoulder" type="continuous">
+//!     <parent link="base"/><child link="upper"/><origin xyz="0 0 0.3" rpy="-1.5707963267948966 0 0"/><axis xyz="0 0 1"/>
+//!   </joint>
+//!   <link name="upper">
+//!     <inertial><mass value="2"/><origin xyz="0.1 0 0"/><inertia ixx="0.01" iyy="0.02" izz="0.02"/></inertial>
+//!   </link>
+//! </robot>"#;
+//! let options = ImportOptions::default();
+//! let robot = read(urdf, options.snap).expect("a robot without mistakes");
+//! let imported = import(&robot, "arm.urdf", &options).expect("a chain");
+//! assert!(imported.yaml.contains("{j: 1, sigma: 0, gamma: 0, b: 0.3, alpha: -pi/2, d: 0, theta: q1, r: 0}"));
+//! assert!(imported.yaml.contains("MX1: 0.2, M1: 2"));
+//! ```
+#![deny(missing_docs)]
+
+mod angles;
+mod attributes;
+mod body;
+mod document;
+mod frames;
+mod import;
+mod mistake;
+mod mjcf;
+mod pose;
+mod screw;
+mod skeleton;
+mod template;
+mod text;
+mod tree;
+mod write_urdf;
+
+pub use body::Body;
+pub use document::{Urdf, read};
+pub use import::{ImportOptions, Imported, import};
+pub use mistake::{Mistake, Place};
+pub use mjcf::write_mjcf;
+pub use pose::Pose;
+pub use skeleton::{Segment, Skeleton, Unlike, armatures, value};
+pub use template::{JointFriction, Template, TemplateBody};
+pub use write_urdf::write_urdf;

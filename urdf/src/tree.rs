@@ -1,0 +1,189 @@
+//! Which joints move, and which links each of them carries along.
+
+use crate::body::Body;
+use crate::document::{JointType, Urdf};
+use crate::mistake::{Mistake, Place, shown};
+use crate::pose::Pose;
+use dynid_description::bounds::MAX_FRAMES;
+
+/// The part of a URDF that a table describes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Tree {
+    /// The link that does not move: frame 0 is its frame.
+    pub base: usize,
+    /// What moves, parents before children.
+    pub bodies: Vec<Moving>,
+    /// Joints that move in the file and are held at 0 here, with why.
+    pub held: Vec<usize>,
+}
+
+/// A moving joint, and all links that it carries up to the next ones.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Moving {
+    pub joint: usize,
+    /// Body that carries it; `None` for the base.
+    pub parent: Option<usize>,
+    /// Its frame at 0 in the frame of the carrying body.
+    pub origin: Pose,
+    /// Links with their poses in the frame of the joint's child link, which is the first.
+    pub links: Vec<(usize, Pose)>,
+}
+
+/// More joints than a table has.
+pub(crate) fn too_many(count: usize, place: Place, base: &str) -> Mistake {
+    let words = format!(
+        "{count} frames for the joints from '{}' on; a table has at most {MAX_FRAMES}: --base and --tip choose a chain",
+        shown(base)
+    );
+    Mistake::new(place, words)
+}
+
+impl Urdf {
+    /// What moves of the links from `base` on, or between `base` and `tip`.
+    ///
+    /// Without a tip every joint beyond the base moves. With one the joints between them do; the others that move in the
+    /// file are held at 0, and their links are carried along.
+    ///
+    /// # Errors
+    /// Links that are not there, a tip that is not beyond the base, joints of which there is no table.
+    pub(crate) fn tree(&self, base: Option<&str>, tip: Option<&str>) -> Result<Tree, Vec<Mistake>> {
+        let found = |name: &str, what: &str| {
+            self.links.iter().position(|link| link.name == name).ok_or_else(|| {
+                let known: Vec<String> = self.links.iter().take(12).map(|link| shown(&link.name)).collect();
+                let more = if self.links.len() > 12 { ", ..." } else { "" };
+                let place = self.links[self.root].place;
+                let words = format!(
+                    "there is no link '{}' for {what}: links are {}{more}",
+                    shown(name),
+                    known.join(", ")
+                );
+                vec![Mistake::new(place, words)]
+            })
+        };
+        let base = base.map_or(Ok(self.root), |name| found(name, "--base"))?;
+        let mut moves = vec![tip.is_none(); self.joints.len()];
+        if let Some(name) = tip {
+            self.path(base, found(name, "--tip")?)?.into_iter().for_each(|j| moves[j] = true);
+        }
+        let mut tree = Tree { base, bodies: Vec::new(), held: Vec::new() };
+        let mut mistakes = Vec::new();
+        // Depth first, in the order of the file.
+        let mut open = vec![(base, None, Pose::identity())];
+        while let Some((link, body, pose)) = open.pop() {
+            if let Some(k) = body {
+                let moving: &mut Moving = &mut tree.bodies[k];
+                moving.links.push((link, pose));
+            }
+            for &j in self.links[link].children.iter().rev() {
+                let joint = &self.joints[j];
+                let there = pose.then(&joint.origin);
+                if joint.kind == JointType::Fixed || !moves[j] {
+                    if joint.kind != JointType::Fixed {
+                        tree.held.push(j);
+                    }
+                    open.push((joint.child, body, there));
+                } else if let Err(mistake) = self.check_moving(j) {
+                    mistakes.push(mistake);
+                } else {
+                    tree.bodies.push(Moving { joint: j, parent: body, origin: there, links: Vec::new() });
+                    open.push((joint.child, Some(tree.bodies.len() - 1), Pose::identity()));
+                }
+            }
+        }
+        if tree.bodies.len() > MAX_FRAMES {
+            let place = self.joints[tree.bodies[MAX_FRAMES].joint].place;
+            return Err(vec![too_many(tree.bodies.len(), place, &self.links[base].name)]);
+        }
+        if tree.bodies.is_empty() && mistakes.is_empty() {
+            let words =
+                "no joint moves there: expected at least one that is revolute, continuous or prismatic";
+            mistakes.push(Mistake::new(self.links[base].place, words));
+        }
+        tree.held.sort_unstable();
+        if mistakes.is_empty() { Ok(self.in_order(tree)) } else { Err(mistakes) }
+    }
+
+    /// Joints from the base to the tip.
+    fn path(&self, base: usize, tip: usize) -> Result<Vec<usize>, Vec<Mistake>> {
+        let mut path = Vec::new();
+        let mut at = tip;
+        while at != base {
+            let Some(j) = self.links[at].joint else {
+                let (base, tip) = (shown(&self.links[base].name), shown(&self.links[tip].name));
+                let words = format!("link '{tip}' is not beyond '{base}': no way from --base to --tip");
+                return Err(vec![Mistake::new(self.links[at].place, words)]);
+            };
+            path.push(j);
+            at = self.joints[j].parent;
+        }
+        Ok(path)
+    }
+
+    fn check_moving(&self, j: usize) -> Result<(), Mistake> {
+        let joint = &self.joints[j];
+        let name = shown(&joint.name);
+        if let Some(mimic) = &joint.mimic {
+            let words = format!(
+                "joint '{name}' mimics '{}': a table has no dependent joints. --base and --tip choose a chain without it; \
+                 it is then held at 0",
+                shown(&mimic.of)
+            );
+            return Err(Mistake::new(mimic.place, words));
+        }
+        match joint.kind {
+            JointType::Floating | JointType::Planar => {
+                let what = if joint.kind == JointType::Planar { "planar" } else { "floating" };
+                let child = shown(&self.links[joint.child].name);
+                let words = format!(
+                    "joint '{name}' is {what}: a table has revolute and prismatic joints. --base '{child}' begins after it"
+                );
+                Err(Mistake::new(joint.place, words))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The bodies depth first in the order of the file: children are pushed when their parent is met, so that siblings
+    /// come before the first one's own children until they are put in order.
+    fn in_order(&self, tree: Tree) -> Tree {
+        let mut order = Vec::new();
+        let children = |parent: Option<usize>| -> Vec<usize> {
+            let mut of: Vec<usize> =
+                (0..tree.bodies.len()).filter(|&k| tree.bodies[k].parent == parent).collect();
+            of.sort_by_key(|&k| std::cmp::Reverse(tree.bodies[k].joint));
+            of
+        };
+        let mut open = children(None);
+        while let Some(k) = open.pop() {
+            order.push(k);
+            open.extend(children(Some(k)));
+        }
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
+        let moved = |&k: &usize| {
+            let moving = &tree.bodies[k];
+            Moving { parent: moving.parent.map(|p| place[p]), ..moving.clone() }
+        };
+        Tree { bodies: order.iter().map(moved).collect(), ..tree }
+    }
+
+    /// What a moving joint carries, about the origin of its child link's frame.
+    pub(crate) fn carried(&self, moving: &Moving) -> Body {
+        moving.links.iter().fold(Body::none(), |sum, &(link, pose)| sum.with(&self.body_of(link, &pose)))
+    }
+
+    /// The body of one link, seen from a frame in which the link's frame has this pose.
+    pub(crate) fn body_of(&self, link: usize, pose: &Pose) -> Body {
+        self.links[link].inertial.as_ref().map_or(Body::none(), |inertial| inertial.body.seen_from(pose))
+    }
+
+    /// Pose of a link in the frame of the root, every joint at 0.
+    pub(crate) fn pose_in_root(&self, mut link: usize) -> Pose {
+        let mut pose = Pose::identity();
+        while let Some(j) = self.links[link].joint {
+            pose = self.joints[j].origin.then(&pose);
+            link = self.joints[j].parent;
+        }
+        pose
+    }
+}
