@@ -37,9 +37,13 @@ pub fn header(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> Strin
     line("| | multiplications | additions | sine/cosine pairs |");
     line("|---|---|---|---|");
     let counts = equations.counts();
-    for (name, c) in
-        [("h", counts.energy), ("dh", counts.power), ("IDM", counts.idm), ("M and N", counts.forward)]
-    {
+    for (name, c) in [
+        ("h", counts.energy),
+        ("dh", counts.power),
+        ("IDM", counts.idm),
+        ("M and N", counts.forward),
+        ("tau", counts.torque),
+    ] {
         line(&format!("| {name} | {} | {} | {} |", c.multiplications, c.additions, c.sincos));
     }
     line("");

@@ -32,7 +32,7 @@ fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStre
         #![allow(non_snake_case, unused_variables, clippy::all)]
 
         use dynid_runtime::model::{
-            BaseParameter, Drive, Frame, JointKind, Limits, Line, LineStates, Model, Nominal, Number, Operations,
+            BaseParameter, Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, Nominal, Number, Operations,
             ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut, evaluate_block, evaluate_line,
             evaluate_lines,
         };
@@ -56,7 +56,13 @@ fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStre
 
 fn operations(equations: &Equations) -> TokenStream {
     let counts = equations.counts();
-    let rows = [("h", counts.energy), ("dh", counts.power), ("IDM", counts.idm), ("M, N", counts.forward)];
+    let rows = [
+        ("h", counts.energy),
+        ("dh", counts.power),
+        ("IDM", counts.idm),
+        ("M, N", counts.forward),
+        ("tau", counts.torque),
+    ];
     let rows = rows.map(|(function, c)| {
         let [multiplications, additions, pairs] =
             [c.multiplications, c.additions, c.sincos].map(Literal::usize_unsuffixed);
@@ -71,7 +77,7 @@ fn operations(equations: &Equations) -> TokenStream {
     });
     quote! {
         /// What one evaluation costs.
-        pub static OPERATIONS: [Operations; 4] = [#(#rows),*];
+        pub static OPERATIONS: [Operations; 5] = [#(#rows),*];
     }
 }
 
@@ -127,7 +133,19 @@ fn functions(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenS
         },
         &forward(equations),
     );
-    quote! { #energy #power #idm #forward }
+    let torque = function(
+        &equations.torque.graph,
+        &inputs,
+        &Signature {
+            name: "tau",
+            doc: "Torques tau(chi, q, dq, ddq) = IDM chi of all joints, N.m or N, friction and offsets included.",
+            arguments: &[("chi", "NB"), ("q", "N"), ("dq", "N"), ("ddq", "N")],
+            foreign: &[],
+            results: &[("tau", None)],
+        },
+        &torque(robot, &equations.torque.torques),
+    );
+    quote! { #energy #power #idm #forward #torque }
 }
 
 /// One value per base parameter; what is zero is written too.
@@ -183,6 +201,16 @@ fn forward(equations: &Equations) -> Vec<Output> {
     outputs
 }
 
+/// From the last joint inwards, as the wrenches come.
+fn torque(robot: &RobotTable, torques: &[Expr]) -> Vec<Output> {
+    let joint_frames = robot.joint_frames();
+    let output = |(index, &value): (usize, &Expr)| {
+        let group = format!("Joint {}.", robot.frames[joint_frames[index]].j);
+        Output { index, result: 0, value, group }
+    };
+    torques.iter().enumerate().rev().map(output).collect()
+}
+
 /// The functions for one line of samples side by side.
 fn lines() -> TokenStream {
     quote! {
@@ -196,6 +224,10 @@ fn lines() -> TokenStream {
 
         fn idm_line(states: &LineStates<N>, entries: &mut [Line; ENTRIES]) {
             evaluate_line(states, entries, |[q, dq, ddq], entries| idm(q, dq, ddq, entries));
+        }
+
+        fn tau_line(chi: &[Lanes; NB], states: &LineStates<N>, torques: &mut [Line; N]) {
+            evaluate_line(states, torques, |[q, dq, ddq], torques| tau(chi, q, dq, ddq, torques));
         }
     }
 }
@@ -246,6 +278,17 @@ fn model() -> TokenStream {
 
             fn mass_and_bias(&self, chi: &[f64], q: &[f64], dq: &[f64], mass: &mut [f64], bias: &mut [f64]) {
                 mass_and_bias(array(chi), array(q), array(dq), array_mut(mass), array_mut(bias));
+            }
+
+            fn torque(&self, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[f64], torques: &mut [f64]) {
+                tau(array(chi), array(q), array(dq), array(ddq), array_mut::<N>(torques));
+            }
+
+            fn torque_block(&self, chi: &[f64], states: States<'_>, stride: usize, out: &mut [f64]) {
+                let chi = array::<NB>(chi).map(Lanes::splat);
+                evaluate_block([states.q, states.dq, states.ddq], stride, out, |states, torques| {
+                    tau_line(&chi, states, torques);
+                });
             }
         }
     }
