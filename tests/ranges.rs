@@ -76,7 +76,9 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, joints of the robot, and a seed, which may be any.
-const OTHERS: [&str; 21] = [
+const OTHERS: [&str; 23] = [
+    "--to",
+    "--real",
     "--laws",
     "--joint",
     "--tell",

@@ -4,6 +4,7 @@ mod challenge;
 mod demo;
 mod diagnose;
 mod excite;
+mod export;
 mod identify;
 mod paper;
 mod robots;
@@ -47,6 +48,8 @@ enum Command {
     Paper(paper::Arguments),
     /// Simulate a robot in closed loop and write a recording
     Simulate(simulate::Arguments),
+    /// Write a robot or an identified model as C, or as Rust without std
+    Export(export::Arguments),
     /// Show a robot: its table, its base parameters, its operation counts
     Show(show::Arguments),
 }
@@ -88,6 +91,7 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Challenge(arguments) => challenge::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
     }
