@@ -290,17 +290,21 @@ impl Printer<'_> {
     }
 
     fn law(&self, law: &LawFormula) -> String {
+        let at_least = |operand: &LawFormula, binding: Binding| {
+            let text = self.law(operand);
+            if operand.binding() < binding { format!("({text})") } else { text }
+        };
         match law {
-            LawFormula::Number(x) if *x < 0.0 => format!("({})", self.literal(*x)),
             LawFormula::Number(x) => self.literal(*x),
             LawFormula::Input(input) if input.array == "load" => format!("load[{}]", input.joint),
             LawFormula::Input(input) => input.name.clone(),
-            LawFormula::Negative(a) => format!("(-{})", self.law(a)),
+            LawFormula::Negative(a) => format!("-{}", at_least(a, Binding::Atom)),
             LawFormula::Combined('^', both) => {
                 format!("pow{}({}, {})", self.suffix(), self.law(&both[0]), self.law(&both[1]))
             }
             LawFormula::Combined(operator, both) => {
-                format!("({} {operator} {})", self.law(&both[0]), self.law(&both[1]))
+                let [left, right] = LawFormula::operands(*operator);
+                format!("{} {operator} {}", at_least(&both[0], left), at_least(&both[1], right))
             }
             LawFormula::Call(k, a) => {
                 let [_, name, _] = FUNCTIONS[*k];

@@ -1,5 +1,6 @@
 //! A law as a tree that both languages print.
 
+use crate::emit::Binding;
 use dynid_description::formula::{Algebra, FormulaError, joint_variable, parse};
 
 /// A variable of a joint: an array and the joint's place in it.
@@ -60,6 +61,27 @@ impl LawFormula {
             LawFormula::Input(input) => Box::new(std::iter::once(input)),
             LawFormula::Negative(a) | LawFormula::Call(_, a) => a.inputs(),
             LawFormula::Combined(_, both) => Box::new(both.iter().flat_map(|a| a.inputs())),
+        }
+    }
+
+    /// How tightly its outermost operator binds.
+    pub fn binding(&self) -> Binding {
+        match self {
+            LawFormula::Combined('+' | '-', _) => Binding::Sum,
+            LawFormula::Combined('*' | '/', _) => Binding::Product,
+            LawFormula::Negative(_) => Binding::Sign,
+            LawFormula::Number(_)
+            | LawFormula::Input(_)
+            | LawFormula::Combined(..)
+            | LawFormula::Call(..) => Binding::Atom,
+        }
+    }
+
+    /// How tightly the operands of the operator must bind to stand without parentheses.
+    pub fn operands(operator: char) -> [Binding; 2] {
+        match operator {
+            '+' | '-' => [Binding::Sum, Binding::Product],
+            _ => [Binding::Product, Binding::Sign],
         }
     }
 

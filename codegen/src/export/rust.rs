@@ -2,8 +2,8 @@
 
 use super::law::{FUNCTIONS, LawFormula};
 use super::{Export, header};
-use crate::emit::{restore, rust_functions};
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use crate::emit::{Binding, restore, rust_functions};
+use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
 
@@ -198,18 +198,18 @@ fn law_tokens(law: &LawFormula) -> TokenStream {
             quote!(#name)
         }
         LawFormula::Negative(a) => {
-            let a = law_tokens(a);
-            quote!((-#a))
+            let a = law_at_least(a, Binding::Atom);
+            quote!(-#a)
+        }
+        LawFormula::Combined('^', both) => {
+            let (a, b) = (law_at_least(&both[0], Binding::Atom), law_tokens(&both[1]));
+            quote!(#a.powf(#b))
         }
         LawFormula::Combined(operator, both) => {
-            let [a, b] = both.each_ref().map(law_tokens);
-            match operator {
-                '+' => quote!((#a + #b)),
-                '-' => quote!((#a - #b)),
-                '*' => quote!((#a * #b)),
-                '/' => quote!((#a / #b)),
-                _ => quote!(#a.powf(#b)),
-            }
+            let [left, right] = LawFormula::operands(*operator);
+            let (a, b) = (law_at_least(&both[0], left), law_at_least(&both[1], right));
+            let operator = Punct::new(*operator, Spacing::Alone);
+            quote!(#a #operator #b)
         }
         LawFormula::Call(function, a) => {
             let (name, a) = (FUNCTIONS[*function][2], law_tokens(a));
@@ -224,6 +224,12 @@ fn law_tokens(law: &LawFormula) -> TokenStream {
             }
         }
     }
+}
+
+/// A law as an operand that must bind at least so tightly.
+fn law_at_least(operand: &LawFormula, binding: Binding) -> TokenStream {
+    let tokens = law_tokens(operand);
+    if operand.binding() < binding { quote!((#tokens)) } else { tokens }
 }
 
 fn float(value: f64) -> TokenStream {
