@@ -86,7 +86,7 @@ fn what_is_written_is_read_again() {
 #[test]
 fn no_field_that_cannot_be_is_believed() {
     let good: Value = serde_json::to_value(model()).unwrap();
-    let mutations: [(&str, Value, &str); 34] = [
+    let mutations: [(&str, Value, &str); 36] = [
         ("/effects/0/shape", json!([]), "effects[0].shape"),
         ("/effects/0/shape", json!([0.0]), "effects[0].shape"),
         ("/effects/0/shape", json!([0.1, 0.2]), "effects[0].shape"),
