@@ -112,6 +112,9 @@ fn document(model: &dyn Model, times: &Times) -> serde_json::Value {
         inertial.iter().map(|&k| robot.standard[robot.base[k].standard].name.as_ref()).collect();
     let signals = signals(robot.joints());
     let mut entries = vec![0.0; pattern.columns.len()];
+    let standard = links_alone(robot);
+    let chi = robot.base_from_standard(&standard);
+    let mut forward = ForwardDynamics::new(model, &chi);
     let states: Vec<serde_json::Value> = (0..SAMPLES)
         .map(|t| {
             let [q, dq, ddq] = state(&signals, t);
@@ -124,7 +127,19 @@ fn document(model: &dyn Model, times: &Times) -> serde_json::Value {
             }
             let rows: Vec<Vec<f64>> =
                 dense.iter().map(|row| inertial.iter().map(|&k| row[k]).collect()).collect();
-            serde_json::json!({"q": q, "dq": dq, "ddq": ddq, "regressor": rows})
+            let mut torque = vec![0.0; robot.joints()];
+            model.torque(&chi, &q, &dq, &ddq, &mut torque);
+            let mut acceleration = vec![0.0; robot.joints()];
+            // Accelerations under the torques that the third signal is taken for.
+            let solved = forward.acceleration(&q, &dq, &ddq, &mut acceleration).is_ok();
+            serde_json::json!({
+                "q": q,
+                "dq": dq,
+                "ddq": ddq,
+                "regressor": rows,
+                "torque": torque,
+                "acceleration": solved.then_some(acceleration),
+            })
         })
         .collect();
     serde_json::json!({
@@ -133,8 +148,27 @@ fn document(model: &dyn Model, times: &Times) -> serde_json::Value {
         "states": states,
         "base_parameters": robot.base.len(),
         "entries": pattern.columns.len(),
-        "ns": {"recursive": times.recursive, "scalar": times.scalar, "batch": times.batch},
+        "chi": inertial.iter().map(|&k| chi[k]).collect::<Vec<f64>>(),
+        "standard": robot.standard.iter().zip(&standard).map(|(p, x)| (&p.name, x)).collect::<HashMap<_, _>>(),
+        "ns": {
+            "recursive": times.recursive,
+            "scalar": times.scalar,
+            "batch": times.batch,
+            "torque": times.torque,
+            "torque_batch": times.torque_batch,
+            "acceleration": times.acceleration,
+        },
     })
+}
+
+/// The nominal inertial parameters of the joints' links; what other tools have no word for is zero.
+fn links_alone(robot: &Robot) -> Vec<f64> {
+    let Some(nominal) = &robot.nominal else { return vec![0.0; robot.standard.len()] };
+    let counts = |k: usize| {
+        let parameter = &robot.standard[k];
+        parameter.kind <= ParameterKind::M && robot.frames[parameter.frame].kind != JointKind::Fixed
+    };
+    nominal.standard.iter().enumerate().map(|(k, &x)| if counts(k) { x } else { 0.0 }).collect()
 }
 
 /// Nanoseconds a sample.
