@@ -8,8 +8,9 @@
 use comfy_table::{CellAlignment, Table, presets};
 use dynid::models;
 use dynid_runtime::model::{
-    ForwardDynamics, LINE, Lanes, Line, Model, ParameterKind, RecursiveModel, States,
+    ForwardDynamics, JointKind, LINE, Lanes, Line, Model, ParameterKind, RecursiveModel, Robot, States,
 };
+use std::collections::HashMap;
 use std::hint::black_box;
 use std::time::Instant;
 

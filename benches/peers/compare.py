@@ -1,6 +1,7 @@
 """dynid, Pinocchio and CasADi on the TX-40: regressor, torques, accelerations; same states, times. See README.md beside this."""
 
 import ctypes
+import functools
 import json
 import math
 import os
@@ -128,6 +129,7 @@ extern "C" void torques(const double *states, double *out, int samples, int roun
 """
 
 
+@functools.cache
 def pinocchio_library(folder):
     """Pinocchio behind three functions of C, with the TX-40 in it."""
     pin, model = pinocchio_model()
