@@ -7,7 +7,10 @@
 
 use comfy_table::{CellAlignment, Table, presets};
 use dynid::models;
-use dynid_runtime::model::{LINE, Lanes, Line, Model, ParameterKind, RecursiveModel, States};
+use dynid_runtime::model::{
+    ForwardDynamics, JointKind, LINE, Lanes, Line, Model, ParameterKind, RecursiveModel, Robot, States,
+};
+use std::collections::HashMap;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -30,6 +33,9 @@ const HEADER: [&str; 11] = [
     "recursive : dh batch",
 ];
 
+const DYNAMICS_HEADER: [&str; 6] =
+    ["robot", "tau recursive ns", "tau scalar ns", "tau batch ns", "M and N ns", "acceleration ns"];
+
 fn main() {
     // Cargo itself hands in `--bench`.
     let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
@@ -42,6 +48,8 @@ fn main() {
     }
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN).set_header(HEADER);
+    let mut dynamics = Table::new();
+    dynamics.load_style(presets::ASCII_MARKDOWN).set_header(DYNAMICS_HEADER);
     let mut last = None;
     for &model in models::all() {
         let robot = model.robot();
@@ -68,12 +76,24 @@ fn main() {
             format!("{:.1}", times.power),
             format!("{:.1}", times.recursive_power / times.power),
         ]);
+        dynamics.add_row([
+            robot.name.to_string(),
+            format!("{:.0}", times.recursive_torque),
+            format!("{:.0}", times.torque),
+            format!("{:.1}", times.torque_batch),
+            format!("{:.0}", times.forward),
+            format!("{:.0}", times.acceleration),
+        ]);
         last = Some((model, times));
     }
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
+    for column in dynamics.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
     println!("Base regressor IDM and power row dh, one sample:\n{table}");
+    println!("Torques tau(chi, q, dq, ddq) and accelerations, one sample:\n{dynamics}");
     if let (Some(path), Some((model, times))) = (file, last) {
         let text = document(model, &times).to_string();
         if let Err(error) = std::fs::write(&path, text) {
@@ -93,6 +113,9 @@ fn document(model: &dyn Model, times: &Times) -> serde_json::Value {
         inertial.iter().map(|&k| robot.standard[robot.base[k].standard].name.as_ref()).collect();
     let signals = signals(robot.joints());
     let mut entries = vec![0.0; pattern.columns.len()];
+    let standard = links_alone(robot);
+    let chi = robot.base_from_standard(&standard);
+    let mut forward = ForwardDynamics::new(model, &chi);
     let states: Vec<serde_json::Value> = (0..SAMPLES)
         .map(|t| {
             let [q, dq, ddq] = state(&signals, t);
@@ -105,7 +128,19 @@ fn document(model: &dyn Model, times: &Times) -> serde_json::Value {
             }
             let rows: Vec<Vec<f64>> =
                 dense.iter().map(|row| inertial.iter().map(|&k| row[k]).collect()).collect();
-            serde_json::json!({"q": q, "dq": dq, "ddq": ddq, "regressor": rows})
+            let mut torque = vec![0.0; robot.joints()];
+            model.torque(&chi, &q, &dq, &ddq, &mut torque);
+            let mut acceleration = vec![0.0; robot.joints()];
+            // Accelerations under the torques that the third signal is taken for.
+            let solved = forward.acceleration(&q, &dq, &ddq, &mut acceleration).is_ok();
+            serde_json::json!({
+                "q": q,
+                "dq": dq,
+                "ddq": ddq,
+                "regressor": rows,
+                "torque": torque,
+                "acceleration": solved.then_some(acceleration),
+            })
         })
         .collect();
     serde_json::json!({
@@ -114,8 +149,27 @@ fn document(model: &dyn Model, times: &Times) -> serde_json::Value {
         "states": states,
         "base_parameters": robot.base.len(),
         "entries": pattern.columns.len(),
-        "ns": {"recursive": times.recursive, "scalar": times.scalar, "batch": times.batch},
+        "chi": inertial.iter().map(|&k| chi[k]).collect::<Vec<f64>>(),
+        "standard": robot.standard.iter().zip(&standard).map(|(p, x)| (&p.name, x)).collect::<HashMap<_, _>>(),
+        "ns": {
+            "recursive": times.recursive,
+            "scalar": times.scalar,
+            "batch": times.batch,
+            "torque": times.torque,
+            "torque_batch": times.torque_batch,
+            "acceleration": times.acceleration,
+        },
     })
+}
+
+/// The nominal inertial parameters of the joints' links; what other tools have no word for is zero.
+fn links_alone(robot: &Robot) -> Vec<f64> {
+    let Some(nominal) = &robot.nominal else { return vec![0.0; robot.standard.len()] };
+    let counts = |k: usize| {
+        let parameter = &robot.standard[k];
+        parameter.kind <= ParameterKind::M && robot.frames[parameter.frame].kind != JointKind::Fixed
+    };
+    nominal.standard.iter().enumerate().map(|(k, &x)| if counts(k) { x } else { 0.0 }).collect()
 }
 
 /// Nanoseconds a sample.
@@ -128,6 +182,12 @@ struct Times {
     columns: f64,
     power: f64,
     recursive_power: f64,
+    torque: f64,
+    recursive_torque: f64,
+    torque_batch: f64,
+    /// Mass matrix and bias.
+    forward: f64,
+    acceleration: f64,
 }
 
 type Signals = [Vec<Vec<f64>>; 3];
@@ -156,7 +216,8 @@ fn measure(model: &dyn Model, recursive: &dyn Model) -> Times {
     let (mut row, mut out) = (vec![0.0; values], vec![0.0; values * STRIDE]);
     let width = most(model);
     let mut lines: Vec<Line> = vec![[Lanes::splat(0.0); 2]; width * SAMPLES / LINE];
-    let mut best = [f64::INFINITY; 6];
+    let mut dynamics = KnownDynamics::new(model, &states);
+    let mut best = [f64::INFINITY; 11];
     let mut one = |model: &dyn Model, best: &mut f64| {
         let entries = most(model);
         let start = Instant::now();
@@ -182,7 +243,90 @@ fn measure(model: &dyn Model, recursive: &dyn Model) -> Times {
         model.idm_lines(block, width, &mut lines);
         black_box(&lines);
         best[5] = best[5].min(start.elapsed().as_secs_f64());
+        dynamics.time([model, recursive], block, &mut best[6..]);
     }
-    let [recursive, scalar, columns, power, recursive_power, batch] = best.map(|s| s / SAMPLES as f64 * 1e9);
-    Times { recursive, scalar, batch, columns, power, recursive_power }
+    let [
+        recursive,
+        scalar,
+        columns,
+        power,
+        recursive_power,
+        batch,
+        torque,
+        recursive_torque,
+        torque_batch,
+        forward,
+        acceleration,
+    ] = best.map(|s| s / SAMPLES as f64 * 1e9);
+    Times {
+        recursive,
+        scalar,
+        batch,
+        columns,
+        power,
+        recursive_power,
+        torque,
+        recursive_torque,
+        torque_batch,
+        forward,
+        acceleration,
+    }
+}
+
+/// Base parameters and states for torques and accelerations.
+struct KnownDynamics<'a> {
+    states: &'a [[Vec<f64>; 3]],
+    chi: Vec<f64>,
+    forward: ForwardDynamics<'a>,
+}
+
+impl<'a> KnownDynamics<'a> {
+    /// The nominal parameters, or ones that make a mass matrix of some kind.
+    fn new(model: &'a dyn Model, states: &'a [[Vec<f64>; 3]]) -> Self {
+        let robot = model.robot();
+        let chi = match &robot.nominal {
+            Some(nominal) => robot.base_from_standard(&nominal.standard),
+            None => vec![1.0; robot.base.len()],
+        };
+        let forward = ForwardDynamics::new(model, &chi);
+        KnownDynamics { states, chi, forward }
+    }
+
+    /// Seconds of one round of each, where they are less than the `best` so far.
+    fn time(&mut self, [model, recursive]: [&dyn Model; 2], block: States<'_>, best: &mut [f64]) {
+        let n = model.robot().joints();
+        let (mut tau, mut mass, mut out) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * STRIDE]);
+        let (states, chi, forward) = (self.states, &self.chi, &mut self.forward);
+        for (model, best) in [model, recursive].into_iter().zip(&mut best[..2]) {
+            keep(best, || {
+                for [q, dq, ddq] in states {
+                    model.torque(chi, q, dq, ddq, &mut tau);
+                    black_box(&tau);
+                }
+            });
+        }
+        keep(&mut best[2], || {
+            model.torque_block(chi, block, STRIDE, &mut out);
+            black_box(&out);
+        });
+        keep(&mut best[3], || {
+            for [q, dq, _] in states {
+                model.mass_and_bias(chi, q, dq, &mut mass, &mut tau);
+                black_box(&mass);
+            }
+        });
+        keep(&mut best[4], || {
+            for [q, dq, torque] in states {
+                // A mass matrix that is not positive definite takes no longer.
+                let _ = black_box(forward.acceleration(q, dq, torque, &mut tau));
+            }
+        });
+    }
+}
+
+/// Keeps the shorter time.
+fn keep(best: &mut f64, run: impl FnOnce()) {
+    let start = Instant::now();
+    run();
+    *best = best.min(start.elapsed().as_secs_f64());
 }

@@ -99,6 +99,8 @@ fn regressors_allocate_nothing(model: &dyn Model, engine: &str) {
         model.power(&q, &dq, &ddq, &mut row);
         model.idm(&q, &dq, &ddq, &mut entries);
         model.mass_and_bias(&chi, &q, &dq, &mut mass, &mut bias);
+        model.torque(&chi, &q, &dq, &ddq, &mut bias);
+        model.torque_block(&chi, states, samples, &mut block);
         model.idm_block(states, samples, &mut block);
         model.power_block(states, samples, &mut block);
         model.energy_block(states, samples, &mut block);

@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 use dynid::models;
-use dynid_runtime::model::{JointKind, LINE, Lanes, Model, ParameterKind, RecursiveModel, States};
+use dynid_runtime::model::{
+    ForwardDynamics, JointKind, LINE, Lanes, Model, ParameterKind, RecursiveModel, States,
+};
 
 /// A small linear congruential generator, so that the states never change.
 struct Random(u64);
@@ -86,6 +88,56 @@ fn every_function_agrees_with_the_recursive_engine() {
             let (found, expected) = (forward(model), forward(&reference));
             assert_close(&found.0, &expected.0, 1e-10, &format!("{name} M"));
             assert_close(&found.1, &expected.1, 1e-10, &format!("{name} N"));
+        }
+    }
+}
+
+fn torque(model: &dyn Model, chi: &[f64], state: &State) -> Vec<f64> {
+    let mut torque = vec![f64::NAN; model.robot().joints()];
+    model.torque(chi, &state[0], &state[1], &state[2], &mut torque);
+    torque
+}
+
+/// Newton-Euler with base parameters in the places of standard ones gives the same torques as the regressor, where what
+/// is compared is as large as the terms that it is summed of.
+#[test]
+fn torques_are_the_regressor_times_the_parameters() {
+    for &model in models::all() {
+        let name = &model.robot().name;
+        let reference = recursive(model);
+        let mut random = Random(9);
+        for state in states(model, 40) {
+            let chi = random.values(model.robot().base.len(), 3.0);
+            let rows = dense_idm(model, &state);
+            for (what, found) in
+                [("generated", torque(model, &chi, &state)), ("recursive", torque(&reference, &chi, &state))]
+            {
+                for (i, (row, found)) in rows.iter().zip(found).enumerate() {
+                    let terms: Vec<f64> = row.iter().zip(&chi).map(|(w, x)| w * x).collect();
+                    let (expected, size) =
+                        (terms.iter().sum::<f64>(), terms.iter().fold(1.0_f64, |most, x| most.max(x.abs())));
+                    assert!(
+                        (found - expected).abs() < 1e-12 * size,
+                        "{name} {what}, joint {i}: {found} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn accelerations_need_the_torques_that_they_were_worked_out_from() {
+    for &model in models::all() {
+        let robot = model.robot();
+        let Some(nominal) = &robot.nominal else { continue };
+        let chi = robot.base_from_standard(&nominal.standard);
+        let mut forward = ForwardDynamics::new(model, &chi);
+        for [q, dq, ddq] in states(model, 20) {
+            let needed = torque(model, &chi, &[q.clone(), dq.clone(), ddq.clone()]);
+            let mut found = vec![f64::NAN; q.len()];
+            forward.acceleration(&q, &dq, &needed, &mut found).unwrap();
+            assert_close(&found, &ddq, 1e-8, &robot.name);
         }
     }
 }
@@ -228,6 +280,12 @@ fn blocks_give_what_single_samples_give() {
                 let found: Vec<f64> = (0..entries).map(at).collect();
                 assert_close(&found, &single_idm(state), 1e-12, &format!("{} lines, sample {t}", robot.name));
             }
+            let chi = Random(3).values(nb, 1.0);
+            let run = |out: &mut [f64]| model.torque_block(&chi, block, stride, out);
+            check(n, &run, &|state| torque(model, &chi, state), "tau");
+            let reference = recursive(model);
+            let run = |out: &mut [f64]| reference.torque_block(&chi, block, stride, out);
+            check(n, &run, &|state| torque(model, &chi, state), "recursive tau");
             check(nb, &|out| model.power_block(block, stride, out), &|s| power(model, s), "dh");
             check(nb, &|out| model.energy_block(block, stride, out), &|s| energy(model, s), "h");
         }

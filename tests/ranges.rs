@@ -78,9 +78,10 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, joints of the robot, and a seed, which may be any.
-const OTHERS: [&str; 26] = [
+const OTHERS: [&str; 27] = [
     "--prior",
     "--to",
+    "--real",
     "--template",
     "--base",
     "--tip",

@@ -260,7 +260,7 @@ fn the_five_lines_of_the_readme_make_a_better_urdf() {
     folder.write("arm.urdf", TEMPLATE).write("recording.yaml", &recording).write("another.yaml", &recording);
     folder.write("motion.csv", &text("motion.csv"));
     for line in lines {
-        let words: Vec<&str> = line.strip_prefix("dynid ").unwrap().split(' ').collect();
+        let words: Vec<&str> = line.trim().strip_prefix("dynid ").unwrap().split(' ').collect();
         let output = folder.run(&words);
         assert!(output.status.success(), "{line}: {}", error_of(&output));
     }

@@ -1,6 +1,7 @@
-"""dynid, Pinocchio and CasADi on the TX-40 regressor: same states, same numbers, times. See README.md beside this."""
+"""dynid, Pinocchio and CasADi on the TX-40: regressor, torques, accelerations; same states, times. See README.md beside this."""
 
 import ctypes
+import functools
 import json
 import math
 import os
@@ -77,7 +78,9 @@ CPP = """
 #include <pinocchio/multibody/data.hpp>
 #include <pinocchio/multibody/model.hpp>
 #endif
+#include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea.hpp>
 namespace pin = pinocchio;
 static pin::Model model;
 static pin::Data *data;
@@ -103,10 +106,32 @@ extern "C" void run(const double *states, double *out, int samples, int rounds) 
         if (k < samples) Eigen::Map<Eigen::MatrixXd>(out + y.size() * k, y.rows(), y.cols()) = y;
     }
 }
+// ten numbers a link, in Pinocchio's order
+extern "C" void bodies(const double *parameters) {
+    for (int j = 0; j < model.nv; j++)
+        model.inertias[j + 1] = pin::Inertia::FromDynamicParameters(Eigen::Map<const Eigen::VectorXd>(parameters + 10 * j, 10));
+    delete data;
+    data = new pin::Data(model);
+}
+extern "C" void torques(const double *states, double *out, int samples, int rounds, int forward) {
+    const int n = model.nv;
+    Eigen::VectorXd q(n), dq(n), last(n);
+    for (int k = 0; k < rounds * samples; k++) {
+        const double *s = states + 3 * n * (k % samples);
+        q = Eigen::Map<const Eigen::VectorXd>(s, n);
+        dq = Eigen::Map<const Eigen::VectorXd>(s + n, n);
+        last = Eigen::Map<const Eigen::VectorXd>(s + 2 * n, n);
+        Eigen::Map<Eigen::VectorXd> to(out + n * (k % samples), n);
+        if (forward) to = pin::aba(model, *data, q, dq, last);
+        else to = pin::rnea(model, *data, q, dq, last);
+    }
+}
 """
 
 
-def pinocchio_cpp(states, columns, folder):
+@functools.cache
+def pinocchio_library(folder):
+    """Pinocchio behind three functions of C, with the TX-40 in it."""
     pin, model = pinocchio_model()
     prefix = Path(pin.__file__).resolve().parents[4]
     headers = [prefix / "include", *(p for p in prefix.glob("include/eigen*"))]
@@ -126,17 +151,38 @@ def pinocchio_cpp(states, columns, folder):
     places = np.concatenate(
         [np.r_[p.rotation.flatten(), p.translation] for p in list(model.jointPlacements)[1:]]
     ).astype(float)
+    code.init(as_pointer(places), model.nv, as_pointer(np.array(GRAVITY, dtype=float)))
+    return code, model
+
+
+def as_pointer(array):
+    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+def pinocchio_cpp(states, columns, folder):
+    code, model = pinocchio_library(folder)
     n, flat = model.nv, flatten(states)
     out = np.zeros((len(states), 10 * n, n))
-    pointer = ctypes.POINTER(ctypes.c_double)
-    as_pointer = lambda a: a.ctypes.data_as(pointer)
-    gravity = np.array(GRAVITY, dtype=float)
-    code.init(as_pointer(places), n, as_pointer(gravity))
     rounds = 20
     run = lambda: code.run(as_pointer(flat), as_pointer(out), len(states), rounds)
     run()
     order = [place(name, PINOCCHIO) for name in columns]
     return [y.T[:, order] for y in out], run, rounds * len(states)
+
+
+def pinocchio_dynamics(states, parameters, folder, forward):
+    """rnea, or aba, of C++ with these inertial parameters (by name)."""
+    code, model = pinocchio_library(folder)
+    bodies = np.zeros(10 * model.nv)
+    for name, value in parameters.items():
+        kind = name.rstrip("0123456789")
+        if kind in PINOCCHIO and int(name[len(kind) :]) <= model.nv:
+            bodies[place(name, PINOCCHIO)] = value
+    code.bodies(as_pointer(bodies))
+    flat, out, rounds = flatten(states), np.zeros((len(states), model.nv)), 20
+    run = lambda: code.torques(as_pointer(flat), as_pointer(out), len(states), rounds, int(forward))
+    run()
+    return out, run, rounds * len(states)
 
 
 def build(command):
@@ -196,25 +242,59 @@ def casadi_c(states, columns, folder):
     return found, run, rounds * len(states)
 
 
+def casadi_rnea(states, parameters, folder):
+    """CasADi's generated C of Newton-Euler with the same inertial parameters, those that are zero left out."""
+    import casadi as ca
+
+    q, dq, ddq = (ca.SX.sym(name, 6) for name in ("q", "dq", "ddq"))
+    names = list(parameters)
+    chi = ca.SX.sym("chi", len(names))
+    links = [[ca.SX(0) for _ in range(10)] for _ in range(6)]
+    for k, name in enumerate(names):
+        links[place(name, KINDS) // 10][place(name, KINDS) % 10] = chi[k]
+    frames, wrenches = motions(ca, q, dq, ddq), []
+    for (_, _, w, dw, a), (xx, xy, xz, yy, yz, zz, mx, my, mz, m) in zip(frames, links):
+        inertia = ca.vertcat(ca.horzcat(xx, xy, xz), ca.horzcat(xy, yy, yz), ca.horzcat(xz, yz, zz))
+        ms = ca.vertcat(mx, my, mz)
+        force = m * a + ca.cross(dw, ms) + ca.cross(w, ca.cross(w, ms))
+        wrenches.append((force, inertia @ dw + ca.cross(w, inertia @ w) + ca.cross(ms, a)))
+    torques, force, moment = [0] * 6, ca.SX.zeros(3), ca.SX.zeros(3)
+    for i in range(5, -1, -1):
+        force, moment = force + wrenches[i][0], moment + wrenches[i][1]
+        torques[i] = moment[2]
+        rotation, p = frames[i][:2]
+        force = rotation @ force
+        moment = rotation @ moment + ca.cross(p, force)
+    function = ca.Function("rnea", [chi, q, dq, ddq], [ca.vertcat(*torques)])
+    print(f"CasADi rnea: {function.n_instructions()} instructions")
+    generator = ca.CodeGenerator("rnea.c")
+    generator.add(function)
+    generator.generate(str(folder) + os.sep)
+    loop = """
+    #include "rnea.c"
+    void run(const double *chi, const double *states, double *out, int samples, int rounds) {
+        for (int k = 0; k < rounds * samples; k++) {
+            const double *s = states + 18 * (k % samples);
+            const double *arg[] = {chi, s, s + 6, s + 12};
+            double *res[] = {out + 6 * (k % samples)};
+            rnea(arg, res, 0, 0, 0);
+        }
+    }
+    """
+    (folder / "run_rnea.c").write_text(loop)
+    library = folder / "run_rnea.so"
+    build(["cc", "-O3", "-march=native", "-shared", "-fPIC", str(folder / "run_rnea.c"), "-o", str(library), "-lm"])
+    code = ctypes.CDLL(str(library))
+    flat, out, rounds = flatten(states), np.zeros((len(states), 6)), 20
+    values = np.array([parameters[name] for name in names])
+    run = lambda: code.run(as_pointer(values), as_pointer(flat), as_pointer(out), len(states), rounds)
+    run()
+    return out, run, rounds * len(states)
+
+
 def regressor(ca, q, dq, ddq, columns):
     """Standard columns of the inertial part, by Newton-Euler on symbols."""
-    frames = []
-    w, dw, a = ca.SX.zeros(3), ca.SX.zeros(3), -ca.SX(GRAVITY)
-    for j, (alpha, d, theta, r) in enumerate(TABLE):
-        angle = q[j] + theta
-        c, s = ca.cos(angle), ca.sin(angle)
-        # Cosines and sines of quarter turns are exact.
-        ca_, sa = round(math.cos(alpha)), round(math.sin(alpha))
-        rotation = ca.vertcat(
-            ca.horzcat(c, -s, 0), ca.horzcat(s * ca_, c * ca_, -sa), ca.horzcat(s * sa, c * sa, ca_)
-        )
-        p = ca.vertcat(d, -r * sa, r * ca_)
-        z = ca.SX([0, 0, 1])
-        a = rotation.T @ (a + ca.cross(dw, p) + ca.cross(w, ca.cross(w, p)))
-        inner = rotation.T @ w
-        dw = rotation.T @ dw + ca.cross(inner, z * dq[j]) + z * ddq[j]
-        w = inner + z * dq[j]
-        frames.append((rotation, p, w, dw, a))
+    frames = motions(ca, q, dq, ddq)
     result = []
     for column in columns:
         link, kind = divmod(column, 10)
@@ -239,6 +319,28 @@ def regressor(ca, q, dq, ddq, columns):
             moment = rotation @ moment + ca.cross(p, force)
         result.append(ca.vertcat(*torques))
     return ca.horzcat(*result)
+
+
+def motions(ca, q, dq, ddq):
+    """Rotation, origin, angular velocity and acceleration, acceleration of the origin, of every frame."""
+    frames = []
+    w, dw, a = ca.SX.zeros(3), ca.SX.zeros(3), -ca.SX(GRAVITY)
+    for j, (alpha, d, theta, r) in enumerate(TABLE):
+        angle = q[j] + theta
+        c, s = ca.cos(angle), ca.sin(angle)
+        # Cosines and sines of quarter turns are exact.
+        ca_, sa = round(math.cos(alpha)), round(math.sin(alpha))
+        rotation = ca.vertcat(
+            ca.horzcat(c, -s, 0), ca.horzcat(s * ca_, c * ca_, -sa), ca.horzcat(s * sa, c * sa, ca_)
+        )
+        p = ca.vertcat(d, -r * sa, r * ca_)
+        z = ca.SX([0, 0, 1])
+        a = rotation.T @ (a + ca.cross(dw, p) + ca.cross(w, ca.cross(w, p)))
+        inner = rotation.T @ w
+        dw = rotation.T @ dw + ca.cross(inner, z * dq[j]) + z * ddq[j]
+        w = inner + z * dq[j]
+        frames.append((rotation, p, w, dw, a))
+    return frames
 
 
 def main():
@@ -272,8 +374,43 @@ def main():
     one, batch = ours["ns"]["scalar"], ours["ns"]["batch"]
     for name, ns, worst in lines:
         print(f"| {name} | {ns:.0f} | {ns / one:.1f} | {ns / batch:.1f} | {worst} |")
+    failed |= dynamics(ours, states, dict(zip(columns, ours["chi"])), folder)
     if failed:
-        raise SystemExit("the regressors do not agree")
+        raise SystemExit("the numbers do not agree")
+
+
+def dynamics(ours, states, parameters, folder):
+    """Torques and accelerations; whether torques differ."""
+    torques = np.array([s["torque"] for s in states])
+    accelerations = np.array([s["acceleration"] for s in states])
+    ns, standard = ours["ns"], ours["standard"]
+    lines = [
+        ("dynid tau, one sample, with friction and rotors", ns["torque"], ""),
+        ("dynid tau, batch", ns["torque_batch"], ""),
+        ("dynid acceleration: M, torques and Cholesky, with friction", ns["acceleration"], ""),
+    ]
+    peers = [
+        ("Pinocchio rnea from C++", lambda: pinocchio_dynamics(states, standard, folder, False), torques),
+        (f"CasADi's generated C of rnea in {len(parameters)} base parameters", lambda: casadi_rnea(states, parameters, folder), torques),
+        ("Pinocchio aba from C++", lambda: pinocchio_dynamics(states, standard, folder, True), accelerations),
+    ]
+    failed = False
+    for name, prepare, expected in peers:
+        try:
+            found, run, samples = prepare()
+        except (ImportError, OSError) as missing:
+            print(f"{name}: left out, {missing}")
+            continue
+        worst = np.abs(found - expected).max() / np.abs(expected).max()
+        # An acceleration loses the digits of the mass matrix's condition.
+        failed |= not worst < (1e-9 if expected is accelerations else 1e-12)
+        seconds = min(timeit.repeat(run, number=1, repeat=200))
+        lines.append((name, seconds / samples * 1e9, f"{worst:.1e}"))
+    print("\n| TX-40, one state | ns | : dynid tau | largest relative difference |")
+    print("|---|--:|--:|--:|")
+    for name, time, worst in lines:
+        print(f"| {name} | {time:.0f} | {time / ns['torque']:.1f} | {worst} |")
+    return failed
 
 
 if __name__ == "__main__":

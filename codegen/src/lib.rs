@@ -55,12 +55,14 @@
 pub mod base;
 mod emit;
 mod exact;
+mod export;
 mod generate;
 pub mod mechanics;
 mod numeric;
 pub mod robot;
 pub mod symbolic;
 
+pub use export::{CFiles, ExportError, Known, Law, Real, RustFile, export_c, export_rust};
 pub use generate::{
     Collection, GenerateError, generate, generate_with, operation_counts, read_all, registry,
 };

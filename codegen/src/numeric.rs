@@ -1,7 +1,7 @@
 //! The table evaluated.
 
 use crate::base::BaseSet;
-use crate::robot::{NominalValues, RobotTable};
+use crate::robot::{DriveTable, Expression, NominalValues, RobotTable, TableRow};
 use dynid_description::{Drive, Nominal, Robot, StandardParameter};
 
 /// The robot as numbers, with the base parameters `set` of the same table ([`crate::base::base_set`]).
@@ -47,4 +47,38 @@ fn nominal(values: &NominalValues, standard: &[StandardParameter]) -> Nominal {
         position_noise: values.position_noise.clone().into(),
         torque_noise: values.torque_noise.clone().into(),
     }
+}
+
+/// The way back: a table of numbers and the base parameters of a robot that was read already, with the same equations.
+/// Symbols of constants and values for simulation are not among them.
+pub(crate) fn table_of(robot: &Robot) -> (RobotTable, BaseSet) {
+    let number = Expression::Number;
+    let frames = robot
+        .frames
+        .iter()
+        .enumerate()
+        .map(|(k, frame)| TableRow {
+            j: k + 1,
+            parent: frame.parent.map_or(0, |p| p + 1),
+            kind: frame.kind,
+            gamma: number(frame.gamma),
+            b: number(frame.b),
+            alpha: number(frame.alpha),
+            d: number(frame.d),
+            theta: number(frame.theta),
+            r: number(frame.r),
+        })
+        .collect();
+    let gear = robot.drive.gear.chunks(robot.joints().max(1)).map(<[f64]>::to_vec).collect();
+    let table = RobotTable {
+        name: robot.name.to_string(),
+        description: robot.description.to_string(),
+        gravity: robot.gravity,
+        constants: Vec::new(),
+        frames,
+        drive: DriveTable { gear, coupled_friction: robot.drive.coupled_friction.to_vec() },
+        limits: robot.limits.clone(),
+        nominal: None,
+    };
+    (table, BaseSet { standard: robot.standard.to_vec(), base: robot.base.to_vec() })
 }

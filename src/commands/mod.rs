@@ -37,7 +37,7 @@ enum Command {
     Robots,
     /// Search motions that make a robot's parameters observable
     Excite(excite::Arguments),
-    /// Write a model in the format of another tool
+    /// Write a robot or an identified model as C, Rust without std, URDF or MJCF
     Export(export::Arguments),
     /// Identify a robot's parameters from a recording
     Identify(identify::Arguments),

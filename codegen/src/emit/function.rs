@@ -1,14 +1,9 @@
 //! Functions: scheduled statements, cut where they would get too long for the compiler.
 
-use super::comments::comment;
 use super::program::{InputNames, Program};
+use super::statement::{SineCosine, Statement};
 use crate::symbolic::{Expr, Graph, Node, Symbol, schedule};
-use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
-use quote::{format_ident, quote};
 use std::collections::BTreeSet;
-
-/// Statements that one function may hold; rustc overflows its stack on a few thousand.
-const MOST_STATEMENTS: usize = 900;
 
 /// One value that a function writes.
 pub struct Output {
@@ -37,41 +32,42 @@ pub struct Signature<'a> {
 }
 
 /// One statement, the values it uses and the value it defines.
-struct Statement {
-    text: TokenStream,
-    defines: Option<Ident>,
-    uses: Vec<Ident>,
+struct Step {
+    statement: Statement,
+    uses: Vec<String>,
     group: usize,
 }
 
-/// The function, in as many parts as it takes.
-pub fn function(
+/// A stretch of a function that is short enough for a compiler.
+pub struct Part {
+    /// Values that it takes over from the part before it.
+    pub taken: Vec<String>,
+    /// What it does.
+    pub statements: Vec<Statement>,
+    /// Values that it hands to the part after it.
+    pub handed: Vec<String>,
+}
+
+/// The function, in as many parts of at most `most` statements as it takes.
+pub fn parts(
     graph: &Graph,
     inputs: &InputNames,
     signature: &Signature<'_>,
     outputs: &[Output],
-) -> TokenStream {
+    most: usize,
+) -> Vec<Part> {
     let values: Vec<Expr> = outputs.iter().map(|o| o.value).collect();
     let order = schedule(graph, &values);
     let program = Program::new(graph, inputs, &values, &order, signature.foreign);
-    let statements = statements(graph, inputs, &program, signature, outputs, &order);
-    let parts = cut(statements);
-    let head = prologue(graph, inputs, &program, &values);
-    let names: BTreeSet<String> = head.iter().flat_map(|s| &s.0).map(Ident::to_string).collect();
-    let opening = head.into_iter().map(|(_, text)| text).collect();
-    write_parts(signature, opening, names, &parts)
+    let steps = steps(graph, inputs, &program, signature, outputs, &order);
+    linked(prologue(graph, inputs, &program, &values), cut(steps, most))
 }
 
 /// The input of a kind by its index.
 type MakeSymbol = fn(usize) -> Symbol;
 
-/// The inputs that are used, unpacked, and the sines and cosines: the names they define, and the text.
-fn prologue(
-    graph: &Graph,
-    inputs: &InputNames,
-    program: &Program<'_>,
-    values: &[Expr],
-) -> Vec<(Vec<Ident>, TokenStream)> {
+/// The inputs that are used, unpacked, and the sines and cosines.
+fn prologue(graph: &Graph, inputs: &InputNames, program: &Program<'_>, values: &[Expr]) -> Vec<Statement> {
     let reachable = graph.reachable(values);
     let mut symbols: BTreeSet<Symbol> = BTreeSet::new();
     let mut angles = BTreeSet::new();
@@ -96,66 +92,57 @@ fn prologue(
     ];
     let mut head = Vec::new();
     for (name, count, symbol) in families {
-        let used: Vec<Ident> =
-            (0..count).filter(|&k| symbols.contains(&symbol(k))).map(|k| inputs.symbol(symbol(k))).collect();
-        if used.is_empty() {
-            continue;
+        let used = |k: usize| symbols.contains(&symbol(k)).then(|| inputs.symbol(symbol(k)));
+        let values: Vec<Option<String>> = (0..count).map(used).collect();
+        if values.iter().any(Option::is_some) {
+            head.push(Statement::Unpack { array: name.to_owned(), values });
         }
-        let pattern = (0..count).map(|k| {
-            let (symbol, ident) = (symbol(k), inputs.symbol(symbol(k)));
-            if symbols.contains(&symbol) { quote!(#ident) } else { quote!(_) }
-        });
-        let array = Ident::new(name, Span::call_site());
-        head.push((used, quote!(let [#(#pattern),*] = *#array;)));
     }
     if !angles.is_empty() {
-        let (sines, cosines): (Vec<_>, Vec<_>) = angles.iter().map(|&a| program.sine_cosine(a)).unzip();
-        let arguments = angles.iter().map(|&a| program.angle(a));
-        let used = |ident: &Ident, node: Node| {
-            if reachable.iter().any(|&at| graph.node(at) == node) { quote!(#ident) } else { quote!(_) }
+        let is_used = |node: Node| reachable.iter().any(|&at| graph.node(at) == node);
+        let pair = |&a: &usize| {
+            let (sine, cosine) = program.sine_cosine(a);
+            SineCosine {
+                sine: is_used(Node::Sine(a)).then_some(sine),
+                cosine: is_used(Node::Cosine(a)).then_some(cosine),
+                angle: program.angle(a),
+            }
         };
-        let sine_pattern = angles.iter().zip(&sines).map(|(&a, s)| used(s, Node::Sine(a)));
-        let cosine_pattern = angles.iter().zip(&cosines).map(|(&a, c)| used(c, Node::Cosine(a)));
-        let text = quote! {
-            let ([#(#sine_pattern),*], [#(#cosine_pattern),*]) = T::sin_cos_each([#(#arguments),*]);
-        };
-        head.push((sines.into_iter().chain(cosines).collect(), text));
+        head.push(Statement::SinesAndCosines(angles.iter().map(pair).collect()));
     }
     head
 }
 
-fn statements(
+fn steps(
     graph: &Graph,
     inputs: &InputNames,
     program: &Program<'_>,
     signature: &Signature<'_>,
     outputs: &[Output],
     order: &[Vec<usize>],
-) -> Vec<Statement> {
-    let mut statements = Vec::new();
+) -> Vec<Step> {
+    let mut steps = Vec::new();
     let mut group = 0;
     for (at, (output, needed)) in outputs.iter().zip(order).enumerate() {
         let starts = at == 0 || outputs[at - 1].group != output.group;
         group += usize::from(starts);
         if starts && !output.group.is_empty() {
-            let text = comment(&output.group);
-            statements.push(Statement { text, defines: None, uses: Vec::new(), group });
+            let statement = Statement::Comment(output.group.clone());
+            steps.push(Step { statement, uses: Vec::new(), group });
         }
         for &node in needed {
-            if let Some(ident) = program.variable(node) {
-                let definition = program.definition(node);
+            if let Some(name) = program.variable(node) {
                 let uses = held(graph, inputs, program, graph.operands(node));
-                let text = quote!(let #ident = #definition;);
-                statements.push(Statement { text, defines: Some(ident.clone()), uses, group });
+                let statement = Statement::Let { name: name.to_owned(), value: program.definition(node) };
+                steps.push(Step { statement, uses, group });
             }
         }
-        let result = Ident::new(signature.results[output.result].0, Span::call_site());
-        let index = Literal::usize_unsuffixed(output.index);
-        let value = program.value(output.value);
+        let result = signature.results[output.result].0.to_owned();
         let uses = held(graph, inputs, program, std::iter::once(output.value));
-        statements.push(Statement { text: quote!(#result[#index] = #value;), defines: None, uses, group });
+        let statement = Statement::Output { result, index: output.index, value: program.value(output.value) };
+        steps.push(Step { statement, uses, group });
     }
-    statements
+    steps
 }
 
 /// The variables that expressions read, through everything that is written in place.
@@ -164,7 +151,7 @@ fn held(
     inputs: &InputNames,
     program: &Program<'_>,
     operands: impl Iterator<Item = Expr>,
-) -> Vec<Ident> {
+) -> Vec<String> {
     let mut pending: Vec<Expr> = operands.collect();
     let mut found = Vec::new();
     while let Some(e) = pending.pop() {
@@ -174,7 +161,7 @@ fn held(
             Node::Sine(a) => found.push(program.sine_cosine(a).0),
             Node::Cosine(a) => found.push(program.sine_cosine(a).1),
             _ => match program.variable(e.node()) {
-                Some(ident) => found.push(ident.clone()),
+                Some(name) => found.push(name.to_owned()),
                 None => pending.extend(graph.operands(e.node())),
             },
         }
@@ -183,16 +170,16 @@ fn held(
 }
 
 /// Parts of bounded length, cut between groups where a group fits.
-fn cut(statements: Vec<Statement>) -> Vec<Vec<Statement>> {
+fn cut(steps: Vec<Step>, most: usize) -> Vec<Vec<Step>> {
     let mut parts = Vec::new();
-    let mut part: Vec<Statement> = Vec::new();
-    let mut rest = statements.into_iter().peekable();
+    let mut part: Vec<Step> = Vec::new();
+    let mut rest = steps.into_iter().peekable();
     while let Some(group) = rest.peek().map(|s| s.group) {
         let mut members = Vec::new();
-        while let Some(statement) = rest.next_if(|s| s.group == group && members.len() < MOST_STATEMENTS) {
-            members.push(statement);
+        while let Some(step) = rest.next_if(|s| s.group == group && members.len() < most) {
+            members.push(step);
         }
-        if part.len() + members.len() > MOST_STATEMENTS {
+        if part.len() + members.len() > most {
             parts.push(std::mem::take(&mut part));
         }
         part.extend(members);
@@ -201,85 +188,25 @@ fn cut(statements: Vec<Statement>) -> Vec<Vec<Statement>> {
     parts
 }
 
-/// The parts as functions, each of which hands the values still needed to the next.
-fn write_parts(
-    signature: &Signature<'_>,
-    opening: TokenStream,
-    opened: BTreeSet<String>,
-    parts: &[Vec<Statement>],
-) -> TokenStream {
-    let results: Vec<TokenStream> = signature
-        .results
-        .iter()
-        .map(|(name, length)| {
-            let (name, length) = (ident(name), length.map(length_tokens));
-            match length {
-                Some(length) => quote!(#name: &mut [T; #length]),
-                None => quote!(#name: &mut impl IndexMut<usize, Output = T>),
-            }
-        })
-        .collect();
-    let result_names: Vec<Ident> = signature.results.iter().map(|(name, _)| ident(name)).collect();
-    let mut known = opened;
-    let mut carried: Vec<Ident> = Vec::new();
-    let mut text = TokenStream::new();
-    for (at, part) in parts.iter().enumerate() {
-        let body: TokenStream = part.iter().map(|s| s.text.clone()).collect();
-        let mut whole = if at == 0 { opening.clone() } else { TokenStream::new() };
-        whole.extend(body);
-        known.extend(part.iter().filter_map(|s| s.defines.as_ref()).map(Ident::to_string));
-        let later: BTreeSet<&Ident> = parts[at + 1..].iter().flatten().flat_map(|s| &s.uses).collect();
-        let handed: Vec<Ident> =
-            later.into_iter().filter(|i| known.contains(&i.to_string())).cloned().collect();
-        let constant = mentions_constants(&whole).then(|| quote!(let k = T::constant;));
-        let next = (at + 1 < parts.len()).then(|| {
-            let name = format_ident!("{}_part_{}", signature.name, at + 2);
-            quote!(#name([#(#handed),*], #(#result_names),*);)
-        });
-        let body = quote!({ #constant #whole #next });
-        text.extend(if at == 0 {
-            let (name, doc) = (ident(signature.name), format!(" {}", signature.doc));
-            let arguments = signature.arguments.iter().map(|(name, length)| {
-                let (name, length) = (ident(name), length_tokens(length));
-                quote!(#name: &[T; #length])
-            });
-            quote! {
-                #[doc = #doc]
-                pub fn #name<T: Number>(#(#arguments,)* #(#results),*) #body
-            }
-        } else {
-            let name = format_ident!("{}_part_{}", signature.name, at + 1);
-            let count = Literal::usize_unsuffixed(carried.len());
-            quote! {
-                #[inline(never)]
-                fn #name<T: Number>([#(#carried),*]: [T; #count], #(#results),*) #body
-            }
-        });
-        carried = handed;
+/// Parts that hand the values that are still needed on, the first with what opens the function.
+fn linked(opening: Vec<Statement>, parts: Vec<Vec<Step>>) -> Vec<Part> {
+    let mut known: BTreeSet<String> = opening.iter().flat_map(Statement::defines).collect();
+    let mut later: Vec<BTreeSet<String>> = vec![BTreeSet::new()];
+    for part in parts.iter().skip(1).rev() {
+        let mut needed = later.last().cloned().unwrap_or_default();
+        needed.extend(part.iter().flat_map(|s| s.uses.iter().cloned()));
+        later.push(needed);
     }
-    text
-}
-
-fn ident(name: &str) -> Ident {
-    Ident::new(name, Span::call_site())
-}
-
-/// `N`, or `N * N`.
-fn length_tokens(text: &str) -> TokenStream {
-    let mut tokens = TokenStream::new();
-    for factor in text.split(" * ") {
-        let factor = ident(factor);
-        let times = (!tokens.is_empty()).then(|| quote!(*));
-        tokens.extend(quote!(#times #factor));
+    let mut opening = Some(opening);
+    let mut taken = Vec::new();
+    let mut linked = Vec::new();
+    for (part, needed) in parts.into_iter().zip(later.into_iter().rev()) {
+        let mut statements = opening.take().unwrap_or_default();
+        statements.extend(part.into_iter().map(|s| s.statement));
+        known.extend(statements.iter().flat_map(Statement::defines));
+        let handed: Vec<String> = needed.into_iter().filter(|name| known.contains(name)).collect();
+        linked.push(Part { taken, statements, handed: handed.clone() });
+        taken = handed;
     }
-    tokens
-}
-
-/// Whether a text calls `k`, the constructor of constants.
-fn mentions_constants(text: &TokenStream) -> bool {
-    text.clone().into_iter().any(|token| match token {
-        TokenTree::Ident(name) => name == "k",
-        TokenTree::Group(group) => mentions_constants(&group.stream()),
-        _ => false,
-    })
+    linked
 }

@@ -1,14 +1,11 @@
 //! The module of one robot.
 
-use super::function::{Output, Signature, function};
-use super::program::InputNames;
-use super::{comments, data, header};
+use super::functions::{MOST_STATEMENTS, functions};
+use super::{comments, data, header, rust};
 use crate::base::BaseSet;
 use crate::mechanics::Equations;
 use crate::numeric::numeric_robot;
 use crate::robot::RobotTable;
-use crate::symbolic::Expr;
-use dynid_description::ParameterKind;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -25,14 +22,16 @@ fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStre
     let nb = Literal::usize_unsuffixed(set.base.len());
     let entries = Literal::usize_unsuffixed(equations.pattern().len());
     let statics = data::statics(&numeric_robot(robot, set), equations);
-    let functions = functions(robot, set, equations);
+    let functions = rust_functions(robot, set, equations);
     let (lines, model) = (lines(), model());
     let operations = operations(equations);
+    // A robot without values for simulation does not name their type.
+    let nominal = robot.nominal.as_ref().map(|_| quote!(Nominal,));
     quote! {
         #![allow(non_snake_case, unused_variables, clippy::all)]
 
         use dynid_runtime::model::{
-            BaseParameter, Drive, Frame, JointKind, Limits, Line, LineStates, Model, Nominal, Number, Operations,
+            BaseParameter, Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
             ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut, evaluate_block, evaluate_line,
             evaluate_lines,
         };
@@ -56,7 +55,13 @@ fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStre
 
 fn operations(equations: &Equations) -> TokenStream {
     let counts = equations.counts();
-    let rows = [("h", counts.energy), ("dh", counts.power), ("IDM", counts.idm), ("M, N", counts.forward)];
+    let rows = [
+        ("h", counts.energy),
+        ("dh", counts.power),
+        ("IDM", counts.idm),
+        ("M, N", counts.forward),
+        ("tau", counts.torque),
+    ];
     let rows = rows.map(|(function, c)| {
         let [multiplications, additions, pairs] =
             [c.multiplications, c.additions, c.sincos].map(Literal::usize_unsuffixed);
@@ -71,116 +76,14 @@ fn operations(equations: &Equations) -> TokenStream {
     });
     quote! {
         /// What one evaluation costs.
-        pub static OPERATIONS: [Operations; 4] = [#(#rows),*];
+        pub static OPERATIONS: [Operations; 5] = [#(#rows),*];
     }
 }
 
-fn functions(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStream {
-    let joints = robot.joint_frames().iter().map(|&f| robot.frames[f].j).collect();
-    let inputs = InputNames { joints, parameters: set.base.iter().map(|p| p.name.to_string()).collect() };
-    let g = &equations.graph;
-    let energy = function(
-        g,
-        &inputs,
-        &Signature {
-            name: "energy",
-            doc: "Energy row h(q, dq): NB values, J per unit parameter.",
-            arguments: &[("q", "N"), ("dq", "N")],
-            foreign: &["dw", "a", "b", "u", "j", "ms", "f", "m"],
-            results: &[("h", None)],
-        },
-        &row(robot, set, &equations.energy),
-    );
-    let power = function(
-        g,
-        &inputs,
-        &Signature {
-            name: "power",
-            doc: "Power row dh(q, dq, ddq): NB values, W per unit parameter.",
-            arguments: &[("q", "N"), ("dq", "N"), ("ddq", "N")],
-            foreign: &["u", "j", "ms", "f", "m"],
-            results: &[("dh", None)],
-        },
-        &row(robot, set, &equations.power),
-    );
-    let idm = function(
-        g,
-        &inputs,
-        &Signature {
-            name: "idm",
-            doc: "The ENTRIES of the inverse dynamic regressor IDM(q, dq, ddq), N.m or N per unit parameter.",
-            arguments: &[("q", "N"), ("dq", "N"), ("ddq", "N")],
-            foreign: &["b", "g", "j", "ms", "f", "m"],
-            results: &[("idm", None)],
-        },
-        &regressor(robot, set, equations),
-    );
-    let forward = function(
-        g,
-        &inputs,
-        &Signature {
-            name: "mass_and_bias",
-            doc: "Mass matrix M(q), row by row, and centrifugal, Coriolis and gravity torques N(q, dq).",
-            arguments: &[("chi", "NB"), ("q", "N"), ("dq", "N")],
-            foreign: &["b", "g"],
-            results: &[("mass", Some("N * N")), ("bias", Some("N"))],
-        },
-        &forward(equations),
-    );
-    quote! { #energy #power #idm #forward }
-}
-
-/// One value per base parameter; what is zero is written too.
-fn row(robot: &RobotTable, set: &BaseSet, values: &[Expr]) -> Vec<Output> {
-    let output = |(index, &value): (usize, &Expr)| {
-        let j = robot.frames[set.standard[set.base[index].standard].frame].j;
-        Output { index, result: 0, value, group: format!("Link {j}.") }
-    };
-    values.iter().enumerate().map(output).collect()
-}
-
-/// Link by link, and for each link from its own joint inwards, so that the wrenches of its columns stay at hand.
-fn regressor(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> Vec<Output> {
-    let pattern = equations.pattern();
-    let joint_frames = robot.joint_frames();
-    let place = |&(i, k): &(usize, usize)| {
-        let standard = &set.standard[set.base[k].standard];
-        (standard.frame, standard.kind >= ParameterKind::Ia, std::cmp::Reverse(i), k)
-    };
-    let mut order: Vec<usize> = (0..pattern.len()).collect();
-    order.sort_by_key(|&e| place(&pattern[e]));
-    order
-        .into_iter()
-        .map(|index| {
-            let (i, k) = pattern[index];
-            let frame = set.standard[set.base[k].standard].frame;
-            let (row, link) = (robot.frames[joint_frames[i]].j, robot.frames[frame].j);
-            let group = format!("Row {row}, link {link}.");
-            Output { index, result: 0, value: equations.idm[i][k], group }
-        })
-        .collect()
-}
-
-fn forward(equations: &Equations) -> Vec<Output> {
-    let n = equations.bias.len();
-    let mut outputs = Vec::new();
-    for i in (0..n).rev() {
-        for k in 0..=i {
-            let value = equations.mass[i * (i + 1) / 2 + k];
-            let mut push = |index| {
-                let group = "Mass matrix.".to_owned();
-                outputs.push(Output { index, result: 0, value, group });
-            };
-            push(i * n + k);
-            if i != k {
-                push(k * n + i);
-            }
-        }
-    }
-    for (index, &value) in equations.bias.iter().enumerate().rev() {
-        outputs.push(Output { index, result: 1, value, group: "Bias.".to_owned() });
-    }
-    outputs
+/// The functions as Rust.
+pub fn rust_functions(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStream {
+    let functions = functions(robot, set, equations, MOST_STATEMENTS);
+    functions.iter().map(|f| rust::function(&f.signature, &f.parts)).collect()
 }
 
 /// The functions for one line of samples side by side.
@@ -196,6 +99,10 @@ fn lines() -> TokenStream {
 
         fn idm_line(states: &LineStates<N>, entries: &mut [Line; ENTRIES]) {
             evaluate_line(states, entries, |[q, dq, ddq], entries| idm(q, dq, ddq, entries));
+        }
+
+        fn tau_line(chi: &[Lanes; NB], states: &LineStates<N>, torques: &mut [Line; N]) {
+            evaluate_line(states, torques, |[q, dq, ddq], torques| tau(chi, q, dq, ddq, torques));
         }
     }
 }
@@ -246,6 +153,17 @@ fn model() -> TokenStream {
 
             fn mass_and_bias(&self, chi: &[f64], q: &[f64], dq: &[f64], mass: &mut [f64], bias: &mut [f64]) {
                 mass_and_bias(array(chi), array(q), array(dq), array_mut(mass), array_mut(bias));
+            }
+
+            fn torque(&self, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[f64], torques: &mut [f64]) {
+                tau(array(chi), array(q), array(dq), array(ddq), array_mut::<N>(torques));
+            }
+
+            fn torque_block(&self, chi: &[f64], states: States<'_>, stride: usize, out: &mut [f64]) {
+                let chi = array::<NB>(chi).map(Lanes::splat);
+                evaluate_block([states.q, states.dq, states.ddq], stride, out, |states, torques| {
+                    tau_line(&chi, states, torques);
+                });
             }
         }
     }

@@ -1,8 +1,7 @@
-//! Expressions as Rust statements: what gets a name, what is written in place, and with which sign.
+//! Expressions as formulas of statements: what gets a name, what is written in place, and with which sign.
 
+use super::statement::Formula;
 use crate::symbolic::{Angle, Expr, Graph, Node, Symbol};
-use proc_macro2::{Ident, Literal, Span, TokenStream};
-use quote::{format_ident, quote};
 use std::collections::HashSet;
 
 /// Names of the inputs of a robot's functions.
@@ -16,12 +15,12 @@ pub struct InputNames {
 
 impl InputNames {
     /// The variable of an input.
-    pub fn symbol(&self, symbol: Symbol) -> Ident {
+    pub fn symbol(&self, symbol: Symbol) -> String {
         match symbol {
-            Symbol::Position(k) => format_ident!("q{}", self.joints[k]),
-            Symbol::Velocity(k) => format_ident!("dq{}", self.joints[k]),
-            Symbol::Acceleration(k) => format_ident!("ddq{}", self.joints[k]),
-            Symbol::Parameter(k) => Ident::new(&self.parameters[k], Span::call_site()),
+            Symbol::Position(k) => format!("q{}", self.joints[k]),
+            Symbol::Velocity(k) => format!("dq{}", self.joints[k]),
+            Symbol::Acceleration(k) => format!("ddq{}", self.joints[k]),
+            Symbol::Parameter(k) => self.parameters[k].clone(),
         }
     }
 
@@ -44,38 +43,12 @@ impl InputNames {
     }
 }
 
-/// Source text with how tightly its outermost operator binds.
-struct Piece {
-    tokens: TokenStream,
-    binding: Binding,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
-    Sum,
-    Product,
-    Sign,
-    Atom,
-}
-
-impl Piece {
-    fn atom(tokens: TokenStream) -> Self {
-        Piece { tokens, binding: Binding::Atom }
-    }
-
-    /// The text as an operand that must bind at least so tightly.
-    fn at_least(self, binding: Binding) -> TokenStream {
-        let tokens = self.tokens;
-        if self.binding < binding { quote!((#tokens)) } else { tokens }
-    }
-}
-
 /// Names for the values of one function.
 pub struct Program<'a> {
     graph: &'a Graph,
     inputs: &'a InputNames,
     uses: Vec<usize>,
-    variables: Vec<Option<Ident>>,
+    variables: Vec<Option<String>>,
     angle_names: Vec<String>,
 }
 
@@ -117,62 +90,55 @@ impl<'a> Program<'a> {
                 }
                 None => continue,
             };
-            variables[node] = Some(Ident::new(&name, Span::call_site()));
+            variables[node] = Some(name);
         }
         Program { graph, inputs, uses, variables, angle_names }
     }
 
     /// The variable that holds a node, unless it is written in place.
-    pub fn variable(&self, node: usize) -> Option<&Ident> {
-        self.variables[node].as_ref()
+    pub fn variable(&self, node: usize) -> Option<&str> {
+        self.variables[node].as_deref()
     }
 
     /// The variables of sine and cosine of an angle.
-    pub fn sine_cosine(&self, angle: usize) -> (Ident, Ident) {
+    pub fn sine_cosine(&self, angle: usize) -> (String, String) {
         let name = &self.angle_names[angle];
-        (format_ident!("s{}", name), format_ident!("c{}", name))
+        (format!("s{name}"), format!("c{name}"))
     }
 
     /// The angle itself, from the joint variables.
-    pub fn angle(&self, angle: usize) -> TokenStream {
+    pub fn angle(&self, angle: usize) -> Formula {
         let angle = &self.graph.angles()[angle];
-        let mut text = TokenStream::new();
-        for (at, &(joint, k)) in angle.terms.iter().enumerate() {
-            let q = self.inputs.symbol(Symbol::Position(joint));
+        let mut total: Option<Formula> = None;
+        for &(joint, k) in &angle.terms {
+            let q = Formula::Variable(self.inputs.symbol(Symbol::Position(joint)));
             let term = match k.abs() {
-                1 => quote!(#q),
-                k => {
-                    let k = Literal::f64_unsuffixed(f64::from(k));
-                    quote!(k(#k) * #q)
-                }
+                1 => q,
+                k => product(Formula::Constant(f64::from(k)), q),
             };
-            text.extend(match (at, k < 0) {
-                (0, false) => term,
-                (0, true) => quote!(-#term),
-                (_, false) => quote!(+ #term),
-                (_, true) => quote!(- #term),
+            total = Some(match total {
+                None if k < 0 => Formula::Minus(Box::new(term)),
+                None => term,
+                Some(total) => added(total, term, k < 0),
             });
         }
-        if angle.constant.rest != 0.0 {
-            let rest = Literal::f64_unsuffixed(angle.constant.rest.abs());
-            text.extend(if angle.constant.rest < 0.0 { quote!(- k(#rest)) } else { quote!(+ k(#rest)) });
+        let rest = angle.constant.rest;
+        match total {
+            None => Formula::Constant(rest),
+            Some(total) if rest == 0.0 => total,
+            Some(total) => added(total, Formula::Constant(rest.abs()), rest < 0.0),
         }
-        text
     }
 
     /// The value of a node that has a variable, as the right side of its `let`.
-    pub fn definition(&self, node: usize) -> TokenStream {
-        self.operation(Expr::new(node, false)).tokens
+    pub fn definition(&self, node: usize) -> Formula {
+        self.operation(Expr::new(node, false))
     }
 
-    /// The value of an output.
-    pub fn value(&self, e: Expr) -> TokenStream {
-        self.piece(e).tokens
-    }
-
-    fn piece(&self, e: Expr) -> Piece {
+    /// The value of an output, or of an operand.
+    pub fn value(&self, e: Expr) -> Formula {
         if let Some(value) = self.graph.constant_value(e) {
-            return constant(value);
+            return Formula::Constant(value);
         }
         let held = match self.graph.node(e.node()) {
             Node::Symbol(symbol) => Some(self.inputs.symbol(symbol)),
@@ -180,70 +146,56 @@ impl<'a> Program<'a> {
             Node::Cosine(angle) => Some(self.sine_cosine(angle).1),
             _ => self.variables[e.node()].clone(),
         };
-        match held {
-            Some(ident) if e.is_negative() => Piece { tokens: quote!(-#ident), binding: Binding::Sign },
-            Some(ident) => Piece::atom(quote!(#ident)),
+        match held.map(Formula::Variable) {
+            Some(variable) if e.is_negative() => Formula::Minus(Box::new(variable)),
+            Some(variable) => variable,
             None => self.operation(e),
         }
     }
 
-    fn operation(&self, e: Expr) -> Piece {
+    fn operation(&self, e: Expr) -> Formula {
         match self.graph.node(e.node()) {
             Node::Sum(..) => self.sum(e),
             Node::Product(a, b) => {
                 let left = match self.graph.constant_value(a) {
-                    Some(value) if e.is_negative() => constant(-value),
-                    _ if e.is_negative() => negated(self.piece(a)),
-                    _ => self.piece(a),
+                    Some(value) if e.is_negative() => Formula::Constant(-value),
+                    _ if e.is_negative() => Formula::Minus(Box::new(self.value(a))),
+                    _ => self.value(a),
                 };
-                let left = left.at_least(Binding::Product);
-                let right = self.piece(b).at_least(Binding::Sign);
-                Piece { tokens: quote!(#left * #right), binding: Binding::Product }
+                product(left, self.value(b))
             }
             Node::Sign(a) => {
-                let a = self.piece(a).at_least(Binding::Atom);
-                let sign = Piece::atom(quote!(#a.sign()));
-                if e.is_negative() { negated(sign) } else { sign }
+                let sign = Formula::Sign(Box::new(self.value(a)));
+                if e.is_negative() { Formula::Minus(Box::new(sign)) } else { sign }
             }
-            _ => self.piece(e),
+            _ => self.value(e),
         }
     }
 
     /// A sum with all sums that are used nowhere else written into it, products accumulated.
-    fn sum(&self, e: Expr) -> Piece {
+    fn sum(&self, e: Expr) -> Formula {
         let mut terms = Vec::new();
         self.collect_terms(e, true, &mut terms);
-        let product = |e: &Expr| {
+        let is_product = |e: &Expr| {
             self.variables[e.node()].is_none() && matches!(self.graph.node(e.node()), Node::Product(..))
         };
         // Start from a plain positive term, else from a positive product, so that no sign costs anything.
         let start = terms
             .iter()
-            .position(|t| !t.is_negative() && !product(t))
+            .position(|t| !t.is_negative() && !is_product(t))
             .or_else(|| terms.iter().position(|t| !t.is_negative()))
             .unwrap_or(0);
         let first = terms.remove(start);
-        let mut total = self.piece(first);
-        terms.sort_by_key(|t| !product(t));
+        let mut total = self.value(first);
+        terms.sort_by_key(|t| !is_product(t));
         for term in terms {
-            let magnitude = term.magnitude();
             total = match self.graph.node(term.node()) {
-                Node::Product(a, b) if product(&term) => {
-                    let accumulator = total.at_least(Binding::Atom);
-                    let (a, b) = (self.piece(a).tokens, self.piece(b).tokens);
-                    Piece::atom(if term.is_negative() {
-                        quote!(#accumulator.sub_product(#a, #b))
-                    } else {
-                        quote!(#accumulator.add_product(#a, #b))
-                    })
-                }
-                _ => {
-                    let left = total.at_least(Binding::Sum);
-                    let right = self.piece(magnitude).at_least(Binding::Product);
-                    let tokens =
-                        if term.is_negative() { quote!(#left - #right) } else { quote!(#left + #right) };
-                    Piece { tokens, binding: Binding::Sum }
-                }
+                Node::Product(a, b) if is_product(&term) => Formula::Accumulated {
+                    total: Box::new(total),
+                    factors: Box::new([self.value(a), self.value(b)]),
+                    subtracted: term.is_negative(),
+                },
+                _ => added(total, self.value(term.magnitude()), term.is_negative()),
             };
         }
         total
@@ -261,12 +213,11 @@ impl<'a> Program<'a> {
     }
 }
 
-fn constant(value: f64) -> Piece {
-    let literal = Literal::f64_unsuffixed(value.abs());
-    Piece::atom(if value < 0.0 { quote!(k(-#literal)) } else { quote!(k(#literal)) })
+fn product(a: Formula, b: Formula) -> Formula {
+    Formula::Product(Box::new(a), Box::new(b))
 }
 
-fn negated(piece: Piece) -> Piece {
-    let tokens = piece.at_least(Binding::Atom);
-    Piece { tokens: quote!(-#tokens), binding: Binding::Sign }
+fn added(total: Formula, term: Formula, subtracted: bool) -> Formula {
+    let (total, term) = (Box::new(total), Box::new(term));
+    if subtracted { Formula::Difference(total, term) } else { Formula::Sum(total, term) }
 }

@@ -11,11 +11,11 @@ use dynid_description::ParameterKind;
 
 /// Inertial parameters of one body, symbols for the base parameters and zero for what was regrouped away.
 #[derive(Debug, Clone, Copy)]
-struct Body {
+pub(super) struct Body {
     /// XX XY XZ YY YZ ZZ at the origin of the frame.
-    inertia: [Expr; 6],
-    first_moment: Vector,
-    mass: Expr,
+    pub inertia: [Expr; 6],
+    pub first_moment: Vector,
+    pub mass: Expr,
 }
 
 impl Body {
@@ -27,7 +27,7 @@ impl Body {
     }
 }
 
-fn bodies(g: &mut Graph, frames: usize, set: &BaseSet) -> Vec<Body> {
+pub(super) fn bodies(g: &mut Graph, frames: usize, set: &BaseSet) -> Vec<Body> {
     let mut bodies = vec![Body::NONE; frames];
     for (k, parameter) in set.base.iter().enumerate() {
         let standard = &set.standard[parameter.standard];

@@ -1,4 +1,4 @@
-//! From the table, symbolically: kinematics, energy h, power dh, inverse dynamic rows, mass matrix and bias.
+//! From the table, symbolically: kinematics, energy h, power dh, inverse dynamic rows, mass matrix and bias, torques.
 //!
 //! ```
 //! use dynid_codegen::{base::base_set, mechanics::Equations, robot::parse, symbolic::Graph};
@@ -29,11 +29,13 @@ mod geometry;
 mod inverse;
 mod model;
 mod motion;
+mod torque;
 mod vector;
 
 pub use error::ModelError;
 pub use geometry::{Geometry, Link, Rotation};
 pub use model::{Equations, ModelCounts};
+pub use torque::TorqueEquations;
 
 #[cfg(test)]
 mod random_tables;

@@ -7,6 +7,7 @@ use super::forward::{bias, mass_matrix};
 use super::geometry::Geometry;
 use super::inverse::{Derivation, inertial_column};
 use super::motion::{frame_motions, screws};
+use super::torque::TorqueEquations;
 use crate::base::BaseSet;
 use crate::robot::RobotTable;
 use crate::symbolic::{Expr, Graph, OperationCounts, Point, Symbol};
@@ -35,6 +36,8 @@ pub struct ModelCounts {
     pub idm: OperationCounts,
     /// Mass matrix and bias together.
     pub forward: OperationCounts,
+    /// Torques tau(chi, q, dq, ddq).
+    pub torque: OperationCounts,
 }
 
 impl ModelCounts {
@@ -59,6 +62,8 @@ pub struct Equations {
     pub mass: Vec<Expr>,
     /// Centrifugal, Coriolis and gravity torques.
     pub bias: Vec<Expr>,
+    /// The torques, in a graph of their own: which treatment of parallel axes is cheapest differs.
+    pub torque: TorqueEquations,
 }
 
 impl Equations {
@@ -80,6 +85,7 @@ impl Equations {
                 best = equations;
             }
         }
+        best.torque = TorqueEquations::derive(robot, set)?;
         Ok(best)
     }
 
@@ -130,7 +136,8 @@ impl Equations {
             }
         }
         let bias = bias(g, &geometry, set);
-        let mut equations = Equations { graph, energy: h, power: dh, idm, mass, bias };
+        let torque = TorqueEquations::derive_as(robot, set, &drive, (merge, compose));
+        let mut equations = Equations { graph, energy: h, power: dh, idm, mass, bias, torque };
         equations.drop_vanishing_entries();
         Ok(equations)
     }
@@ -179,6 +186,7 @@ impl Equations {
             power: count(&self.power),
             idm: count(&self.idm.concat()),
             forward: count(&[self.mass.as_slice(), &self.bias].concat()),
+            torque: self.torque.counts(),
         }
     }
 }

@@ -4,6 +4,7 @@
 
 use super::inverse::Derivation;
 use super::model::{Equations, Variant};
+use crate::base::base_set;
 use crate::robot::{DriveTable, Expression, RobotTable, TableRow};
 use crate::testing::{Random, all_parameters};
 use dynid_description::ParameterKind;
@@ -186,9 +187,13 @@ fn energy_power_and_rows_are_right_for_random_trees_however_they_are_derived() {
             point.chi = (0..set.standard.len()).map(|k| if moves(k) { random.unit() } else { 0.0 }).collect();
             let mass = equations.graph.evaluate(&equations.mass, &point);
             let bias = equations.graph.evaluate(&equations.bias, &point);
+            let torques = equations.torque.graph.evaluate(&equations.torque.torques, &point);
             for i in 0..n {
                 let row = equations.graph.evaluate(&equations.idm[i], &point);
                 let torque: f64 = row.iter().zip(&point.chi).map(|(w, chi)| w * chi).sum();
+                let size =
+                    row.iter().zip(&point.chi).fold(1.0, |most: f64, (w, chi)| most.max((w * chi).abs()));
+                assert!((torques[i] - torque).abs() < 1e-12 * size, "{} {torque} {what}", torques[i]);
                 let entry = |k: usize| mass[i.max(k) * (i.max(k) + 1) / 2 + i.min(k)];
                 let inertial_torque: f64 = (0..n).map(|k| entry(k) * point.ddq[k]).sum();
                 assert!((inertial_torque + bias[i] - torque).abs() < 1e-9 * torque.abs().max(1.0), "{what}");
@@ -204,6 +209,38 @@ fn energy_power_and_rows_are_right_for_random_trees_however_they_are_derived() {
                 // What mechanics states as the derivative is what the engine derives.
                 let derived = equations.graph.time_derivative(equations.energy[column]);
                 close(equations.graph.evaluate(&[derived], &point)[0], dh[column], 1e-10, k);
+            }
+        }
+    }
+}
+
+/// Torques in base parameters, however special or general the angles that were regrouped over.
+#[test]
+fn torques_are_the_regressor_times_the_base_parameters_of_random_trees() {
+    let mut random = Random(29);
+    for case in 0..80 {
+        let mut robot = random_robot(&mut random);
+        let joints = robot.drive.gear.len();
+        // Every other drive is coupled: the last motor turns with the joint before it too.
+        if case % 2 == 0 && joints > 1 {
+            robot.drive.gear[joints - 1][joints - 2] = 0.7;
+            robot.drive.coupled_friction = vec![joints - 1];
+        }
+        let set = base_set(&robot);
+        let equations = Equations::derive(&robot, &set).unwrap();
+        for _ in 0..3 {
+            let mut point = random.point(joints);
+            point.chi = set.base.iter().map(|_| random.unit()).collect();
+            let torques = equations.torque.graph.evaluate(&equations.torque.torques, &point);
+            for (row, torque) in equations.idm.iter().zip(torques) {
+                let row = equations.graph.evaluate(row, &point);
+                let terms: Vec<f64> = row.iter().zip(&point.chi).map(|(w, chi)| w * chi).collect();
+                let size = terms.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+                assert!(
+                    (torque - terms.iter().sum::<f64>()).abs() < 1e-12 * size,
+                    "case {case} {:?}",
+                    robot.frames
+                );
             }
         }
     }

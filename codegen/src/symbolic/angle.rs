@@ -1,6 +1,6 @@
 //! Angles that are sums of joint variables and a constant, with quarter turns kept exact.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Neg};
 
 /// A constant angle: an exact number of quarter turns and a rest, rad.
@@ -30,9 +30,10 @@ impl ConstantAngle {
         self.rest == 0.0
     }
 
-    /// Sine and cosine; exactly 0 and +-1 for multiples of pi/2.
+    /// Sine and cosine; exactly 0 and +-1 for multiples of pi/2. For multiples of pi/4 and pi/6 they are the doubles
+    /// nearest to the square roots that they are, so that equal sines and cosines are the same number.
     pub fn sin_cos(self) -> (f64, f64) {
-        let (s, c) = if self.rest == 0.0 { (0.0, 1.0) } else { self.rest.sin_cos() };
+        let (s, c) = if self.rest == 0.0 { (0.0, 1.0) } else { surd(self.rest) };
         match self.quarter_turns {
             0 => (s, c),
             1 => (c, -s),
@@ -40,6 +41,22 @@ impl ConstantAngle {
             _ => (-c, s),
         }
     }
+}
+
+/// Sine and cosine of an angle, as square roots of rationals where they are some.
+fn surd(angle: f64) -> (f64, f64) {
+    let (s, c) = angle.sin_cos();
+    let twelfths = (angle / (PI / 12.0)).round();
+    if (angle - twelfths * (PI / 12.0)).abs() > 4.0 * f64::EPSILON * angle.abs().max(1.0) {
+        return (s, c);
+    }
+    // The squares of sines and cosines of these angles are quarters; those of the others, pi/12 for one, are left.
+    let root = |x: f64| {
+        let quarters = (4.0 * x * x).round();
+        let nearest = (quarters / 4.0).sqrt().copysign(x);
+        if (x - nearest).abs() <= 4.0 * f64::EPSILON { nearest } else { x }
+    };
+    (root(s), root(c))
 }
 
 impl Add for ConstantAngle {
@@ -120,6 +137,20 @@ mod tests {
             assert!(angle.is_exact());
             assert_eq!((s, c), expected);
         }
+    }
+
+    #[test]
+    fn sines_and_cosines_that_are_equal_are_the_same_number() {
+        for (value, sine, cosine) in [
+            (PI / 4.0, 0.5_f64.sqrt(), 0.5_f64.sqrt()),
+            (-3.0 * PI / 4.0, -0.5_f64.sqrt(), -0.5_f64.sqrt()),
+            (PI / 6.0, 0.5, 0.75_f64.sqrt()),
+            (2.0 * PI / 3.0, 0.75_f64.sqrt(), -0.5),
+        ] {
+            assert_eq!(ConstantAngle::from_radians(value).sin_cos(), (sine, cosine), "{value}");
+        }
+        let other = PI / 12.0;
+        assert_eq!(ConstantAngle::from_radians(other).sin_cos(), other.sin_cos());
     }
 
     #[test]

@@ -17,6 +17,7 @@
 //! | dh | 25 | 11 | 2 |
 //! | IDM | 16 | 14 | 2 |
 //! | M and N | 24 | 16 | 2 |
+//! | tau | 28 | 22 | 2 |
 //!
 //! Base parameters (13 of 28 standard parameters):
 //!
@@ -36,9 +37,9 @@
 
 #![allow(non_snake_case, unused_variables, clippy::all)]
 use dynid_runtime::model::{
-    BaseParameter, Drive, Frame, JointKind, Limits, Line, LineStates, Model, Nominal,
-    Number, Operations, ParameterKind, Pattern, Robot, StandardParameter, States, array,
-    array_mut, evaluate_block, evaluate_line, evaluate_lines,
+    BaseParameter, Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model,
+    Nominal, Number, Operations, ParameterKind, Pattern, Robot, StandardParameter,
+    States, array, array_mut, evaluate_block, evaluate_line, evaluate_lines,
 };
 use std::borrow::Cow;
 use std::ops::IndexMut;
@@ -380,7 +381,7 @@ pub static PATTERN: Pattern = Pattern {
     same_as: Cow::Borrowed(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 6, 10, 11, 12, 13, 14, 5]),
 };
 /// What one evaluation costs.
-pub static OPERATIONS: [Operations; 4] = [
+pub static OPERATIONS: [Operations; 5] = [
     Operations {
         function: "h",
         multiplications: 17,
@@ -403,6 +404,12 @@ pub static OPERATIONS: [Operations; 4] = [
         function: "M, N",
         multiplications: 24,
         additions: 16,
+        sine_cosine_pairs: 2,
+    },
+    Operations {
+        function: "tau",
+        multiplications: 28,
+        additions: 22,
         sine_cosine_pairs: 2,
     },
 ];
@@ -564,6 +571,46 @@ pub fn mass_and_bias<T: Number>(
         .sub_product(k(0.5), (s2 * f2_x).add_product(c2, f2_y)) - m2_z;
     bias[0] = m1_z;
 }
+/// Torques tau(chi, q, dq, ddq) = IDM chi of all joints, N.m or N, friction and offsets included.
+pub fn tau<T: Number>(
+    chi: &[T; NB],
+    q: &[T; N],
+    dq: &[T; N],
+    ddq: &[T; N],
+    tau: &mut impl IndexMut<usize, Output = T>,
+) {
+    let k = T::constant;
+    let [q1, q2] = *q;
+    let [dq1, dq2] = *dq;
+    let [ddq1, ddq2] = *ddq;
+    let [ZZ1R, MX1R, MY1, Fv1, Fc1, off1, ZZ2, MX2, MY2, Ia2, Fv2, Fc2, off2] = *chi;
+    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
+    // Joint 2.
+    let a1_y = k(9.81) * c1;
+    let t1 = a1_y.add_product(k(0.5), ddq1);
+    let u1_11 = dq1 * dq1;
+    let a1_x = k(9.81) * s1;
+    let t2 = a1_x.sub_product(k(0.5), u1_11);
+    let a2_x = (t2 * c2).add_product(t1, s2);
+    let a2_y = (t2 * s2).sub_product(t1, c2);
+    let dw2_z = ddq1 + ddq2;
+    let m2_z = (dw2_z * ZZ2).sub_product(a2_y, MX2).sub_product(a2_x, MY2);
+    tau[1] = m2_z
+        .add_product(ddq2, Ia2)
+        .add_product(dq2, Fv2)
+        .add_product(Fc2, dq2.sign()) + off2;
+    // Joint 1.
+    let w2_z = dq1 + dq2;
+    let u2_11 = w2_z * w2_z;
+    let f2_y = (dw2_z * MX2).sub_product(u2_11, MY2);
+    let f2_x = (u2_11 * MX2).add_product(dw2_z, MY2);
+    let m1_z = m2_z
+        .add_product(ddq1, ZZ1R)
+        .add_product(a1_y, MX1R)
+        .sub_product(a1_x, MY1)
+        .sub_product(k(0.5), (s2 * f2_x).sub_product(c2, f2_y));
+    tau[0] = m1_z.add_product(dq1, Fv1).add_product(Fc1, dq1.sign()) + off1;
+}
 fn energy_line(states: &LineStates<N>, h: &mut [Line; NB]) {
     evaluate_line(states, h, |[q, dq, _], h| energy(q, dq, h));
 }
@@ -572,6 +619,13 @@ fn power_line(states: &LineStates<N>, dh: &mut [Line; NB]) {
 }
 fn idm_line(states: &LineStates<N>, entries: &mut [Line; ENTRIES]) {
     evaluate_line(states, entries, |[q, dq, ddq], entries| idm(q, dq, ddq, entries));
+}
+fn tau_line(chi: &[Lanes; NB], states: &LineStates<N>, torques: &mut [Line; N]) {
+    evaluate_line(
+        states,
+        torques,
+        |[q, dq, ddq], torques| tau(chi, q, dq, ddq, torques),
+    );
 }
 /// The dynamics as a [`Model`].
 #[derive(Debug, Clone, Copy)]
@@ -613,5 +667,32 @@ impl Model for Dynamics {
         bias: &mut [f64],
     ) {
         mass_and_bias(array(chi), array(q), array(dq), array_mut(mass), array_mut(bias));
+    }
+    fn torque(
+        &self,
+        chi: &[f64],
+        q: &[f64],
+        dq: &[f64],
+        ddq: &[f64],
+        torques: &mut [f64],
+    ) {
+        tau(array(chi), array(q), array(dq), array(ddq), array_mut::<N>(torques));
+    }
+    fn torque_block(
+        &self,
+        chi: &[f64],
+        states: States<'_>,
+        stride: usize,
+        out: &mut [f64],
+    ) {
+        let chi = array::<NB>(chi).map(Lanes::splat);
+        evaluate_block(
+            [states.q, states.dq, states.ddq],
+            stride,
+            out,
+            |states, torques| {
+                tau_line(&chi, states, torques);
+            },
+        );
     }
 }

@@ -178,3 +178,49 @@ fn every_law_of_a_joint_fills_its_columns() {
         }
     }
 }
+
+/// Formulas that leave the program are the laws themselves.
+#[test]
+fn closed_forms_are_the_laws_that_the_effects_have() {
+    let robot = robot();
+    let mut compared = Vec::new();
+    for kind in EffectKind::ALL {
+        let Form::Joint(law) = kind.form() else { continue };
+        for shape in law.shapes(&SCALE) {
+            let amplitude: Vec<f64> =
+                (0..law.amplitudes(&shape)).map(|k| (1.3 * k as f64 + 0.4).cos()).collect();
+            let term = EffectTerm {
+                effect: kind,
+                place: Place::Joint(1),
+                joints: vec![2],
+                shape: shape.clone(),
+                sigma: vec![0.0; amplitude.len()],
+                amplitude: amplitude.clone(),
+                scale: Some(SCALE.into()),
+                wrenches: Vec::new(),
+            };
+            let Ok(forms) = term.closed_forms(&robot) else { continue };
+            compared.push(kind);
+            let text = format!("k*({})", forms[0].text);
+            let formula = UserLaw::new("formula", 1, &text, &Default::default()).expect("a law");
+            let names = formula.inputs();
+            for (q, dq, load) in [(0.3, 1.2, -7.0), (-1.9, -0.02, 4.0), (2.8, -3.0, 0.5)] {
+                let at = At { q, dq, load, sign: f64::signum(dq), ..At::default() };
+                let mut columns = vec![0.0; amplitude.len()];
+                law.law(&SCALE, &shape, &at, 0.0, &mut columns);
+                let expected: f64 = columns.iter().zip(&amplitude).map(|(c, a)| c * a).sum();
+                let value = |name: &String| match name.as_str() {
+                    "q2" => q,
+                    "dq2" => dq,
+                    _ => load,
+                };
+                let variables: Vec<f64> = names.iter().map(value).collect();
+                let mut found = [0.0];
+                formula.columns(&variables, &[], None, &mut found);
+                assert!((found[0] - expected).abs() < 1e-12, "{}: {text}", kind.id());
+            }
+        }
+    }
+    compared.dedup();
+    assert!(compared.len() >= 7, "{compared:?}");
+}

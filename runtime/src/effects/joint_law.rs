@@ -114,6 +114,12 @@ pub trait JointLaw: Sync {
         None
     }
 
+    /// The law with these numbers as a formula in the language of a user's law, over the variables of the joint with
+    /// number `j`; `None` where it is none of position, speed, acceleration and load.
+    fn closed_form(&self, _scale: &Scale, _shape: &[f64], _amplitude: &[f64], _j: usize) -> Option<String> {
+        None
+    }
+
     /// New inner state after a travel of the joint; laws without memory keep 0.
     fn advance(&self, _shape: &[f64], memory: f64, _travel: f64) -> f64 {
         memory

@@ -19,6 +19,7 @@
 
 mod catalogue;
 mod check;
+mod closed_form;
 mod compliance;
 mod contact;
 mod coupled;
@@ -39,6 +40,7 @@ mod variable;
 
 pub use catalogue::EffectKind;
 pub use check::TermError;
+pub use closed_form::ClosedForm;
 pub use compliance::{Compliance, Transmission, deflection};
 pub use contact::{ContactForce, JointTorque, unit_force_torques};
 pub use coupled::CoupledRotor;

@@ -105,7 +105,7 @@ pub fn evaluate_block<const N: usize, const K: usize>(
     signals: [&[&[f64]]; 3],
     stride: usize,
     out: &mut [f64],
-    evaluate: fn(&LineStates<N>, &mut [Line; K]),
+    evaluate: impl Fn(&LineStates<N>, &mut [Line; K]),
 ) {
     let samples = check::<N>(signals);
     assert!(stride >= samples, "a stride of {stride} is less than {samples} samples");

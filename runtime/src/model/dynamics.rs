@@ -21,7 +21,7 @@ pub struct Pattern {
 /// Arithmetic of one evaluation of a generated function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Operations {
-    /// `h`, `dh`, `IDM` or `M, N`.
+    /// `h`, `dh`, `IDM`, `M, N` or `tau`.
     pub function: &'static str,
     /// Multiplications.
     pub multiplications: usize,
@@ -42,7 +42,9 @@ pub trait Model: Send + Sync {
     /// Which entries of IDM are computed; the others are zero for every state.
     fn pattern(&self) -> &Pattern;
 
-    /// Energy row h(q, dq) of (10): nb values, J per unit parameter. Friction columns are zero.
+    /// Energy row h(q, dq) of (10): nb values, J per unit parameter. Friction columns are zero, those of offsets too:
+    /// where the weight that a prismatic joint lifts was regrouped into its offset (`off2R`), h chi lacks its potential,
+    /// which is the offset times q of that joint, and the power row has its rate.
     fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]);
 
     /// Power row dh(q, dq, ddq) of (10), friction included: nb values, W per unit parameter.
@@ -71,4 +73,11 @@ pub trait Model: Send + Sync {
     /// Mass matrix M(q) (n x n, row-major, both triangles) and bias N(q, dq) of (1) for given base parameters:
     /// centrifugal, Coriolis and gravity torques with the rotor inertias; friction and offsets are not included.
     fn mass_and_bias(&self, chi: &[f64], q: &[f64], dq: &[f64], mass: &mut [f64], bias: &mut [f64]);
+
+    /// Torques IDM(q, dq, ddq) chi of (4) for given base parameters, friction, rotor inertias and offsets included:
+    /// n values, N.m or N. By Newton-Euler, in less time than the regressor takes.
+    fn torque(&self, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[f64], torque: &mut [f64]);
+
+    /// [`Model::torque`] for many samples: joint j of sample t is written to `out[j * stride + t]`.
+    fn torque_block(&self, chi: &[f64], states: States<'_>, stride: usize, out: &mut [f64]);
 }

@@ -22,7 +22,9 @@
 //! # Ok::<(), dynid_runtime::model::RecursiveModelError>(())
 //! ```
 
+mod acceleration;
 mod block;
+pub(crate) mod cholesky;
 mod dual;
 mod dynamics;
 mod lanes;
@@ -32,6 +34,7 @@ mod scalar;
 mod states;
 mod torques;
 
+pub use acceleration::{ForwardDynamics, MassMatrixError};
 pub use block::{
     InLines, LINE, Line, LineStates, array, array_mut, evaluate_block, evaluate_line, evaluate_lines,
 };

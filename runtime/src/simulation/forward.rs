@@ -1,11 +1,12 @@
 //! Forward dynamics of a plant: which friction holds, and the accelerations that follow.
 
+use super::SimulationError;
 use super::driven::Driven;
 use super::plant::Plant;
 use super::state::{Hold, State};
 use super::stiction::{self, Decision};
 use super::work::Work;
-use super::{SimulationError, cholesky};
+use crate::model::cholesky;
 
 impl Plant<'_> {
     /// Accelerations of all coordinates under the motor torques `torque` (n, joint side), with every place of dry

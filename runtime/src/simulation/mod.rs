@@ -26,7 +26,6 @@
     reason = "joints, coordinates and matrix entries are numbered as in the equations"
 )]
 
-mod cholesky;
 mod closed_loop;
 mod consistency;
 mod controller;

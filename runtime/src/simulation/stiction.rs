@@ -6,7 +6,7 @@
 //! bounded complementarity problem
 //!   low < f < high and w = 0,  or  f = high and w >= 0,  or  f = low and w <= 0.
 
-use super::cholesky;
+use crate::model::cholesky;
 
 /// What an element at zero velocity does next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

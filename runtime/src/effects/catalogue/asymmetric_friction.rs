@@ -1,5 +1,6 @@
 //! Friction that differs by direction beyond a constant offset: f·|v|.
 
+use crate::effects::closed_form::number;
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
@@ -72,6 +73,10 @@ impl JointLaw for AsymmetricFriction {
 
     fn law(&self, _: &Scale, _: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = at.dq * at.sign;
+    }
+
+    fn closed_form(&self, _: &Scale, _: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
+        Some(format!("{}*abs(dq{j})", number(*amplitude.first()?)))
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {

@@ -1,5 +1,6 @@
 //! Coulomb friction that grows with the transmitted torque: mu·|load|·sign v.
 
+use crate::effects::closed_form::number;
 use crate::effects::gear_load::{self, GearLoad};
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
@@ -77,6 +78,13 @@ impl JointLaw for LoadDependentFriction {
 
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = GearLoad::of(shape).at(at).abs() * at.sign;
+    }
+
+    /// The load without the rotor and that of gravity alone are no variables of the language.
+    fn closed_form(&self, _: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
+        (GearLoad::of(shape) == GearLoad::Whole).then(|| {
+            format!("{}*abs(load{j})*sign(dq{j})", number(amplitude.first().copied().unwrap_or(0.0)))
+        })
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {

@@ -1,5 +1,6 @@
 //! Viscous friction that is not proportional to speed: f·|v/v0|^p·sign v beside the linear term.
 
+use crate::effects::closed_form::number;
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
@@ -72,6 +73,11 @@ impl JointLaw for NonlinearViscous {
 
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = (at.dq / scale.speed).abs().powf(shape[0]) * at.sign;
+    }
+
+    fn closed_form(&self, scale: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
+        let [f, v0, p] = [*amplitude.first()?, scale.speed, *shape.first()?].map(number);
+        Some(format!("{f}*(abs(dq{j})/{v0})^{p}*sign(dq{j})"))
     }
 
     /// A power below 1 rises from rest so steeply that it sticks; what bends upwards, or takes off, is smooth there.

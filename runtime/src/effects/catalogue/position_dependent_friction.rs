@@ -1,5 +1,6 @@
 //! Friction level that varies with the joint angle: (c·cos kq + s·sin kq)·sign v.
 
+use crate::effects::closed_form::number;
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
@@ -81,6 +82,11 @@ impl JointLaw for PositionDependentFriction {
         let (s, c) = (shape[0] * at.q).sin_cos();
         out[0] = c * at.sign;
         out[1] = s * at.sign;
+    }
+
+    fn closed_form(&self, _: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
+        let [order, c, s] = [*shape.first()?, *amplitude.first()?, *amplitude.get(1)?].map(number);
+        Some(format!("({c}*cos({order}*q{j}) + {s}*sin({order}*q{j}))*sign(dq{j})"))
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {

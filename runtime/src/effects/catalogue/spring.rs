@@ -1,5 +1,6 @@
 //! Elastic torque in q: linear, or through a lever.
 
+use crate::effects::closed_form::number;
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
@@ -91,6 +92,15 @@ impl JointLaw for Spring {
         let (s, c) = at.q.sin_cos();
         out[0] = s / (1.0 + ratio * ratio - 2.0 * ratio * c).sqrt();
         out[1] = c / (1.0 + ratio * ratio + 2.0 * ratio * s).sqrt();
+    }
+
+    fn closed_form(&self, _: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
+        let first = number(*amplitude.first()?);
+        let Some(&ratio) = shape.first() else { return Some(format!("{first}*q{j}")) };
+        let [second, squares, twice] = [*amplitude.get(1)?, 1.0 + ratio * ratio, 2.0 * ratio].map(number);
+        Some(format!(
+            "{first}*sin(q{j})/sqrt({squares} - {twice}*cos(q{j})) + {second}*cos(q{j})/sqrt({squares} + {twice}*sin(q{j}))"
+        ))
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {

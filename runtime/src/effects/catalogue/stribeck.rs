@@ -1,5 +1,6 @@
 //! Stribeck friction: the level falls as the joint leaves rest. fs·exp(-(v/vs)²)·sign v.
 
+use crate::effects::closed_form::number;
 use crate::effects::joint_law::geometric;
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
@@ -73,6 +74,11 @@ impl JointLaw for Stribeck {
 
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = (-(at.dq / shape[0]).powi(2)).exp() * at.sign;
+    }
+
+    fn closed_form(&self, _: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
+        let [fs, vs] = [amplitude.first()?, shape.first()?].map(|x| number(*x));
+        Some(format!("{fs}*exp(-(dq{j}/{vs})^2)*sign(dq{j})"))
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {

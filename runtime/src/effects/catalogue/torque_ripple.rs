@@ -1,5 +1,6 @@
 //! Torque that is periodic in the motor or joint angle: c·cos kq + s·sin kq.
 
+use crate::effects::closed_form::number;
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
@@ -94,6 +95,14 @@ impl JointLaw for TorqueRipple {
             wave[0] = c;
             wave[1] = s;
         }
+    }
+
+    fn closed_form(&self, _: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
+        let wave = |(order, a): (&f64, &[f64])| {
+            let [order, c, s] = [*order, a[0], a[1]].map(number);
+            format!("{c}*cos({order}*q{j}) + {s}*sin({order}*q{j})")
+        };
+        Some(shape.iter().zip(amplitude.chunks_exact(2)).map(wave).collect::<Vec<_>>().join(" + "))
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {

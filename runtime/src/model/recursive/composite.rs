@@ -3,7 +3,7 @@
 use super::error::MAX_FRAMES;
 use super::kinematics::{Link, propagate};
 use super::vector::{Mat3, Vec3, add, apply, cross, multiply, scale};
-use crate::model::JointKind;
+use crate::model::{JointKind, Number};
 
 /// The ten inertial parameters of one body at the origin of its frame.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,9 +55,12 @@ impl Inertia {
     }
 
     /// Force and moment at the origin that give the body the acceleration (dv, dw) at the velocity w.
-    fn wrench(&self, w: Vec3<f64>, dw: Vec3<f64>, dv: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
-        let force = add(scale(self.m, dv), add(cross(dw, self.ms), cross(w, cross(w, self.ms))));
-        let moment = add(apply(&self.j, dw), add(cross(w, apply(&self.j, w)), cross(self.ms, dv)));
+    #[inline(always)]
+    pub fn wrench<T: Number>(&self, w: Vec3<T>, dw: Vec3<T>, dv: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
+        let (j, ms, m) =
+            (self.j.map(|row| row.map(T::constant)), self.ms.map(T::constant), T::constant(self.m));
+        let force = add(scale(m, dv), add(cross(dw, ms), cross(w, cross(w, ms))));
+        let moment = add(apply(&j, dw), add(cross(w, apply(&j, w)), cross(ms, dv)));
         (force, moment)
     }
 }

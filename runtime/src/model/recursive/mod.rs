@@ -10,6 +10,7 @@ mod newton_euler;
 mod pattern;
 #[cfg(test)]
 mod tests;
+mod torque;
 mod vector;
 
 pub use columns::{standard_energy, standard_idm, standard_power};

@@ -7,6 +7,7 @@ use super::error::{MAX_FRAMES, RecursiveModelError};
 use super::group::{clear, each_group};
 use super::kinematics::Link;
 use super::pattern::{Wanted, check, generic_entries};
+use super::torque::rigid_torques;
 use crate::model::{LANES, LINE, Lanes, Line, Model, Number, Pattern, Robot, States};
 use std::borrow::Cow;
 
@@ -136,6 +137,19 @@ impl RecursiveModel {
     }
 }
 
+impl RecursiveModel {
+    /// The bodies that move as the base parameters say: what was regrouped away is zero.
+    fn bodies(&self, chi: &[f64]) -> [Inertia; MAX_FRAMES] {
+        let mut bodies = [Inertia::default(); MAX_FRAMES];
+        for (body, wanted) in bodies.iter_mut().zip(&self.columns) {
+            for &(kind, column) in wanted {
+                body.add_parameter(kind, chi[column]);
+            }
+        }
+        bodies
+    }
+}
+
 impl Model for RecursiveModel {
     fn robot(&self) -> &Robot {
         &self.robot
@@ -196,12 +210,7 @@ impl Model for RecursiveModel {
         let n = self.robot.joints();
         mass.fill(0.0);
         bias.fill(0.0);
-        let mut bodies = [Inertia::default(); MAX_FRAMES];
-        for (body, wanted) in bodies.iter_mut().zip(&self.columns) {
-            for &(kind, column) in wanted {
-                body.add_parameter(kind, chi[column]);
-            }
-        }
+        let bodies = self.bodies(chi);
         let bodies = RigidBodies { links: &self.links, gravity: self.robot.gravity, inertia: &bodies };
         composite::add_mass_and_bias(&bodies, q, dq, mass, bias);
         for entry in &self.drive {
@@ -209,5 +218,26 @@ impl Model for RecursiveModel {
                 mass[entry.row * n + s] += chi[entry.column] * inertia;
             }
         }
+    }
+
+    fn torque(&self, chi: &[f64], q: &[f64], dq: &[f64], ddq: &[f64], torque: &mut [f64]) {
+        let (bodies, gravity) = (self.bodies(chi), self.robot.gravity);
+        rigid_torques((&self.links, &bodies), gravity, [q, dq, ddq], |joint, value| torque[joint] = value);
+        for entry in &self.drive {
+            torque[entry.row] += chi[entry.column] * entry.value(dq, ddq);
+        }
+    }
+
+    fn torque_block(&self, chi: &[f64], states: States<'_>, stride: usize, out: &mut [f64]) {
+        let (bodies, gravity) = (self.bodies(chi), self.robot.gravity.map(Lanes::constant));
+        each_group(&self.links, states, |links, group, q, dq, ddq| {
+            rigid_torques((links, &bodies), gravity, [q, dq, ddq], |joint, value| {
+                group.write(&mut out[joint * stride..], value);
+            });
+            for entry in &self.drive {
+                let value = Lanes::splat(chi[entry.column]) * entry.value(dq, ddq);
+                group.add(&mut out[entry.row * stride..], value);
+            }
+        });
     }
 }

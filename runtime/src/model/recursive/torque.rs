@@ -1,0 +1,40 @@
+//! Joint torques of rigid bodies by recursive Newton-Euler (Luh, Walker and Paul 1980).
+
+use super::composite::Inertia;
+use super::error::MAX_FRAMES;
+use super::kinematics::{Link, propagate};
+use super::vector::{Vec3, add, apply, cross, dot, sub};
+use crate::model::{JointKind, Number};
+
+/// The joint torques that the motion of the bodies needs, by joint: N.m or N. `bodies` are the links' own.
+///
+/// Wrenches are summed in frame 0, at its origin, so that the transformations of the forward recursion serve again.
+#[inline(always)]
+pub(super) fn rigid_torques<T: Number>(
+    (links, bodies): (&[Link<T>], &[Inertia; MAX_FRAMES]),
+    gravity: [T; 3],
+    [q, dq, ddq]: [&[T]; 3],
+    mut emit: impl FnMut(usize, T),
+) {
+    let motion = propagate(links, gravity, q, dq, ddq);
+    let mut carried: [(Vec3<T>, Vec3<T>); MAX_FRAMES] =
+        [([T::constant(0.0); 3], [T::constant(0.0); 3]); MAX_FRAMES];
+    for k in (0..links.len()).rev() {
+        let frame = &motion[k];
+        let (force, moment) = bodies[k].wrench(frame.w, frame.dw, frame.dv);
+        let force = apply(&frame.rotation, force);
+        let moment = add(apply(&frame.rotation, moment), cross(frame.origin, force));
+        let (force, moment) = (add(carried[k].0, force), add(carried[k].1, moment));
+        let axis = frame.rotation.map(|row| row[2]);
+        match frame.kind {
+            JointKind::Revolute => {
+                emit(frame.joint, dot(axis, sub(moment, cross(frame.origin, force))));
+            }
+            JointKind::Prismatic => emit(frame.joint, dot(axis, force)),
+            JointKind::Fixed => {}
+        }
+        if let Some(p) = frame.parent {
+            carried[p] = (add(carried[p].0, force), add(carried[p].1, moment));
+        }
+    }
+}

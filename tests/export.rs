@@ -1,0 +1,423 @@
+//! Exported code against the library: C by the machine's compiler, Rust without std by rustc.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
+
+mod common;
+
+use common::{Folder, MANIFEST, error_of, moving};
+use dynid::models;
+use dynid_codegen::{Real, export_c, export_rust};
+use dynid_runtime::model::Model;
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+const SAMPLES: usize = 12;
+const WARNINGS: [&str; 5] = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror"];
+
+/// The machine's C compiler; without one a test is skipped, and says so.
+fn compiler() -> Option<String> {
+    let name = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    let found = Command::new(&name).arg("--version").output().is_ok_and(|o| o.status.success());
+    if !found {
+        println!("skipped: there is no C compiler {name}");
+    }
+    found.then_some(name)
+}
+
+fn rustc() -> Command {
+    let mut command = Command::new(std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned()));
+    command.args(["--edition", "2024", "-D", "warnings", "-C", "opt-level=1"]);
+    command
+}
+
+fn done(command: &mut Command) -> Output {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{command:?}\n{}", error_of(&output));
+    output
+}
+
+/// Values in [-1, 1) that never change.
+fn values(seed: u64, count: usize) -> Vec<f64> {
+    let mut x = seed;
+    let mut next = || {
+        x = x.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    (0..count).map(|_| next()).collect()
+}
+
+/// q, dq, ddq of a sample.
+fn state(n: usize, sample: usize) -> [Vec<f64>; 3] {
+    let x = values(17 + sample as u64, 3 * n);
+    [x[..n].iter().map(|x| 3.0 * x).collect(), x[n..2 * n].to_vec(), x[2 * n..].to_vec()]
+}
+
+/// h, dh, IDM, M, N and tau of the library.
+fn expected(model: &dyn Model, chi: &[f64], [q, dq, ddq]: &[Vec<f64>; 3]) -> Vec<f64> {
+    let (n, nb, entries) = (q.len(), chi.len(), model.pattern().columns.len());
+    let (mut h, mut dh, mut idm) = (vec![0.0; nb], vec![0.0; nb], vec![0.0; entries]);
+    let (mut mass, mut bias, mut tau) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
+    model.energy(q, dq, &mut h);
+    model.power(q, dq, ddq, &mut dh);
+    model.idm(q, dq, ddq, &mut idm);
+    model.mass_and_bias(chi, q, dq, &mut mass, &mut bias);
+    model.torque(chi, q, dq, ddq, &mut tau);
+    [h, dh, idm, mass, bias, tau].concat()
+}
+
+/// A program that reads chi, then states, and prints the bits of all that the functions give.
+fn driver(name: &str, real: &str) -> String {
+    let upper = name.to_uppercase();
+    format!(
+        r#"#include "{name}.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+static void show(const {real} *values, int count)
+{{
+    for (int k = 0; k < count; k++) {{
+        double value = (double)values[k];
+        uint64_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        printf("%016" PRIx64 "\n", bits);
+    }}
+}}
+static int get({real} *values, int count)
+{{
+    for (int k = 0; k < count; k++) {{
+        double value;
+        if (scanf("%lf", &value) != 1)
+            return 0;
+        values[k] = ({real})value;
+    }}
+    return 1;
+}}
+int main(void)
+{{
+    static {real} chi[{upper}_NB], q[{upper}_N], dq[{upper}_N], ddq[{upper}_N], h[{upper}_NB], dh[{upper}_NB];
+    static {real} idm[{upper}_ENTRIES], mass[{upper}_N * {upper}_N], bias[{upper}_N], tau[{upper}_N];
+    if (!get(chi, {upper}_NB))
+        return 1;
+    while (get(q, {upper}_N) && get(dq, {upper}_N) && get(ddq, {upper}_N)) {{
+        {name}_energy(q, dq, h);
+        {name}_power(q, dq, ddq, dh);
+        {name}_idm(q, dq, ddq, idm);
+        {name}_mass_and_bias(chi, q, dq, mass, bias);
+        {name}_tau(chi, q, dq, ddq, tau);
+        show(h, {upper}_NB);
+        show(dh, {upper}_NB);
+        show(idm, {upper}_ENTRIES);
+        show(mass, {upper}_N * {upper}_N);
+        show(bias, {upper}_N);
+        show(tau, {upper}_N);
+    }}
+    return 0;
+}}
+"#
+    )
+}
+
+/// The same program in Rust, over a crate `robot` that knows no std.
+fn rust_driver(name: &str) -> String {
+    format!(
+        r#"use robot::{name}::*;
+fn show(values: &[f64]) {{
+    values.iter().for_each(|x| println!("{{:016x}}", x.to_bits()));
+}}
+fn main() {{
+    let text = std::io::read_to_string(std::io::stdin()).unwrap();
+    let all: Vec<f64> = text.split_whitespace().map(|x| x.parse().unwrap()).collect();
+    let (chi, states) = all.split_at(NB);
+    let chi: &[f64; NB] = chi.try_into().unwrap();
+    for state in states.chunks_exact(3 * N) {{
+        let [q, dq, ddq] = [0, 1, 2].map(|k| <&[f64; N]>::try_from(&state[k * N..(k + 1) * N]).unwrap());
+        let (mut h, mut dh, mut idm_entries) = ([0.0; NB], [0.0; NB], [0.0; ENTRIES]);
+        let (mut mass, mut bias, mut torques) = ([0.0; N * N], [0.0; N], [0.0; N]);
+        energy(q, dq, &mut h);
+        power(q, dq, ddq, &mut dh);
+        idm(q, dq, ddq, &mut idm_entries);
+        mass_and_bias(chi, q, dq, &mut mass, &mut bias);
+        tau(chi, q, dq, ddq, &mut torques);
+        show(&h);
+        show(&dh);
+        show(&idm_entries);
+        show(&mass);
+        show(&bias);
+        show(&torques);
+    }}
+}}
+"#
+    )
+}
+
+/// A crate without std that takes sine and cosine from the C library, as firmware does.
+fn without_std(name: &str) -> String {
+    format!(
+        r#"#![no_std]
+#[path = "{name}.rs"]
+pub mod {name};
+use {name}::Number;
+unsafe extern "C" {{
+    safe fn sin(x: f64) -> f64;
+    safe fn cos(x: f64) -> f64;
+}}
+impl Number for f64 {{
+    fn constant(value: f64) -> f64 {{
+        value
+    }}
+    fn sin_cos(self) -> (f64, f64) {{
+        (sin(self), cos(self))
+    }}
+    fn sign(self) -> f64 {{
+        if self > 0.0 {{ 1.0 }} else if self < 0.0 {{ -1.0 }} else {{ 0.0 }}
+    }}
+}}
+"#
+    )
+}
+
+/// What a program prints of chi and the states, as numbers.
+fn printed(folder: &Folder, program: &str, text: &str) -> Vec<f64> {
+    let mut child = Command::new(folder.path(program))
+        .current_dir(&folder.0)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let text = text.to_owned();
+    let writer = std::thread::spawn(move || stdin.write_all(text.as_bytes()));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap().unwrap();
+    assert!(output.status.success(), "{program}: {}", error_of(&output));
+    let number = |line: &str| f64::from_bits(u64::from_str_radix(line, 16).unwrap());
+    String::from_utf8(output.stdout).unwrap().lines().map(number).collect()
+}
+
+/// chi and the states as the programs read them.
+fn inputs(chi: &[f64], n: usize) -> String {
+    let states = (0..SAMPLES).flat_map(|t| state(n, t).concat());
+    chi.iter().copied().chain(states).map(|x| format!("{x:?}\n")).collect()
+}
+
+fn assert_close(found: &[f64], model: &dyn Model, chi: &[f64], tolerance: f64, what: &str) {
+    let n = model.robot().joints();
+    let expected: Vec<f64> = (0..SAMPLES).flat_map(|t| expected(model, chi, &state(n, t))).collect();
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (k, (a, b)) in found.iter().zip(&expected).enumerate() {
+        assert!((a - b).abs() <= tolerance * b.abs().max(20.0), "{what}, value {k}: {a} and {b}");
+    }
+}
+
+#[test]
+fn exported_c_compiles_without_a_warning_and_gives_the_numbers_of_the_library_under_sanitizers() {
+    let Some(cc) = compiler() else { return };
+    let folder = Folder::new("export-c");
+    folder.write("empty.c", "int main(void) { return 0; }\n");
+    let mut trial = Command::new(&cc);
+    trial.args(["-fsanitize=address,undefined", "empty.c", "-o", "empty"]).current_dir(&folder.0);
+    let sanitizers = trial.output().is_ok_and(|o| o.status.success());
+    if !sanitizers {
+        println!("skipped: {cc} has no sanitizers");
+    }
+    for &model in models::all() {
+        let (robot, n) = (model.robot(), model.robot().joints());
+        let chi = values(3, robot.base.len());
+        for (real, kind, tolerance) in [(Real::Double, "double", 1e-12), (Real::Single, "float", 1e-4)] {
+            let files = export_c(robot, None, real).unwrap();
+            let name = &files.name;
+            folder.write(&format!("{name}.h"), &files.header).write(&format!("{name}.c"), &files.source);
+            folder.write("main.c", &driver(name, kind));
+            let mut command = Command::new(&cc);
+            command.args(WARNINGS).arg("-O1");
+            if sanitizers {
+                command.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+            }
+            command.args(["main.c", &format!("{name}.c"), "-lm", "-o", "main"]).current_dir(&folder.0);
+            done(&mut command);
+            let found = printed(&folder, "main", &inputs(&chi, n));
+            assert_close(&found, model, &chi, tolerance, &format!("{name} {kind}"));
+        }
+    }
+}
+
+#[test]
+fn exported_rust_compiles_without_std_and_gives_the_bits_of_exported_c() {
+    for name in ["tx40", "stanford", "scara4"] {
+        let folder = Folder::new(&format!("export-rust-{name}"));
+        let model = models::find(name).unwrap();
+        let (robot, n) = (model.robot(), model.robot().joints());
+        let chi = values(3, robot.base.len());
+        folder.write(&format!("{name}.rs"), &export_rust(robot, None).unwrap().source);
+        folder.write("robot.rs", &without_std(name)).write("main.rs", &rust_driver(name));
+        done(rustc().args(["--crate-type", "rlib", "robot.rs"]).current_dir(&folder.0));
+        done(rustc().args(["--extern", "robot=librobot.rlib", "main.rs"]).current_dir(&folder.0));
+        let found = printed(&folder, "main", &inputs(&chi, n));
+        assert_close(&found, model, &chi, 1e-12, name);
+
+        let Some(cc) = compiler() else { continue };
+        let files = export_c(robot, None, Real::Double).unwrap();
+        folder.write(&format!("{name}.h"), &files.header).write(&format!("{name}.c"), &files.source);
+        folder.write("main.c", &driver(name, "double"));
+        let mut command = Command::new(&cc);
+        command.args(["-std=c99", "-O2", "-ffp-contract=off", "main.c", &format!("{name}.c"), "-lm"]);
+        done(command.args(["-o", "main_c"]).current_dir(&folder.0));
+        let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+        assert_eq!(bits(found), bits(printed(&folder, "main_c", &inputs(&chi, n))), "{name}");
+    }
+}
+
+/// Terms of a model: what a formula says goes in, what none says is named.
+const EFFECTS: &str = r#"[
+  {"effect": "stribeck", "place": {"joint": 0}, "joints": [1], "shape": [0.2], "amplitude": [1.5], "sigma": [0.0],
+   "scale": {"speed": 2.0, "range": 3.0, "torque": 10.0, "duration": 5.0, "gear": 50.0, "prismatic": false}},
+  {"effect": "load_dependent_friction", "place": {"joint": 1}, "joints": [2], "shape": [], "amplitude": [0.07],
+   "sigma": [0.0],
+   "scale": {"speed": 2.0, "range": 3.0, "torque": 10.0, "duration": 5.0, "gear": 50.0, "prismatic": false}},
+  {"effect": "presliding_hysteresis", "place": {"joint": 1}, "joints": [2], "shape": [0.1], "amplitude": [0.5],
+   "sigma": [0.0],
+   "scale": {"speed": 2.0, "range": 3.0, "torque": 10.0, "duration": 5.0, "gear": 50.0, "prismatic": false}}
+]"#;
+
+/// An identified planar_2r with effects, as a file; its base parameters.
+fn identified(folder: &Folder) -> Vec<f64> {
+    folder.write("motion.csv", &moving(900)).write("recording.yaml", MANIFEST);
+    let made = folder.run(&["identify", "recording.yaml", "--out", "plain.json"]);
+    assert!(made.status.success(), "{}", error_of(&made));
+    let text = std::fs::read_to_string(folder.path("plain.json")).unwrap();
+    let mut model: serde_json::Value = serde_json::from_str(&text).unwrap();
+    model["effects"] = serde_json::from_str(EFFECTS).unwrap();
+    model["covariance"] = serde_json::Value::Null;
+    folder.write("model.json", &model.to_string());
+    let parameters = model["base_parameters"].as_array().unwrap();
+    parameters.iter().map(|p| p["value"].as_f64().unwrap()).collect()
+}
+
+/// Torques of the identified arm, and what the two laws that are formulas add.
+fn torques_with_laws(chi: &[f64], [q, dq, ddq]: &[Vec<f64>; 3]) -> [f64; 2] {
+    let model = models::find("planar_2r").unwrap();
+    let mut tau = [0.0; 2];
+    model.torque(chi, q, dq, ddq, &mut tau);
+    let (mut mass, mut bias) = ([0.0; 4], [0.0; 2]);
+    model.mass_and_bias(chi, q, dq, &mut mass, &mut bias);
+    let load = mass[2] * ddq[0] + mass[3] * ddq[1] + bias[1];
+    tau[0] += 1.5 * (-(dq[0] / 0.2).powi(2)).exp() * dq[0].signum();
+    tau[1] += 0.07 * load.abs() * dq[1].signum();
+    tau
+}
+
+#[test]
+fn an_identified_model_is_exported_with_its_parameters_and_laws_and_says_what_is_left_out() {
+    let folder = Folder::new("export-model");
+    let chi = identified(&folder);
+    for target in ["c", "rust"] {
+        let made = folder.run(&["export", "model.json", "--to", target, "--out", "code"]);
+        assert!(made.status.success(), "{}", error_of(&made));
+        let told = error_of(&made);
+        assert!(told.contains("on joint 2") && told.contains("memory"), "{told}");
+    }
+    let header = std::fs::read_to_string(folder.path("code/planar_2r.h")).unwrap();
+    assert!(header.contains("not in this code") && header.contains("exp("), "{header}");
+    let states: String =
+        (0..SAMPLES).flat_map(|t| state(2, t).concat()).map(|x| format!("{x:?}\n")).collect();
+
+    folder.write(
+        "main.rs",
+        r#"#[path = "code/planar_2r.rs"]
+mod planar_2r;
+fn main() {
+    let text = std::io::read_to_string(std::io::stdin()).unwrap();
+    let all: Vec<f64> = text.split_whitespace().map(|x| x.parse().unwrap()).collect();
+    for x in all.chunks_exact(6) {
+        let mut tau = [0.0; 2];
+        planar_2r::model_tau(&[x[0], x[1]], &[x[2], x[3]], &[x[4], x[5]], &mut tau);
+        tau.iter().for_each(|x| println!("{:016x}", x.to_bits()));
+    }
+}
+"#,
+    );
+    done(rustc().args(["--cfg", "feature=\"std\"", "main.rs", "-o", "in_rust"]).current_dir(&folder.0));
+    let mut programs = vec!["in_rust"];
+    if let Some(cc) = compiler() {
+        folder.write(
+            "main.c",
+            r#"#include "code/planar_2r.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+int main(void)
+{
+    double x[6], tau[2];
+    while (scanf("%lf%lf%lf%lf%lf%lf", x, x + 1, x + 2, x + 3, x + 4, x + 5) == 6) {
+        planar_2r_model_tau(x, x + 2, x + 4, tau);
+        for (int k = 0; k < 2; k++) {
+            uint64_t bits;
+            memcpy(&bits, tau + k, sizeof bits);
+            printf("%016" PRIx64 "\n", bits);
+        }
+    }
+    return 0;
+}
+"#,
+        );
+        let mut command = Command::new(&cc);
+        command.args(WARNINGS).args(["-O2", "main.c", "code/planar_2r.c", "-lm", "-o", "in_c"]);
+        done(command.current_dir(&folder.0));
+        programs.push("in_c");
+    }
+    for program in programs {
+        let found = printed(&folder, program, &states);
+        let expected: Vec<f64> = (0..SAMPLES).flat_map(|t| torques_with_laws(&chi, &state(2, t))).collect();
+        assert_eq!(found.len(), expected.len());
+        for (a, b) in found.iter().zip(expected) {
+            assert!((a - b).abs() < 1e-11 * b.abs().max(1.0), "{program}: {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn a_robot_by_path_is_exported_under_its_own_name() {
+    let folder = Folder::new("export-path");
+    folder.write("arm.yaml", common::ARM);
+    let made = folder.run(&["export", "./arm.yaml", "--to", "c", "--out", "deep/code"]);
+    assert!(made.status.success(), "{}", error_of(&made));
+    let source = std::fs::read_to_string(folder.path("deep/code/arm.c")).unwrap();
+    assert!(source.contains("void arm_tau(") && !source.contains("malloc"), "{source}");
+    let refused = folder.run(&["export", "nobody", "--to", "c", "--out", "code"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let refused = folder.run(&["export", "tx40", "--to", "rust", "--real", "f32", "--out", "code"]);
+    assert!(refused.status.code() == Some(2) && error_of(&refused).contains("--real"));
+}
+
+/// The snippets of the README, as a reader copies them.
+#[test]
+fn the_snippets_of_the_readme_run() {
+    let folder = Folder::new("export-readme");
+    let readme = include_str!("../README.md");
+    let block = |language: &str| {
+        let start = format!("   ```{language}\n");
+        let text = readme.split(&start).nth(1).unwrap_or_else(|| panic!("no {language} in the README"));
+        let lines = text.split("   ```").next().unwrap().lines();
+        lines.map(|line| format!("{}\n", line.strip_prefix("   ").unwrap_or(line))).collect::<String>()
+    };
+    for target in ["c", "rust"] {
+        let words = ["export", "tx40", "--to", target, "--out", "exported"];
+        assert!(readme.contains(&format!("dynid {}", words.join(" "))));
+        assert!(folder.run(&words).status.success());
+    }
+    let rust = "rustc --edition 2024 -O --cfg 'feature=\"std\"' main.rs -o main_rust";
+    assert!(readme.contains(rust));
+    folder.write("main.rs", &block("rust"));
+    let shell = |line: &str| done(Command::new("sh").args(["-c", line]).current_dir(&folder.0));
+    shell(rust);
+    let in_rust = shell("./main_rust").stdout;
+    assert!(String::from_utf8_lossy(&in_rust).contains("N.m"), "{in_rust:?}");
+    if compiler().is_some() {
+        let c = "cc -O3 main.c exported/tx40.c -lm -o main_c";
+        assert!(readme.contains(c));
+        folder.write("main.c", &block("c"));
+        shell(c);
+        let in_c = shell("./main_c").stdout;
+        assert_eq!(String::from_utf8_lossy(&in_c), String::from_utf8_lossy(&in_rust));
+    }
+}
