@@ -171,10 +171,11 @@ fn read_robot(reader: &mut Reader<'_>, root: Node<'_, '_>, snap: f64) -> Option<
     let mut by_name = HashMap::new();
     for node in elements(root, "link") {
         let Some(link) = read_link(reader, node, snap, &mut rounded) else { continue };
-        if by_name.insert(link.name.clone(), links.len()).is_some() {
+        if by_name.contains_key(&link.name) {
             reader.report(link.place, format!("link '{}' is there twice", shown(&link.name)));
             continue;
         }
+        by_name.insert(link.name.clone(), links.len());
         links.push(link);
     }
     let mut joints: Vec<Joint> = Vec::new();
