@@ -81,7 +81,8 @@ fn words(refuted: &[Refuted]) -> Option<String> {
             None => format!("{:.2}", r.on_test.part),
         };
         let errors = format!("{:.2} % to {:.2} %", 100.0 * r.test_before, 100.0 * r.test_after);
-        format!("{title}{place} ({part} of it; error of its joints {errors})")
+        let others = if r.harms_others { "; of the others it rises by more" } else { "" };
+        format!("{title}{place} ({part} of it; error of its joints {errors}{others})")
     };
     let list: Vec<String> = refuted.iter().map(one).collect();
     (!list.is_empty())
@@ -120,7 +121,8 @@ fn held_against_test(
         parts.push((*k, on_test));
         // By the parameters that joints share it may show, or do harm, on others.
         let on_all = Slope::of(&evaluation, [which, 0], None);
-        let fails = match slope.judgement() {
+        let own = slope.judgement();
+        let fails = match own {
             Judgement::Stands => on_all.is_some_and(|s| s.judgement() == Judgement::Harms),
             Judgement::Harms => true,
             Judgement::NotSeen => on_all.is_none_or(|s| s.judgement() != Judgement::Stands),
@@ -128,7 +130,8 @@ fn held_against_test(
         if fails {
             let [test_before, test_after] = [which, 0].map(|m| error_on(model, finding, &evaluation, m));
             let (effect, joints) = (finding.effect.clone(), finding.joints.clone());
-            failing.push((*k, Refuted { effect, joints, test_before, test_after, on_test }));
+            let harms_others = own == Judgement::Stands;
+            failing.push((*k, Refuted { effect, joints, test_before, test_after, on_test, harms_others }));
         }
     }
     for (k, on_test) in parts {

@@ -203,6 +203,9 @@ pub struct Refuted {
     pub test_after: f64,
     /// How much of it is there.
     pub on_test: OnTest,
+    /// Whether it is there on its joints, and the other joints are predicted worse with it.
+    #[serde(default)]
+    pub harms_others: bool,
 }
 
 /// A joint on which nothing could be looked for.
