@@ -19,7 +19,7 @@ use rand_pcg::Pcg64;
 
 const RATE: f64 = 100.0;
 
-/// XX XY XZ YY YZ ZZ MX MY MZ M of a box in the frame of the last joint.
+/// XX XY XZ YY YZ ZZ MX MY MZ M of a box in the last frame.
 fn body(mass: f64, [x, y, z]: [f64; 3], inertia: [f64; 6]) -> [f64; 10] {
     let steiner = [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y];
     std::array::from_fn(|k| match k {
@@ -38,7 +38,7 @@ const INERTIA: [f64; 6] = [0.02, 0.001, -0.002, 0.03, 0.0015, 0.025];
 fn nominal(model: &dyn Model, payload: Option<[f64; 10]>) -> Vec<f64> {
     let robot = model.robot();
     let mut standard = robot.nominal.as_ref().unwrap().standard.to_vec();
-    let frame = robot.joint_of_frame().iter().rposition(Option::is_some).unwrap();
+    let frame = robot.frames.len() - 1;
     for (k, value) in payload.into_iter().flatten().enumerate() {
         let kind = ParameterKind::INERTIAL[k];
         let place = robot.standard.iter().position(|s| s.frame == frame && s.kind == kind).unwrap();
@@ -120,13 +120,13 @@ fn gains_of_an_arm_and_the_rest_of_its_payload_are_found_within_their_uncertaint
     for (gain, truth) in found.gains.iter().zip(gains) {
         let (value, sigma) = determined(gain);
         println!("{value:.4} +- {sigma:.4}, true {truth}");
-        assert!((value - truth).abs() < 3.5 * sigma && sigma < 0.1 * truth, "{found:?}");
+        assert!((value - truth).abs() < 3.0 * sigma && sigma < 0.1 * truth, "{found:?}");
     }
     let of_payload = found.payload.unwrap();
     assert_eq!((of_payload.mass.value, of_payload.mass.sigma), (MASS, Some(0.0)));
     for (q, truth) in of_payload.centre.iter().chain(&of_payload.inertia).zip(CENTRE.iter().chain(&INERTIA)) {
         println!("{q:?}, true {truth}");
-        assert!((q.value - truth).abs() < 3.5 * q.sigma.unwrap());
+        assert!((q.value - truth).abs() < 3.0 * q.sigma.unwrap());
     }
     // The base parameters are those of the robot without payload.
     let chi = nominal(model, None);
@@ -161,11 +161,7 @@ fn a_drive_of_the_other_sign_is_told_and_a_payload_that_cannot_show_is_refused()
     // Both recordings are of the same robot without payload.
     let empty = pair(model, [0.0; 10], &[20.0, 5.0], 0.01, 3);
     let nothing = drive_gains(model.robot(), &empty[0], &empty[1], &KNOWN);
-    let undetermined = |g: &DriveGains| g.gains.iter().all(|g| *g == DriveGain::Undetermined);
-    assert!(
-        nothing == Err(DriveGainsError::Nothing) || nothing.as_ref().is_ok_and(undetermined),
-        "{nothing:?}"
-    );
+    assert_eq!(nothing, Err(DriveGainsError::Nothing));
 }
 
 /// A vertical axis and a lift on it: what turns about the axis says nothing of a mass on it.
@@ -274,6 +270,33 @@ fn a_payload_by_itself_is_found_within_its_uncertainty_and_is_a_body() {
     }
     println!("{inside} of {all} within 3 sigma");
     assert!(inside + 2 >= all, "{inside} of {all}");
+}
+
+#[test]
+fn standard_deviations_of_a_payload_are_those_of_repeated_recordings() {
+    let model = models::find("planar_2r").unwrap();
+    let chi = nominal(model, Some(body(MASS, CENTRE, INERTIA)));
+    let seeds = 120;
+    let (mut squares, mut stated, mut inside) = ([0.0; 3], [0.0; 3], [0; 3]);
+    for seed in 0..seeds {
+        let before = reference(model, 0.03, 3000 + seed);
+        let loaded = observed(model, motion(model, &chi, &[1.0; 2], 0.03, 6000 + seed));
+        let body = payload_of(model.robot(), &loaded, &before).unwrap().body;
+        let told = [(body.mass, MASS), (body.centre[0], CENTRE[0]), (body.centre[1], CENTRE[1])];
+        for (k, (q, truth)) in told.into_iter().enumerate() {
+            let sigma = q.sigma.unwrap();
+            squares[k] += (q.value - truth).powi(2) / seeds as f64;
+            stated[k] += sigma * sigma / seeds as f64;
+            inside[k] += usize::from((q.value - truth).abs() < 1.96 * sigma);
+        }
+    }
+    for k in 0..3 {
+        let (spread, stated) = (squares[k].sqrt(), stated[k].sqrt());
+        println!("{k}: spread {spread:.5}, stated {stated:.5}, {} of {seeds} within 1.96 sigma", inside[k]);
+        // 120 draws know their spread to 6.5 %, and a coverage of 95 % to 2 %.
+        assert!((spread / stated - 1.0).abs() < 0.22, "{spread} {stated}");
+        assert!((0.88..=0.995).contains(&(inside[k] as f64 / seeds as f64)), "{}", inside[k]);
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use dynid_runtime::estimation::observe::Equations;
 use dynid_runtime::estimation::{DriveGain, DriveGains, DriveGainsError, KnownPayload, drive_gains};
 use dynid_runtime::model::{JointIndex, JointKind, Robot};
 use dynid_runtime::model_file::difference;
+use dynid_runtime::recording::Side;
 use dynid_runtime::report::{percent, significant};
 use serde::Serialize;
 
@@ -97,15 +98,38 @@ fn words(recordings: &[&Observed; 2], found: &DriveGains, known: &KnownPayload) 
     });
     text.push_str(&table(&["joint", "gain", "sigma", "<"], rows.collect()));
     match &found.payload {
-        Some(body) => text.push_str(&format!("\n\n{}", payload_table(body))),
+        Some(body) => text.push_str(&format!("\n\n{}", payload_table(body, robot.frames.len()))),
         None => text.push_str(
             "\n\nratios of the gains only: their scale needs the mass of the payload (`mass: ..` in the file of --payload)",
         ),
+    }
+    for joints in coupled(recordings, robot) {
+        text.push_str(&format!("\nwarning: {joints}"));
     }
     if !found.absolute && known.centre.is_some() {
         text.push_str("\nits centre was used; a payload without mass is not told");
     }
     text
+}
+
+/// What to know of joints whose torque several motors make up.
+fn coupled(recordings: &[&Observed; 2], robot: &Robot) -> Option<String> {
+    if recordings.iter().all(|o| o.recorded.side != Side::Motor) {
+        return None;
+    }
+    let n = robot.joints();
+    let own = |j: usize, motor: usize| robot.drive.gear.get(motor * n + j).is_some_and(|g| *g != 0.0);
+    let shared: Vec<String> = (0..n)
+        .filter(|&j| (0..n).any(|motor| motor != j && own(j, motor)))
+        .map(|j| robot.joint_number(JointIndex(j)).to_string())
+        .collect();
+    (!shared.is_empty()).then(|| {
+        format!(
+            "the gear brings several motors to joint {}: its gain is one of all of them together, right only where theirs are \
+             off by the same factor",
+            shared.join(", ")
+        )
+    })
 }
 
 #[derive(Debug, Serialize)]

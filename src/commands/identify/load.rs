@@ -33,7 +33,7 @@ pub(super) struct LoadArguments {
     pub payload_only: bool,
 }
 
-/// A payload file: SI units, frame of the last joint.
+/// A payload file: SI, last frame of the table.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PayloadFile {
@@ -112,7 +112,9 @@ impl PayloadJson {
 }
 
 /// Mass, centre, inertia about the centre, and what a robot feels of them, as a table.
-pub(super) fn payload_table(body: &PayloadBody) -> String {
+///
+/// `frame` is the number of the frame that it is told in.
+pub(super) fn payload_table(body: &PayloadBody, frame: usize) -> String {
     let row = |name: &str, quantity: &Quantity, unit: &str| {
         let [value, sigma] = match quantity.sigma {
             None => ["not determined".to_owned(), "-".to_owned()],
@@ -134,8 +136,8 @@ pub(super) fn payload_table(body: &PayloadBody) -> String {
         let names = INERTIA.iter().map(|name| (*name, "kg.m2"));
         let moments = ["MX", "MY", "MZ"].map(|name| (name, "kg.m"));
         for ((name, unit), quantity) in names.chain(moments).zip(&body.parameters) {
-            rows.push(row(&format!("{name} at the last frame"), quantity, unit));
+            rows.push(row(&format!("{name} at the origin"), quantity, unit));
         }
     }
-    table(&["<payload", "value", "sigma", "<unit"], rows)
+    format!("payload, in frame {frame}:\n{}", table(&["<", "value", "sigma", "<unit"], rows))
 }

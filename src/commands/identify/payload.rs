@@ -108,7 +108,10 @@ fn words(observed: &Observed, found: &PayloadFit, errors: [Option<f64>; 2]) -> S
     for line in left_out_words(&observed.recorded.rows) {
         text.push_str(&format!("{line}\n"));
     }
-    text.push_str(&format!("\n{}", payload_table(&found.body)));
+    text.push_str(&format!(
+        "\n{}",
+        payload_table(&found.body, observed.recorded.dynamics.model().robot().frames.len())
+    ));
     text.push_str(&format!(
         "\n\nrelative error of the torques {} without it, {} with it",
         percent(errors[0]),

@@ -119,7 +119,12 @@ pub fn drive_gains(
         return Err(DriveGainsError::NoScale);
     }
     let found = search.decided(moving.clone())?;
-    Ok(search.described(&found, &moving))
+    let described = search.described(&found, &moving);
+    let is_open = |g: &DriveGain| matches!(g, DriveGain::Undetermined | DriveGain::NoRows);
+    if absolute && described.gains.iter().all(is_open) {
+        return Err(DriveGainsError::Nothing);
+    }
+    Ok(described)
 }
 
 /// A solution, and what it was found with.

@@ -14,7 +14,7 @@ pub struct Quantity {
     pub sigma: Option<f64>,
 }
 
-/// A payload in the numbers that a person knows, in the frame of the last joint.
+/// A payload in the numbers that a person knows, in the last frame of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PayloadBody {
     /// XX XY XZ YY YZ ZZ MX MY MZ M at the origin of the frame.
