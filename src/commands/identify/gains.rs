@@ -103,7 +103,7 @@ fn words(recordings: &[&Observed; 2], found: &DriveGains, known: &KnownPayload) 
             "\n\nratios of the gains only: their scale needs the mass of the payload (`mass: ..` in the file of --payload)",
         ),
     }
-    for joints in coupled(recordings, robot) {
+    if let Some(joints) = coupled(recordings, robot) {
         text.push_str(&format!("\nwarning: {joints}"));
     }
     if !found.absolute && known.centre.is_some() {
