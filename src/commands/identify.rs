@@ -1,6 +1,9 @@
 //! `dynid identify REC`: parameters from a recording.
 
+mod gains;
+mod load;
 mod method;
+mod payload;
 mod physical;
 mod simulated;
 
@@ -60,6 +63,8 @@ pub(super) struct Arguments {
     /// The prior: a URDF, a robot YAML with nominal parameters, or a model [default: the robot's nominal parameters]
     #[arg(long, requires = "physical")]
     prior: Option<PathBuf>,
+    #[command(flatten)]
+    load: load::LoadArguments,
     /// Also print what is regrouped into each parameter
     #[arg(long)]
     base: bool,
@@ -76,6 +81,12 @@ pub(super) struct Arguments {
 
 /// Identifies, prints, saves.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(loaded) = &arguments.load.loaded {
+        return gains::run(arguments, loaded);
+    }
+    if let Some(reference) = &arguments.load.reference {
+        return payload::run(arguments, reference);
+    }
     simulated::check(arguments.method, arguments.planned.as_deref())?;
     let power = Equations::Power { closed_form: arguments.closed_form };
     let equations: &[Equations] =

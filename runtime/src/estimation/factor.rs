@@ -1,6 +1,7 @@
 //! The orthogonal factor of rows [W Y]: what is kept of any number of rows, without W and without WT W.
 
 use super::householder::reduce;
+use nalgebra::DMatrix;
 
 /// Rows that are gathered before they are reduced: columns an odd number of cache lines apart, so that a row does not
 /// crowd a few sets of the cache.
@@ -115,6 +116,28 @@ impl Factor {
         }
         let free: Vec<usize> = (0..self.unknowns).filter(|l| held.iter().all(|(h, _)| h != l)).collect();
         moved.select(&free)
+    }
+
+    /// The factor of the same rows with other columns: [W Y] times a matrix of unknowns + 1 rows, whose last column gives
+    /// the new Y.
+    ///
+    /// # Panics
+    /// If the matrix has another number of rows, or no column.
+    pub fn times(&self, matrix: &DMatrix<f64>) -> Factor {
+        let rows = self.unknowns + 1;
+        assert!(matrix.nrows() == rows && matrix.ncols() > 0);
+        let product = DMatrix::from_column_slice(rows, rows, &self.r) * matrix;
+        let mut changed = Factor::new(matrix.ncols() - 1);
+        let stride = rows.next_multiple_of(4);
+        let mut block = vec![0.0; matrix.ncols() * stride];
+        for (to, column) in block.chunks_exact_mut(stride).zip(product.column_iter()) {
+            for (x, value) in to.iter_mut().zip(column.iter()) {
+                *x = *value;
+            }
+        }
+        reduce(matrix.ncols(), &mut changed.r, stride, &mut block);
+        changed.rows = self.rows;
+        changed
     }
 
     /// ||Y||

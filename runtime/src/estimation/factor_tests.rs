@@ -127,6 +127,17 @@ fn held_parameters_leave_the_same_problem_as_moving_them_to_the_left() {
     }
 }
 
+#[test]
+fn other_columns_of_the_same_rows_have_the_factor_of_those_columns() {
+    let rows = random(70, 5, 11);
+    let change = random(5, 3, 12);
+    let times = factor_of(&rows, &[32]).times(&change);
+    let direct = factor_of(&(rows * change), &[32]);
+    assert_eq!((times.rows(), times.unknowns()), (70, 2));
+    let gram = |f: &Factor| matrix(f).transpose() * matrix(f);
+    assert!((gram(&times) - gram(&direct)).norm() < 1e-12 * gram(&direct).norm());
+}
+
 proptest! {
     #[test]
     fn merging_weighting_and_selecting_are_what_they_are_on_rows(

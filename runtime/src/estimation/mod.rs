@@ -43,6 +43,7 @@ mod bandwidth;
 mod blocks;
 mod cautions;
 mod deviations;
+mod drive_gains;
 mod encoder_noise;
 mod essential;
 mod estimate;
@@ -52,6 +53,7 @@ mod instrumental;
 mod method;
 pub mod observe;
 mod outcome;
+mod payload;
 mod physical;
 mod piecewise;
 mod recorded;
@@ -65,12 +67,17 @@ mod warning;
 mod weights;
 
 pub use bandwidth::{Bandwidth, choose_bandwidth};
+pub use drive_gains::{DriveGain, DriveGains, DriveGainsError, drive_gains};
 pub use encoder_noise::EncoderNoise;
 pub use estimate::estimate;
 pub use factor::{BLOCK_ROWS, Factor};
 pub use instrumental::{InstrumentalError, InstrumentalEstimate, Instruments, instrumental_variables};
 pub use method::{Method, Solver};
 pub use outcome::{BlockWeight, EquationError, Essential, Estimate, ParameterEstimate};
+pub use payload::{
+    KnownPayload, KnownPayloadError, PayloadBody, PayloadError, PayloadFit, Quantity, ReferenceModel,
+    payload_of,
+};
 pub use physical::{
     NearPrior, NearPriorError, NearestBody, PhysicalFit, Prior, near_prior, nearest_body, physical_fit,
 };
