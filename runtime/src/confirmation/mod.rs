@@ -3,7 +3,7 @@
 //! Evidence inside one recording cannot exclude that a law imitates something that this motion has and other motion has
 //! not. Where there is a test recording, each finding is therefore held against it: the part of it that is there
 //! ([`OnTest`]) must be more than one half, or its joints are predicted worse with it; it must be told from nothing where
-//! the motion could have shown it; and all joints together, each by its noise, must not be predicted worse with it. What fails is taken out, and the
+//! the motion could have shown it; and it must not certainly make the other joints worse. What fails is taken out, and the
 //! search goes on without it. The test recording then no longer is one for what was chosen by it: of a finding that
 //! stays, only that it did not fail is known from it.
 
@@ -123,7 +123,7 @@ fn held_against_test(
         let on_all = Slope::of(&evaluation, [which, 0], None);
         let own = slope.judgement();
         let fails = match own {
-            Judgement::Stands => on_all.is_some_and(|s| s.judgement() == Judgement::Harms),
+            Judgement::Stands => on_all.is_some_and(|s| s.certainly_harms()),
             Judgement::Harms => true,
             Judgement::NotSeen => on_all.is_none_or(|s| s.judgement() != Judgement::Stands),
         };

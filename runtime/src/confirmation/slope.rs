@@ -96,6 +96,11 @@ impl Slope {
         }
     }
 
+    /// Whether it is not by accident that the motion is predicted better without the law.
+    pub(super) fn certainly_harms(&self) -> bool {
+        self.margin().is_some_and(|margin| self.value < NEUTRAL - margin)
+    }
+
     /// What a slope differs by from the true one only in rare cases; `None` where that is not known.
     fn margin(&self) -> Option<f64> {
         let student = StudentsT::new(0.0, 1.0, self.units.checked_sub(1)? as f64).ok()?;

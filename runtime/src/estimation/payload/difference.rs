@@ -65,7 +65,7 @@ pub enum PayloadError {
 /// The payload on the last link from a recording with it, the effects of the model taken out of its torques.
 ///
 /// Base parameters of the robot as it was, chi, are known with their covariance; the ten numbers p of the payload add B p to
-/// them ([`base_of_body`]). The weighted rows and the model are combined as information, so that neither need determine
+/// them (`base_of_body`). The weighted rows and the model are combined as information, so that neither need determine
 /// everything, and chi is eliminated: J p = r with J = BT P (P + A)^-1 A B, P the information of the model and A that of the
 /// rows. Standard deviations are those of noise that lasts, where the observation kept its rows. What is then told is the
 /// nearest body that can be ([`nearest_body`]).
