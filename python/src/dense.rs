@@ -23,7 +23,9 @@ impl<'a> DenseRegressor<'a> {
         let (pattern, columns) = (model.pattern(), model.robot().base.len());
         let joints = model.robot().joints();
         let places: Vec<usize> = (0..joints)
-            .flat_map(|j| pattern.columns[pattern.rows[j]..pattern.rows[j + 1]].iter().map(move |c| j * columns + c))
+            .flat_map(|j| {
+                pattern.columns[pattern.rows[j]..pattern.rows[j + 1]].iter().map(move |c| j * columns + c)
+            })
             .collect();
         let values = vec![0.0; places.len() * LINE];
         Self { model, places, lines: Vec::new(), values, size: joints * columns }

@@ -49,7 +49,11 @@ impl PyFinding {
     #[getter]
     fn parameters(&self) -> std::collections::BTreeMap<String, (f64, Option<f64>, String)> {
         let known = |sigma: f64| (sigma > 0.0).then_some(sigma);
-        self.0.parameters.iter().map(|(name, p)| (name.clone(), (p.value, known(p.sigma), p.unit.clone()))).collect()
+        self.0
+            .parameters
+            .iter()
+            .map(|(name, p)| (name.clone(), (p.value, known(p.sigma), p.unit.clone())))
+            .collect()
     }
 
     /// What was found, for a person.
@@ -163,7 +167,8 @@ pub(crate) fn diagnose(
     let other = |given: Option<&Bound<'_, PyAny>>, name| -> PyResult<Option<(PathBuf, Measured)>> {
         let Some(given) = given else { return Ok(None) };
         let other: PyRecording = one(given, name)?;
-        let own = of_the_same_robot(copy(&other.measured)?, &recording.measured, &other.path).map_err(of_failure)?;
+        let own = of_the_same_robot(copy(&other.measured)?, &recording.measured, &other.path)
+            .map_err(of_failure)?;
         Ok(Some((other.path, own)))
     };
     let (test, baseline) = (other(test, "test")?, other(baseline, "baseline")?);

@@ -153,7 +153,12 @@ impl PyFit {
     fn __repr__(&self) -> String {
         let own = &self.identified;
         let error = own.relative_error.map_or_else(|| "unknown".to_owned(), |e| format!("{e:.4}"));
-        format!("dynid.Fit({}, {}): {} parameters, relative error {error}", own.robot, own.method, own.base_parameters.len())
+        format!(
+            "dynid.Fit({}, {}): {} parameters, relative error {error}",
+            own.robot,
+            own.method,
+            own.base_parameters.len()
+        )
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
@@ -236,7 +241,8 @@ impl Work {
         let ObservedRecording { observations, motions, settings, speeds, left_out, .. } = observed;
         let rows = LeftOut { too_short: left_out, ..measured.rows };
         let (title, robot, side) = (measured.title, measured.robot, measured.side);
-        let recorded = Recorded { dynamics: measured.dynamics, title, robot, side, motions, rows, speeds, settings };
+        let recorded =
+            Recorded { dynamics: measured.dynamics, title, robot, side, motions, rows, speeds, settings };
         let [observation, ..] = observations.as_slice() else {
             return Err(Failure::Data("nothing was observed".to_owned()));
         };

@@ -47,7 +47,13 @@ type Motion<'py> = (
 );
 
 impl PyRecording {
-    fn of(robot: &PyRobot, title: String, path: PathBuf, side: Side, trajectories: Vec<Trajectory>) -> PyResult<Self> {
+    fn of(
+        robot: &PyRobot,
+        title: String,
+        path: PathBuf,
+        side: Side,
+        trajectories: Vec<Trajectory>,
+    ) -> PyResult<Self> {
         let measured = Measured {
             dynamics: again(&robot.dynamics)?,
             title,
@@ -79,7 +85,10 @@ impl PyRecording {
     /// Its robot.
     #[getter]
     fn robot(&self) -> PyResult<PyRobot> {
-        Ok(PyRobot { dynamics: Arc::new(again(&self.measured.dynamics)?), found: self.measured.robot.clone() })
+        Ok(PyRobot {
+            dynamics: Arc::new(again(&self.measured.dynamics)?),
+            found: self.measured.robot.clone(),
+        })
     }
 
     /// What it is called.
@@ -127,11 +136,22 @@ impl PyRecording {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let rebuild = py.import("dynid._dynid")?.getattr("_recording")?;
-        let motions: Vec<Motion<'_>> = self.measured.trajectories.iter().map(|t| {
-            let velocity = t.velocity.as_ref().map(|v| rows(py, v));
-            (t.name.clone(), t.time.clone().into_pyarray(py), rows(py, &t.position), rows(py, &t.torque), velocity,
-             t.fixed.clone())
-        }).collect();
+        let motions: Vec<Motion<'_>> = self
+            .measured
+            .trajectories
+            .iter()
+            .map(|t| {
+                let velocity = t.velocity.as_ref().map(|v| rows(py, v));
+                (
+                    t.name.clone(),
+                    t.time.clone().into_pyarray(py),
+                    rows(py, &t.position),
+                    rows(py, &t.torque),
+                    velocity,
+                    t.fixed.clone(),
+                )
+            })
+            .collect();
         let motor = self.measured.side == Side::Motor;
         let arguments = (self.robot()?, self.measured.title.clone(), self.path.clone(), motor, motions);
         Ok((rebuild, arguments.into_pyobject(py)?.into_any()))
@@ -178,7 +198,9 @@ pub(crate) fn one(value: &Bound<'_, PyAny>, name: &str) -> PyResult<PyRecording>
         return joined(&[one.get()]);
     }
     let wrong = |_| error(format!("{name}: expected a dynid.Recording or a list of them"));
-    let several: Vec<Bound<'_, PyRecording>> = value.try_iter().map_err(wrong)?
+    let several: Vec<Bound<'_, PyRecording>> = value
+        .try_iter()
+        .map_err(wrong)?
         .map(|item| item.and_then(|item| Ok(item.cast_into::<PyRecording>()?)))
         .collect::<PyResult<_>>()
         .map_err(wrong)?;
@@ -220,7 +242,8 @@ fn trajectory(
     fixed: Vec<usize>,
 ) -> PyResult<Trajectory> {
     let time = series("t", t)?;
-    let named: Vec<_> = [("q", q), ("tau", tau), ("dq", dq)].into_iter().filter_map(|(n, a)| Some((n, a?))).collect();
+    let named: Vec<_> =
+        [("q", q), ("tau", tau), ("dq", dq)].into_iter().filter_map(|(n, a)| Some((n, a?))).collect();
     let joints = robot.model().robot().joints();
     let signals = Signals::read(joints, &named)?;
     if signals.single || signals.samples != time.len() {
@@ -229,7 +252,12 @@ fn trajectory(
     let views = signals.views();
     let columns: Vec<Vec<Vec<f64>>> = (0..named.len()).map(|s| views.columns(s)).collect();
     if let Some(k) = (1..time.len()).find(|&k| !(time[k] > time[k - 1])) {
-        return Err(error(format!("t[{k}] is {}, which does not come after t[{}], {}", time[k], k - 1, time[k - 1])));
+        return Err(error(format!(
+            "t[{k}] is {}, which does not come after t[{}], {}",
+            time[k],
+            k - 1,
+            time[k - 1]
+        )));
     }
     for ((name, _), columns) in named.iter().zip(&columns) {
         for (j, column) in columns.iter().enumerate() {
@@ -248,4 +276,3 @@ fn rows<'py>(py: Python<'py>, signal: &[Vec<f64>]) -> Bound<'py, PyArray2<f64>> 
     let samples = signal.first().map_or(0, Vec::len);
     Array2::from_shape_fn((samples, signal.len()), |(t, j)| signal[j][t]).into_pyarray(py)
 }
-

@@ -58,7 +58,9 @@ impl PyRobot {
 pub(crate) fn again(dynamics: &Dynamics) -> PyResult<Dynamics> {
     match dynamics {
         Dynamics::Generated(model) => Ok(Dynamics::Generated(*model)),
-        Dynamics::Recursive(model) => recursive(model.robot().clone(), &model.robot().name).map_err(of_failure),
+        Dynamics::Recursive(model) => {
+            recursive(model.robot().clone(), &model.robot().name).map_err(of_failure)
+        }
     }
 }
 
@@ -148,7 +150,11 @@ impl PyRobot {
             views.blocks(|range, states| dense.write(&range, states, numbers));
         });
         drop(writable);
-        if signals.single && out.is_none() { Ok(array.reshape([joints, columns])?.into_any()) } else { Ok(array.into_any()) }
+        if signals.single && out.is_none() {
+            Ok(array.reshape([joints, columns])?.into_any())
+        } else {
+            Ok(array.into_any())
+        }
     }
 
     /// The entries of the regressor that are not zero for every state: an array (N, entries), one entry after the other in
@@ -235,14 +241,20 @@ impl PyRobot {
             });
             all
         });
-        let matrices = Array3::from_shape_vec((signals.samples, n, n), matrices).map_err(|e| error(e.to_string()))?;
+        let matrices =
+            Array3::from_shape_vec((signals.samples, n, n), matrices).map_err(|e| error(e.to_string()))?;
         let matrices = matrices.into_pyarray(py);
         if signals.single { Ok(matrices.reshape([n, n])?.into_any()) } else { Ok(matrices.into_any()) }
     }
 
     fn __repr__(&self) -> String {
         let robot = self.description();
-        format!("dynid.Robot({:?}): {} joints, {} base parameters", self.found, robot.joints(), robot.base.len())
+        format!(
+            "dynid.Robot({:?}): {} joints, {} base parameters",
+            self.found,
+            robot.joints(),
+            robot.base.len()
+        )
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
@@ -263,7 +275,8 @@ pub(crate) fn _robot(found: String, table: &str) -> PyResult<PyRobot> {
     let dynamics = if table.is_empty() {
         resolve(&found, None).map_err(of_failure)?
     } else {
-        let robot: Robot = serde_json::from_str(table).map_err(|why| error(format!("a pickled robot: {why}")))?;
+        let robot: Robot =
+            serde_json::from_str(table).map_err(|why| error(format!("a pickled robot: {why}")))?;
         let model = RecursiveModel::new(robot).map_err(|why| error(format!("a pickled robot: {why}")))?;
         Dynamics::Recursive(Box::new(model))
     };

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use dynid_runtime::model::States;
-use numpy::ndarray::{ArrayView2, Axis, Ix1};
+use numpy::ndarray::{ArrayView2, Axis, Ix1, Slice};
 use numpy::{
-    AllowTypeChange, PyArray2, PyArrayDyn, PyArrayLikeDyn, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
+    AllowTypeChange, PyArray2, PyArrayDyn, PyArrayLikeDyn, PyArrayMethods, PyReadonlyArray2,
+    PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
@@ -15,7 +16,10 @@ use crate::error::error;
 const BLOCK: usize = 64;
 
 /// An array, or what numpy makes one of, as numbers. An array of float64 is not copied.
-fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyArrayLikeDyn<'py, f64, AllowTypeChange>> {
+fn numbers<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+) -> PyResult<PyArrayLikeDyn<'py, f64, AllowTypeChange>> {
     value.extract().map_err(|_| error(format!("{name}: not an array of numbers")))
 }
 
@@ -92,20 +96,26 @@ impl<'py> Signals<'py> {
         }
         let shape = first.map_or_else(Vec::new, |(_, shape)| shape);
         let single = shape.len() == 1;
-        Ok(Self { arrays, samples: if single { 1 } else { shape.first().copied().unwrap_or(0) }, joints, single })
+        Ok(Self {
+            arrays,
+            samples: if single { 1 } else { shape.first().copied().unwrap_or(0) },
+            joints,
+            single,
+        })
     }
 
     /// The signals as Rust sees them, which does not need the interpreter.
     pub fn views(&self) -> Views<'_> {
-        Views { signals: self.arrays.iter().map(|a| a.as_array()).collect(), samples: self.samples, joints: self.joints }
+        Views {
+            signals: self.arrays.iter().map(|a| a.as_array()).collect(),
+            samples: self.samples,
+            joints: self.joints,
+        }
     }
 }
 
 /// An array (N, n), or (n,) as one row, without copying it.
-fn as_rows<'py>(
-    array: &Bound<'py, PyArrayDyn<f64>>,
-    joints: usize,
-) -> PyResult<PyReadonlyArray2<'py, f64>> {
+fn as_rows<'py>(array: &Bound<'py, PyArrayDyn<f64>>, joints: usize) -> PyResult<PyReadonlyArray2<'py, f64>> {
     let rows = if array.ndim() == 1 {
         array.reshape([1, joints])?
     } else {
@@ -139,9 +149,10 @@ impl Views<'_> {
             let count = range.len();
             for (s, signal) in self.signals.iter().enumerate().filter(|(_, s)| !columns_lie(s)) {
                 let room = &mut gathered[s * n * BLOCK..][..n * BLOCK];
-                for (t, row) in signal.outer_iter().skip(from).take(count).enumerate() {
-                    for (j, x) in row.iter().enumerate() {
-                        room[j * BLOCK + t] = *x;
+                let rows = signal.slice_axis(Axis(0), Slice::from(range.clone()));
+                for (j, column) in rows.columns().into_iter().enumerate() {
+                    for (x, value) in room[j * BLOCK..].iter_mut().zip(column) {
+                        *x = *value;
                     }
                 }
             }
@@ -160,7 +171,9 @@ impl Views<'_> {
 
     /// Copies of the columns of a signal: `[j][t]`.
     pub fn columns(&self, signal: usize) -> Vec<Vec<f64>> {
-        self.signals.get(signal).map_or_else(Vec::new, |s| s.columns().into_iter().map(|c| c.to_vec()).collect())
+        self.signals
+            .get(signal)
+            .map_or_else(Vec::new, |s| s.columns().into_iter().map(|c| c.to_vec()).collect())
     }
 }
 
@@ -176,4 +189,3 @@ fn lying<'a>(signal: &ArrayView2<'a, f64>, joint: usize) -> Option<&'a [f64]> {
     }
     signal.clone().index_axis_move(Axis(1), joint).to_slice()
 }
-

@@ -23,7 +23,7 @@ def test_the_parameters_of_a_simulated_recording_are_found_within_their_uncertai
     off = (fit.values - planar.chi) / fit.sigma
     assert np.abs(off).max() < 5, dict(zip(fit.names, off))
     assert fit.relative_error < 0.01
-    assert fit.covariance.shape == (10, 10)
+    assert fit.covariance.shape == (13, 13)
     np.testing.assert_allclose(np.sqrt(np.diag(fit.covariance)), fit.sigma, rtol=1e-9)
     np.testing.assert_array_equal(fit.predict(q, dq, ddq), planar.torque(fit.values, q, dq, ddq))
 
