@@ -251,7 +251,10 @@ fn trajectory(
     }
     let views = signals.views();
     let columns: Vec<Vec<Vec<f64>>> = (0..named.len()).map(|s| views.columns(s)).collect();
-    if let Some(k) = (1..time.len()).find(|&k| !(time[k] > time[k - 1])) {
+    if let Some(k) = time.iter().position(|x| !x.is_finite()) {
+        return Err(error(format!("t[{k}] is {}, expected a number", time[k])));
+    }
+    if let Some(k) = (1..time.len()).find(|&k| time[k] <= time[k - 1]) {
         return Err(error(format!(
             "t[{k}] is {}, which does not come after t[{}], {}",
             time[k],

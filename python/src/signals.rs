@@ -187,5 +187,5 @@ fn lying<'a>(signal: &ArrayView2<'a, f64>, joint: usize) -> Option<&'a [f64]> {
     if !columns_lie(signal) {
         return None;
     }
-    signal.clone().index_axis_move(Axis(1), joint).to_slice()
+    (*signal).index_axis_move(Axis(1), joint).to_slice()
 }

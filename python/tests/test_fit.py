@@ -2,12 +2,7 @@
 
 import os
 import pickle
-import signal
 import subprocess
-import sys
-import threading
-import time
-from pathlib import Path
 
 import numpy as np
 import pytest
