@@ -36,6 +36,11 @@ pub(crate) struct PyFit {
 }
 
 impl PyFit {
+    /// A model of a robot with these dynamics.
+    pub fn of(identified: Identified, dynamics: Dynamics) -> Self {
+        Self { identified: Arc::new(identified), dynamics: Arc::new(dynamics) }
+    }
+
     fn each<T>(&self, of: impl Fn(&model_file::NamedParameter) -> T) -> Vec<T> {
         self.identified.base_parameters.iter().map(of).collect()
     }

@@ -3,11 +3,13 @@
 mod dense;
 mod diagnosis;
 mod error;
+mod factor;
 mod fit;
 mod interruptible;
 mod recording;
 mod robot;
 mod signals;
+mod written;
 
 use pyo3::prelude::*;
 
@@ -19,6 +21,10 @@ fn _dynid(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<fit::PyFit>()?;
     m.add_class::<diagnosis::PyDiagnosis>()?;
     m.add_class::<diagnosis::PyFinding>()?;
+    m.add_class::<factor::PyFactors>()?;
+    m.add_function(wrap_pyfunction!(factor::factor, m)?)?;
+    m.add_function(wrap_pyfunction!(factor::merge, m)?)?;
+    m.add_function(wrap_pyfunction!(factor::solve, m)?)?;
     m.add_function(wrap_pyfunction!(robot::robots, m)?)?;
     m.add_function(wrap_pyfunction!(robot::_robot, m)?)?;
     m.add_function(wrap_pyfunction!(recording::open, m)?)?;

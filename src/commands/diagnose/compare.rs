@@ -14,11 +14,7 @@ use crate::recorded::Measured;
 
 /// The errors on the recording itself, but for windows in which something pushed the robot. `None` where it is too
 /// short for the rows of the comparison.
-pub fn fitted(
-    measured: &Measured,
-    diagnosis: &Diagnosis,
-    options: &DiagnosisOptions,
-) -> Option<Evaluation> {
+pub fn fitted(measured: &Measured, diagnosis: &Diagnosis, options: &DiagnosisOptions) -> Option<Evaluation> {
     let model = measured.dynamics.model();
     let comparison = options.comparison(model.robot().joints());
     let prepared = comparison.prepare(&measured.trajectories).ok()?;
