@@ -104,12 +104,12 @@ pub(crate) fn read(bytes: &[u8], robot: &Robot) -> Result<Observation, String> {
     }
     let (motions, joints, base) = (written.trajectories.len(), robot.joints(), robot.base.len());
     let positive = |m: &Motion| m.rate.is_finite() && m.rate > 0.0 && m.band.is_finite() && m.band > 0.0;
-    if motions == 0 || !written.trajectories.iter().all(positive) {
+    if joints == 0 || motions == 0 || !written.trajectories.iter().all(positive) {
         return Err("factors without motions, or with rates that cannot be".to_owned());
     }
     let complete = |equations: &[Rows]| {
         let places = equations.iter().enumerate();
-        equations.len() % joints == 0 && places.into_iter().all(|(k, e)| e.equation == k % joints)
+        equations.len().is_multiple_of(joints) && places.into_iter().all(|(k, e)| e.equation == k % joints)
     };
     let blocks_complete = written.blocks.iter().all(|b| {
         let first = b.equations.first().map(|e| e.trajectory);
