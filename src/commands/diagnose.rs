@@ -1,7 +1,7 @@
 //! `dynid diagnose REC`: which physics is missing, where, and does adding it help on held-out motion?
 
-mod compare;
-mod mistakes;
+pub mod compare;
+pub mod mistakes;
 mod reference;
 
 use std::path::{Path, PathBuf};
@@ -153,7 +153,10 @@ fn hand_out(
 }
 
 /// Another recording, where it is one of the same robot.
-fn of_the_same_robot(other: Measured, measured: &Measured, path: &Path) -> Result<Measured, Failure> {
+///
+/// # Errors
+/// [`Failure::Input`] naming the recording, and what of its robot is another.
+pub fn of_the_same_robot(other: Measured, measured: &Measured, path: &Path) -> Result<Measured, Failure> {
     let [robot, its] = [measured, &other].map(|m| m.dynamics.model().robot());
     match difference(its, robot) {
         None => Ok(other),
@@ -203,7 +206,7 @@ fn contradicting(measured: &Measured, options: &DiagnosisOptions) -> Vec<SpeedFa
 }
 
 /// What a diagnosis refuses, as the end of a command.
-pub(crate) fn diagnosis_failure(recording: &Path, error: &DiagnosisError) -> Failure {
+pub fn diagnosis_failure(recording: &Path, error: &DiagnosisError) -> Failure {
     let words = format!("{}: {error}", recording.display());
     match error {
         DiagnosisError::Setting { .. } | DiagnosisError::StandstillSpeeds { .. } => Failure::Input(words),
@@ -260,7 +263,10 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
 }
 
 /// The JSON of the contract: everything but the curves that only a plot needs.
-fn for_programs(diagnosis: &Diagnosis, extras: &Extras) -> Result<serde_json::Value, Failure> {
+///
+/// # Errors
+/// [`Failure::Data`] where a number of it has no form in JSON.
+pub fn for_programs(diagnosis: &Diagnosis, extras: &Extras) -> Result<serde_json::Value, Failure> {
     let mut value = serde_json::to_value(diagnosis)
         .map_err(|error| Failure::Data(format!("the result cannot be written as JSON: {error}")))?;
     let Some(object) = value.as_object_mut() else { return Ok(value) };

@@ -2,7 +2,7 @@
 
 mod challenge;
 mod demo;
-mod diagnose;
+pub mod diagnose;
 mod excite;
 mod export;
 mod identify;

@@ -7,6 +7,9 @@ use nalgebra::DMatrix;
 /// crowd a few sets of the cache.
 pub const BLOCK_ROWS: usize = 120;
 
+/// Most columns of a factor that is read: more than any robot has parameters.
+const MOST_COLUMNS: usize = 4096;
+
 /// Upper-triangular R of [W Y] = Q R, with the number of rows that went in.
 ///
 /// R determines the least-squares solution, its covariance, and the residual of any other parameters, with the
@@ -23,6 +26,29 @@ impl Factor {
     /// No rows yet.
     pub fn new(unknowns: usize) -> Factor {
         Factor { unknowns, rows: 0, r: vec![0.0; (unknowns + 1) * (unknowns + 1)] }
+    }
+
+    /// A factor that was written down: of so many rows, the upper triangle of R column by column, Y last. `None` where the
+    /// triangle has another number of entries, one of them is no number, or there are more unknowns than a robot has.
+    pub fn from_upper(unknowns: usize, rows: usize, upper: &[f64]) -> Option<Factor> {
+        let columns = unknowns.checked_add(1).filter(|columns| *columns <= MOST_COLUMNS)?;
+        if upper.len() != columns * (columns + 1) / 2 || upper.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let mut factor = Factor { rows, ..Factor::new(unknowns) };
+        let mut rest = upper;
+        for l in 0..columns {
+            let (column, behind) = rest.split_at(l + 1);
+            factor.r[l * columns..][..=l].copy_from_slice(column);
+            rest = behind;
+        }
+        Some(factor)
+    }
+
+    /// The upper triangle of R column by column, Y last: what [`Factor::from_upper`] reads.
+    pub fn upper(&self) -> Vec<f64> {
+        let columns = self.unknowns + 1;
+        (0..columns).flat_map(|l| &self.r[l * columns..][..=l]).copied().collect()
     }
 
     /// Columns of W.

@@ -162,3 +162,16 @@ proptest! {
         prop_assert!((gram(&matrix(&selected)) - gram(&some)).norm() < 1e-11 * (1.0 + gram(&some).norm()));
     }
 }
+
+#[test]
+fn a_factor_that_was_written_down_is_read_back_exactly_and_nothing_else_is() {
+    let mut factor = Factor::new(2);
+    let mut block = vec![0.0; 3 * 8];
+    block.iter_mut().enumerate().for_each(|(k, x)| *x = (1.7 * k as f64).sin());
+    factor.push(5, 8, &mut block);
+    let upper = factor.upper();
+    assert_eq!(Factor::from_upper(2, 5, &upper), Some(factor));
+    assert_eq!(Factor::from_upper(3, 5, &upper), None);
+    assert_eq!(Factor::from_upper(usize::MAX, 5, &[]), None);
+    assert_eq!(Factor::from_upper(2, 5, &[1.0, 2.0, 3.0, f64::NAN, 5.0, 6.0]), None);
+}

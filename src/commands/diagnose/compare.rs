@@ -14,11 +14,7 @@ use crate::recorded::Measured;
 
 /// The errors on the recording itself, but for windows in which something pushed the robot. `None` where it is too
 /// short for the rows of the comparison.
-pub(super) fn fitted(
-    measured: &Measured,
-    diagnosis: &Diagnosis,
-    options: &DiagnosisOptions,
-) -> Option<Evaluation> {
+pub fn fitted(measured: &Measured, diagnosis: &Diagnosis, options: &DiagnosisOptions) -> Option<Evaluation> {
     let model = measured.dynamics.model();
     let comparison = options.comparison(model.robot().joints());
     let prepared = comparison.prepare(&measured.trajectories).ok()?;
@@ -28,13 +24,17 @@ pub(super) fn fitted(
 }
 
 /// A test recording, ready to be predicted.
-pub(super) struct Test {
+pub struct Test {
     measured: Measured,
+    /// Its motions and how rows are sampled from them.
     pub prepared: Prepared,
 }
 
 impl Test {
     /// Prepares it.
+    ///
+    /// # Errors
+    /// A band that is none, or motions that cannot be filtered.
     pub fn new(measured: Measured, path: &Path, options: &DiagnosisOptions) -> Result<Self, Failure> {
         let prepared = options
             .comparison(measured.dynamics.model().robot().joints())
@@ -45,7 +45,10 @@ impl Test {
 }
 
 /// The errors on a test recording.
-pub(super) fn tested(test: &Test, path: &Path, diagnosis: &Diagnosis) -> Result<Tested, Failure> {
+///
+/// # Errors
+/// What the evaluator refuses, such as an effect that cannot be evaluated on it.
+pub fn tested(test: &Test, path: &Path, diagnosis: &Diagnosis) -> Result<Tested, Failure> {
     let evaluation = before_and_after(test.measured.dynamics.model(), diagnosis, &test.prepared, &[])
         .map_err(|error| prediction_failure(path, &error))?;
     Ok(Tested { name: test.measured.title.clone(), evaluation })

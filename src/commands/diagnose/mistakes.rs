@@ -19,7 +19,7 @@ use crate::verdict::check_mistakes;
 ///
 /// # Errors
 /// [`Failure::Data`] with the mistake, and what to change.
-pub(super) fn check(path: &Path, measured: &Measured, options: &DiagnosisOptions) -> Result<(), Failure> {
+pub fn check(path: &Path, measured: &Measured, options: &DiagnosisOptions) -> Result<(), Failure> {
     let model = measured.dynamics.model();
     let settings =
         RecordedSettings { band: options.band, cutoff: options.cutoff, rows: ObserveSettings::default() };

@@ -1,0 +1,33 @@
+"""How long the regressor of many states takes from Python: ns a sample, the least of several runs. Beside
+`cargo run --release --example dense`, and Pinocchio's loop where it is installed."""
+
+import sys
+import time
+
+import numpy as np
+
+import dynid
+
+samples = int(sys.argv[1]) if len(sys.argv) > 1 else 100_000
+r = dynid.Robot("tx40")
+at = np.arange(samples)[:, None] * np.arange(1, r.joints + 1) * 1e-3
+in_rows = [np.sin(w * at) for w in (1.0, 1.3, 1.7)]
+in_columns = [np.asfortranarray(x) for x in in_rows]
+room = np.zeros((samples, r.joints, len(r.names)))
+
+
+def report(what, run):
+    least = np.inf
+    for _ in range(15):
+        began = time.perf_counter()
+        run()
+        least = min(least, time.perf_counter() - began)
+    print(f"{what}: {1e9 * least / samples:.0f} ns a sample")
+
+
+report("entries, fresh memory, arrays in columns", lambda: r.regressor_entries(*in_columns))
+report("entries, fresh memory, arrays in rows", lambda: r.regressor_entries(*in_rows))
+report("dense, fresh memory, arrays in columns", lambda: r.regressor(*in_columns))
+report("dense, fresh memory, arrays in rows", lambda: r.regressor(*in_rows))
+report("dense, the same memory again, arrays in rows", lambda: r.regressor(*in_rows, out=room))
+report("torques, arrays in rows", lambda: r.torque(r.chi, *in_rows))

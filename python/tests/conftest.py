@@ -1,0 +1,41 @@
+"""Recordings that are made here: motions by formula, torques by inverse dynamics."""
+
+import numpy as np
+import pytest
+
+import dynid
+
+
+def motion(robot, duration=20.0, rate=200.0, seed=0):
+    """t (N,), q, dq, ddq (N, n): three sines a joint, with derivatives in closed form."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0, duration, 1 / rate)
+    n = robot.joints
+    amplitude = rng.uniform(0.2, 0.6, (3, n)) * np.array([1.0, 0.5, 0.25])[:, None]
+    speed = rng.uniform(0.6, 1.4, (3, n)) * np.array([1.0, 2.3, 5.1])[:, None]
+    phase = rng.uniform(0, 2 * np.pi, (3, n))
+    at = t[:, None, None] * speed + phase
+    q = (amplitude * np.sin(at)).sum(1)
+    dq = (amplitude * speed * np.cos(at)).sum(1)
+    ddq = (-amplitude * speed**2 * np.sin(at)).sum(1)
+    return t, q, dq, ddq
+
+
+def recorded(robot, seed=0, added=None, noise=0.02, **options):
+    """A recording of a robot with its nominal parameters, with `added(q, dq, ddq)` on its torques, and the motion."""
+    t, q, dq, ddq = motion(robot, seed=seed, **options)
+    tau = robot.torque(robot.chi, q, dq, ddq)
+    if added is not None:
+        tau = tau + added(q, dq, ddq)
+    tau = tau + np.random.default_rng(100 + seed).normal(0, noise, tau.shape)
+    return dynid.Recording(robot=robot, t=t, q=q, tau=tau), (q, dq, ddq)
+
+
+@pytest.fixture(scope="session")
+def planar():
+    return dynid.Robot("planar_2r")
+
+
+@pytest.fixture(scope="session")
+def tx40():
+    return dynid.Robot("tx40")

@@ -1,0 +1,123 @@
+"""Diagnoses."""
+
+import json
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import dynid
+from conftest import recorded
+
+
+def spring(q, dq, ddq):
+    """4 N.m/rad on the second joint."""
+    return np.stack([np.zeros(len(q)), 4.0 * q[:, 1]], axis=1)
+
+
+@pytest.fixture(scope="module")
+def found(planar):
+    recordings = [recorded(planar, seed=s, added=spring, duration=10)[0] for s in (1, 2, 3)]
+    test, _ = recorded(planar, seed=4, added=spring, duration=10)
+    told = []
+    d = dynid.diagnose(recordings, test=test, progress=lambda share, what: told.append((share, what)))
+    return d, told
+
+
+def test_a_hidden_spring_is_found_with_its_stiffness(found):
+    d, _ = found
+    assert [(f.effect, f.joints) for f in d.findings] == [("spring", [2])]
+    (finding,) = d.findings
+    value, sigma, unit = finding.parameters["k"]
+    assert abs(value - 4) < max(5 * sigma, 0.05) and unit == "N.m/rad"
+    assert 0.9 < finding.confidence <= 1 and "spring" in finding.sentence.lower()
+    assert d.held_out[1] < d.held_out[0]
+    assert d.on_test[1] < d.on_test[0]
+    assert abs(finding.on_test[0] - 1) < 0.1
+
+
+def test_the_result_is_told_as_json_text_and_page(found, tmp_path):
+    d, _ = found
+    assert json.loads(d.json())["findings"][0]["effect"] == "spring"
+    assert "spring" in str(d) and d.verdict
+    d.report(tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text()
+    assert page.startswith("<!") and d.findings[0].sentence.split(",")[0] in page
+
+
+def test_nothing_is_found_where_nothing_is_hidden_or_nothing_changed(planar):
+    plain = recorded(planar, seed=5, duration=10)[0]
+    assert dynid.diagnose(plain).findings == []
+    before, after = ([recorded(planar, seed=s, added=spring, duration=10)[0] for s in seeds] for seeds in ((1, 2), (6, 7)))
+    assert dynid.diagnose(after, baseline=before).findings == []
+
+
+def test_progress_goes_from_nothing_to_all(found):
+    _, told = found
+    shares = [share for share, _ in told]
+    assert told and all(0 <= s <= 1 for s in shares)
+    assert all(what for _, what in told)
+
+
+def test_an_error_in_progress_ends_the_diagnosis(planar):
+    rec = [recorded(planar, seed=s, added=spring, duration=10)[0] for s in (1, 2, 3)]
+
+    def angry(share, what):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        dynid.diagnose(rec, progress=angry)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of Unix: Ctrl-C was not tried")
+def test_control_c_ends_a_long_diagnosis():
+    script = textwrap.dedent(
+        """
+        import dynid, numpy as np, sys, time
+        r = dynid.Robot("tx40")
+        t = np.arange(0, 60, 0.002)[:, None]
+        w = np.linspace(0.7, 2.9, 6)
+        q, dq, ddq = np.sin(w * t), w * np.cos(w * t), -w**2 * np.sin(w * t)
+        tau = r.torque(r.chi, q, dq, ddq) + np.random.default_rng(1).normal(0, 0.1, q.shape)
+        rec = dynid.Recording(robot=r, t=t[:, 0], q=q, tau=tau)
+        print("ready", flush=True)
+        try:
+            dynid.diagnose([rec], implausible=True)
+        except KeyboardInterrupt:
+            print("interrupted", flush=True)
+            sys.exit(0)
+        print("done", flush=True)
+        """
+    )
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline().strip() == "ready"
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    sent = time.monotonic()
+    assert process.stdout.readline().strip() == "interrupted"
+    assert time.monotonic() - sent < 1
+    assert process.wait(timeout=30) == 0
+
+
+def test_other_threads_run_meanwhile(planar):
+    rec = [recorded(planar, seed=s, added=spring, duration=10)[0] for s in (1, 2, 3)]
+    counted, stop = [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    began = time.monotonic()
+    dynid.diagnose(rec)
+    took = time.monotonic() - began
+    stop.set()
+    thread.join()
+    assert counted[0] > 20 * min(took, 1), (counted, took)

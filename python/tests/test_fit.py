@@ -1,0 +1,121 @@
+"""Identification, and recordings."""
+
+import os
+import pickle
+import subprocess
+
+import numpy as np
+import pytest
+
+import dynid
+from conftest import motion, recorded
+
+
+def test_the_parameters_of_a_simulated_recording_are_found_within_their_uncertainty(planar):
+    rec, (q, dq, ddq) = recorded(planar)
+    fit = dynid.identify(rec)
+    assert fit.names == planar.names and fit.method == "idim-wls"
+    off = (fit.values - planar.chi) / fit.sigma
+    assert np.abs(off).max() < 5, dict(zip(fit.names, off))
+    assert fit.relative_error < 0.01
+    assert fit.covariance.shape == (13, 13)
+    np.testing.assert_allclose(np.sqrt(np.diag(fit.covariance)), fit.sigma, rtol=1e-9)
+    np.testing.assert_array_equal(fit.predict(q, dq, ddq), planar.torque(fit.values, q, dq, ddq))
+
+
+@pytest.mark.parametrize("method", ["idim-ols", "pim-wls", "idim-irls"])
+def test_every_kind_of_method_comes_to_the_same_parameters(planar, method):
+    rec, _ = recorded(planar, noise=0.002)
+    found = dynid.identify(rec, method=method)
+    assert found.method == method
+    np.testing.assert_allclose(found.values, planar.chi, atol=0.1)
+
+
+def test_several_recordings_are_one(planar):
+    parts = [recorded(planar, seed=s, duration=8)[0] for s in (1, 2)]
+    both = parts[0] + parts[1]
+    assert both.samples == sum(p.samples for p in parts) and len(both.motions) == 2
+    np.testing.assert_array_equal(dynid.identify(parts).values, dynid.identify(both).values)
+
+
+def test_the_numbers_are_those_of_the_command_line(planar, tmp_path):
+    """The same recording as files, read by dynid.open; and by the command line where it is built."""
+    rec, _ = recorded(planar)
+    ((t, q, tau),) = rec.arrays()
+    np.savetxt(tmp_path / "run.csv", np.column_stack([t, q, tau]), delimiter=",", header="t,q1,q2,tau1,tau2", comments="", fmt="%.17g")
+    manifest = tmp_path / "recording.yaml"
+    manifest.write_text(
+        "robot: planar_2r\ntime: {column: t, unit: s}\nposition: {columns: [q1, q2], unit: rad}\n"
+        "torque: {columns: [tau1, tau2], unit: N.m}\ntrajectories:\n  - {file: run.csv}\n"
+    )
+    opened = dynid.identify(dynid.open(manifest))
+    np.testing.assert_array_equal(opened.values, dynid.identify(rec).values)
+    binary = os.environ.get("DYNID")
+    if not binary:
+        pytest.skip("DYNID does not name the program: Python's numbers were not compared with the command line's")
+    out = tmp_path / "model.json"
+    subprocess.run([binary, "identify", str(manifest), "--out", str(out)], check=True, capture_output=True)
+    np.testing.assert_array_equal(dynid.load(out).values, opened.values)
+    np.testing.assert_array_equal(dynid.load(out).sigma, opened.sigma)
+
+
+def test_a_saved_model_is_read_back(planar, tmp_path):
+    fit = dynid.identify(recorded(planar)[0])
+    fit.save(tmp_path / "model.json")
+    for again in [dynid.load(tmp_path / "model.json"), pickle.loads(pickle.dumps(fit))]:
+        np.testing.assert_array_equal(again.values, fit.values)
+        np.testing.assert_array_equal(again.covariance, fit.covariance)
+        assert again.json() == fit.json()
+
+
+def test_recordings_pickle(planar):
+    rec, _ = recorded(planar, duration=8)
+    again = pickle.loads(pickle.dumps(rec))
+    for a, b in zip(again.arrays()[0], rec.arrays()[0]):
+        np.testing.assert_array_equal(a, b)
+    np.testing.assert_array_equal(dynid.identify(again).values, dynid.identify(rec).values)
+
+
+def test_a_frame_has_a_row_for_each_parameter(planar):
+    pytest.importorskip("pandas", reason="pandas is not installed: to_frame was not run")
+    fit = dynid.identify(recorded(planar)[0])
+    frame = fit.to_frame()
+    assert list(frame.index) == fit.names and list(frame.columns) == ["value", "sigma", "unit"]
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (dict(t=np.arange(99) / 100.0), "q has 100 rows, and t has 99 values"),
+        (dict(t=np.zeros(100)), "t[1] is 0, which does not come after t[0], 0"),
+        (dict(q=np.zeros((100, 3))), "q has the shape (100, 3), expected (N, 2)"),
+        (dict(tau=np.full((100, 2), np.nan)), "tau[0, 0] is NaN, expected a number"),
+    ],
+)
+def test_arrays_that_are_no_recording_are_refused(planar, change, words):
+    arrays = dict(t=np.arange(100) / 100.0, q=np.zeros((100, 2)), tau=np.zeros((100, 2))) | change
+    with pytest.raises(dynid.Error) as said:
+        dynid.Recording(robot=planar, **arrays)
+    assert words in str(said.value)
+
+
+def test_what_identification_refuses_is_an_error_with_its_words(planar, tx40):
+    rec, _ = recorded(planar)
+    with pytest.raises(dynid.Error, match="no method is called \"magic\": one of idim-ols, idim-wls"):
+        dynid.identify(rec, method="magic")
+    with pytest.raises(dynid.Error, match="expected a dynid.Recording or a list of them"):
+        dynid.identify(3)
+    with pytest.raises(dynid.Error, match="a recording of tx40, not of the planar_2r"):
+        t, q, *_ = motion(tx40, duration=2)
+        dynid.identify([rec, dynid.Recording(robot=tx40, t=t, q=q, tau=q)])
+    with pytest.raises(dynid.Error, match="there is no such file"):
+        dynid.open("nowhere.yaml")
+
+
+def test_a_recording_with_a_wrong_sign_is_refused_unless_asked_for(planar):
+    t, q, dq, ddq = motion(planar)
+    tau = planar.torque(planar.chi, q, dq, ddq) * [1, -1]
+    rec = dynid.Recording(robot=planar, t=t, q=q, tau=tau)
+    with pytest.raises(dynid.Error, match="the opposite sign of the torque of joint 2"):
+        dynid.identify(rec)
+    assert dynid.identify(rec, implausible=True).relative_error > 0
