@@ -62,7 +62,7 @@ pub fn standing_words(diagnosis: &Diagnosis) -> String {
 
 /// The confidence in words.
 pub fn confidence_words(confidence: f64) -> String {
-    format!("confidence {}", significant(confidence, 4))
+    format!("confidence {}", significant(confidence, 2))
 }
 
 /// Angles of the table that are hardly meant in rad.

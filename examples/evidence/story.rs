@@ -120,7 +120,7 @@ fn finding_words(text: &mut String, finding: &Finding) {
         "- **{title}.** {} ({}; confidence {}.)",
         finding.sentence,
         numbers.join(", "),
-        significant(finding.confidence, 4)
+        significant(finding.confidence, 2)
     );
     let others: Vec<String> = (finding.alternatives.iter().take(3))
         .map(|a| {

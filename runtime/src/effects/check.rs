@@ -91,7 +91,9 @@ impl EffectTerm {
     /// A law of a joint: its shape is one that the law offers, and its torque is finite.
     fn check_law(&self, law: &dyn JointLaw) -> Result<(), TermError> {
         let lengths: Vec<usize> = law.shapes(&WIDE).iter().map(Vec::len).collect();
-        self.check_shape(&lengths)?;
+        if self.shape.is_empty() || !law.repeats_its_shape() {
+            self.check_shape(&lengths)?;
+        }
         self.check_amplitudes(&[law.amplitudes(&self.shape)])?;
         let scale = self.scale.map_or(WIDE, Scale::from);
         let mut out = vec![0.0; self.amplitude.len()];

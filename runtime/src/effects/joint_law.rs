@@ -89,6 +89,11 @@ pub trait JointLaw: Sync {
         Vec::new()
     }
 
+    /// Whether a shape may have any number of numbers, each as those of [`Self::shapes`]: several waves are one law.
+    fn repeats_its_shape(&self) -> bool {
+        false
+    }
+
     /// Whether all joints may have it together with the same numbers: what it is about is the robot's, as the temperature
     /// of its drives.
     fn may_be_common(&self) -> bool {

@@ -65,6 +65,8 @@ fn model() -> Identified {
             term(EffectKind::Payload, Place::Link(2), &[], &[0.0; 10]),
             term(EffectKind::TorqueCrosstalk, Place::Hears(1, 0), &[], &[0.1]),
             term(EffectKind::TorqueConstantDrift, Place::Robot, &[3.0, 9.0], &[0.1]),
+            // Two waves are one law.
+            term(EffectKind::TorqueRipple, Place::Joint(1), &[404.0, 202.0], &[0.1, 0.2, 0.3, 0.4]),
         ],
         ..Identified::with_parameters(&robot, "crane", "diagnosis", rows, parameters)
     }
@@ -86,7 +88,7 @@ fn what_is_written_is_read_again() {
 #[test]
 fn no_field_that_cannot_be_is_believed() {
     let good: Value = serde_json::to_value(model()).unwrap();
-    let mutations: [(&str, Value, &str); 36] = [
+    let mutations: [(&str, Value, &str); 38] = [
         ("/effects/0/shape", json!([]), "effects[0].shape"),
         ("/effects/0/shape", json!([0.0]), "effects[0].shape"),
         ("/effects/0/shape", json!([0.1, 0.2]), "effects[0].shape"),
@@ -106,6 +108,8 @@ fn no_field_that_cannot_be_is_believed() {
         ("/effects/6/place", json!({"hears": [1, 1]}), "effects[6].place.hears"),
         ("/effects/6/place", json!({"joint": 0}), "effects[6].place"),
         ("/effects/7/shape", json!([0.0, 9.0]), "effects[7].shape"),
+        ("/effects/8/shape", json!([404.0]), "effects[8].amplitude"),
+        ("/effects/8/shape", json!([]), "effects[8].shape"),
         ("/effects/0/effect", json!("gremlins"), "gremlins"),
         ("/band", json!(0.0), "band"),
         ("/band", json!("wide"), "wide"),

@@ -64,6 +64,10 @@ impl JointLaw for TorqueRipple {
         2 * shape.len()
     }
 
+    fn repeats_its_shape(&self) -> bool {
+        true
+    }
+
     /// The orders of a motor turn that cogging, current offsets and wave generators have. A wave must pass four times
     /// in the travel, or it is a spring or gravity by another name.
     fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
