@@ -13,6 +13,11 @@ use crate::robots::{Dynamics, recursive, resolve};
 /// Longest saved model that is read, bytes.
 const LONGEST: u64 = 1 << 26;
 
+/// Whether a path is that of a saved model.
+pub fn is_model(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "json")
+}
+
 /// Reads a saved model, every field of it checked.
 ///
 /// # Errors

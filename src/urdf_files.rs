@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use dynid_codegen::robot::{RobotTable, parse};
+use dynid_runtime::model::Robot;
 use dynid_runtime::regular_file;
-use dynid_urdf::{ImportOptions, Imported, Mistake, Urdf};
+use dynid_urdf::{ImportOptions, Imported, Mistake, Template, Urdf};
 
 use crate::failure::{Failure, file_failure};
 use crate::output::warn;
@@ -31,6 +32,22 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
 /// [`Failure::Input`] with every mistake as `file:line:column: message`, one a line.
 pub fn parsed(path: &Path, bytes: &[u8], snap: f64) -> Result<Urdf, Failure> {
     dynid_urdf::read(bytes, snap).map_err(|mistakes| refused(path, &mistakes))
+}
+
+/// The joints of a robot in a URDF of it.
+///
+/// # Errors
+/// [`Failure::Input`] where it is a URDF of another robot, or one that cannot be imported.
+pub fn template<'a>(
+    path: &Path,
+    urdf: &'a Urdf,
+    robot: &Robot,
+    options: &ImportOptions,
+) -> Result<Template<'a>, Failure> {
+    Template::new(urdf, robot, options).map_err(|error| match error {
+        Ok(unlike) => Failure::Input(format!("{}: {unlike}", path.display())),
+        Err(mistakes) => refused(path, &mistakes),
+    })
 }
 
 /// The robot YAML of a URDF, and the table that it is read as. What is allowed in the URDF but probably not meant is told

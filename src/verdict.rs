@@ -77,14 +77,11 @@ pub fn check_mistakes(
         |fault: &ChannelFault| matches!(fault, ChannelFault::Slow { .. } | ChannelFault::TooFast { .. });
     check_channels(path, judged, |fault| !of_time(fault))?;
     let verdict = judge(judged, torques, estimated, models::all());
-    let is_known = |verdict: &Verdict| match verdict {
-        Verdict::Better { instead, .. } => matches!(instead.first(), Some((Instead::Offset { .. }, _))),
-        _ => false,
-    };
-    match better_words(robot, &verdict).filter(|_| !is_known(&verdict)) {
-        Some(words) => Err(refused(path, robot, &words)),
-        None => Ok(()),
+    if matches!(&verdict, Verdict::Better { instead, .. } if matches!(instead.first(), Some((Instead::Offset { .. }, _))))
+    {
+        return Ok(());
     }
+    better_words(robot, &verdict).map_or(Ok(()), |words| Err(refused(path, robot, &words)))
 }
 
 fn check_channels(

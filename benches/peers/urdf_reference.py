@@ -8,28 +8,9 @@ import json
 import os
 
 import numpy as np
-import pinocchio as pin
+from load import by_pinocchio
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "tests/urdf")
-
-
-def torques(path, states, names):
-    """Inverse dynamics, joints in the order of names."""
-    model = pin.buildModelFromUrdf(path)
-    data = model.createData()
-    joints = [model.joints[model.getJointId(name)] for name in names]
-    result = []
-    for q, dq, ddq in states:
-        full, v, a = pin.neutral(model), np.zeros(model.nv), np.zeros(model.nv)
-        for i, joint in enumerate(joints):
-            if joint.nq == 2:
-                full[joint.idx_q:joint.idx_q + 2] = np.cos(q[i]), np.sin(q[i])
-            else:
-                full[joint.idx_q] = q[i]
-            v[joint.idx_v], a[joint.idx_v] = dq[i], ddq[i]
-        tau = pin.rnea(model, data, full, v, a)
-        result.append([float(tau[joint.idx_v]) for joint in joints])
-    return result
 
 
 def main():
@@ -44,7 +25,7 @@ def main():
         names = [word.split('"')[0] for word in words if 'type="fixed"' not in word.split(">")[0]]
         states = [[list(random.uniform(-s, s, len(names)).round(3)) for s in (1.5, 2.0, 5.0)] for _ in range(5)]
         with open(path.replace(".urdf", ".json"), "w") as out:
-            json.dump({"joints": names, "states": states, "torques": torques(path, states, names)}, out, indent=1)
+            json.dump({"joints": names, "states": states, "torques": by_pinocchio(path, names, states)}, out, indent=1)
             out.write("\n")
 
 

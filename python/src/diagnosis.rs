@@ -1,18 +1,19 @@
 //! Diagnoses: which physics is missing.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use dynid::arguments::DiagnosisOptions;
 use dynid::commands::diagnose::compare::{Test, fitted, tested};
-use dynid::commands::diagnose::{diagnosis_failure, for_programs, mistakes, of_the_same_robot};
-use dynid::errors::prediction_failure;
+use dynid::commands::diagnose::{
+    confirmation_failure, diagnosis_failure, for_programs, mistakes, of_the_same_robot,
+};
 use dynid::failure::Failure;
 use dynid::output::write;
 use dynid::pages::diagnosis::{Extras, page, summary};
 use dynid::recorded::{Measured, left_out_words};
 use dynid::words::joint_number;
-use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
+use dynid_runtime::confirmation::diagnose_and_confirm;
 use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings};
 use dynid_runtime::recording::Trajectory;
 use pyo3::prelude::*;
@@ -39,7 +40,8 @@ impl PyFinding {
         self.0.joints.clone()
     }
 
-    /// One minus the probability that held-out motion improves so much by chance, all tries counted.
+    /// One minus the probability that any of all that was tried gets as far by chance, times how often what is no accident
+    /// has the right name.
     #[getter]
     fn confidence(&self) -> f64 {
         self.0.confidence
@@ -206,7 +208,7 @@ impl Work {
         let diagnosis = match &test {
             Some((test, at)) => {
                 diagnose_and_confirm(model, trajectories, baseline, &test.prepared, &settings, watch)
-                    .map_err(|error| confirmation_failure(&path, at, &error))?
+                    .map_err(|error| confirmation_failure(&path, Some(at), &error))?
             }
             None => dynid_runtime::diagnosis::diagnose(model, trajectories, baseline, &settings, watch)
                 .map_err(|error| diagnosis_failure(&path, &error))?,
@@ -218,13 +220,5 @@ impl Work {
             joints: (0..model.robot().joints()).map(|j| joint_number(model.robot(), j)).collect(),
         };
         Ok(Diagnosed { diagnosis, extras })
-    }
-}
-
-fn confirmation_failure(recording: &Path, test: &Path, error: &ConfirmationError) -> Failure {
-    match error {
-        ConfirmationError::Test(error) => prediction_failure(test, error),
-        ConfirmationError::Diagnosis(error) => diagnosis_failure(recording, error),
-        error => Failure::Data(format!("{}: {error}", recording.display())),
     }
 }

@@ -104,11 +104,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => diagnose(model, &measured.trajectories, &baseline, &settings, &bar).map_err(Into::into),
     };
     drop(bar);
-    let failure = |error: ConfirmationError| match (&error, &arguments.test) {
-        (ConfirmationError::Test(error), Some(path)) => prediction_failure(path, error),
-        (ConfirmationError::Diagnosis(error), _) => diagnosis_failure(&source.recording, error),
-        (error, _) => Failure::Data(format!("{}: {error}", source.recording.display())),
-    };
+    let failure =
+        |error: ConfirmationError| confirmation_failure(&source.recording, arguments.test.as_deref(), &error);
     let robot = model.robot();
     let mut diagnosis =
         outcome.map_err(|error| and_of_speeds(failure(error), &speed_words(&speeds, robot)))?;
@@ -203,6 +200,15 @@ fn contradicting(measured: &Measured, options: &DiagnosisOptions) -> Vec<SpeedFa
     let chosen = || choose_bandwidth(&measured.trajectories).ok().map(|chosen| chosen.cutoff);
     let cutoff = options.cutoff.or_else(chosen);
     contradicting_speeds(&measured.trajectories, &Preparation { cutoff, ..Preparation::default() })
+}
+
+/// What a diagnosis with a test recording refuses, as the end of a command.
+pub fn confirmation_failure(recording: &Path, test: Option<&Path>, error: &ConfirmationError) -> Failure {
+    match (error, test) {
+        (ConfirmationError::Test(error), Some(path)) => prediction_failure(path, error),
+        (ConfirmationError::Diagnosis(error), _) => diagnosis_failure(recording, error),
+        (error, _) => Failure::Data(format!("{}: {error}", recording.display())),
+    }
 }
 
 /// What a diagnosis refuses, as the end of a command.

@@ -134,6 +134,16 @@ pub fn bias(g: &mut Graph, geometry: &Geometry, set: &BaseSet) -> Vec<Expr> {
         let moment = vector::add(g, euler, gyroscopic);
         wrenches.push((force, vector::add(g, moment, arm)));
     }
+    carried_inwards(g, geometry, wrenches)
+}
+
+/// Joint torques of the wrenches that the bodies need: forces and moments at the origins of the frames, which are carried
+/// from the tips to the base.
+pub(super) fn carried_inwards(
+    g: &mut Graph,
+    geometry: &Geometry,
+    mut wrenches: Vec<(Vector, Vector)>,
+) -> Vec<Expr> {
     let mut torques = vec![Graph::ZERO; geometry.joint_frames.len()];
     for (index, link) in geometry.links.iter().enumerate().rev() {
         let (force, moment) = wrenches[index];

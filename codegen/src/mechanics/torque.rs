@@ -7,14 +7,14 @@
 
 use super::drive::DriveColumns;
 use super::error::ModelError;
-use super::forward::{Body, bodies};
+use super::forward::{Body, bodies, carried_inwards};
 use super::geometry::Geometry;
 use super::motion::{FrameMotion, frame_motions};
 use super::vector::{self, Vector};
 use crate::base::BaseSet;
 use crate::robot::RobotTable;
 use crate::symbolic::{Expr, Graph, OperationCounts, Symbol};
-use dynid_description::{JointKind, ParameterKind};
+use dynid_description::ParameterKind;
 
 /// The joint torques as one function of parameters and motion.
 #[derive(Debug, Clone)]
@@ -77,26 +77,8 @@ impl TorqueEquations {
 fn rigid_torques(g: &mut Graph, geometry: &Geometry, set: &BaseSet) -> Vec<Expr> {
     let motions = frame_motions(g, geometry, true);
     let bodies = bodies(g, geometry.links.len(), set);
-    let mut wrenches: Vec<(Vector, Vector)> =
-        motions.iter().zip(&bodies).map(|(motion, body)| wrench(g, motion, body)).collect();
-    let mut torques = vec![Graph::ZERO; geometry.joint_frames.len()];
-    for (index, link) in geometry.links.iter().enumerate().rev() {
-        let (force, moment) = wrenches[index];
-        vector::name(g, force, &format!("f{}_", link.j));
-        vector::name(g, moment, &format!("m{}_", link.j));
-        if let Some(joint) = link.joint {
-            torques[joint] = if link.kind == JointKind::Prismatic { force[2] } else { moment[2] };
-        }
-        if let Some(parent) = link.parent {
-            let force = link.from_parent.outward(g, force);
-            let moment = link.from_parent.outward(g, moment);
-            let lever = vector::cross(g, link.position, force);
-            let moment = vector::add(g, moment, lever);
-            let outer = wrenches[parent];
-            wrenches[parent] = (vector::add(g, outer.0, force), vector::add(g, outer.1, moment));
-        }
-    }
-    torques
+    let wrenches = motions.iter().zip(&bodies).map(|(motion, body)| wrench(g, motion, body)).collect();
+    carried_inwards(g, geometry, wrenches)
 }
 
 /// Force, and moment at the origin of the frame, that the motion of one body needs: f = M a + U MS and

@@ -11,7 +11,7 @@ use super::Arguments;
 use crate::failure::Failure;
 use crate::near_bodies::NearBodies;
 use crate::robots::resolve;
-use crate::saved::{own_dynamics, read_model};
+use crate::saved::{is_model, own_dynamics, read_model};
 use crate::urdf_files;
 
 /// A robot with standard parameters that bodies can have.
@@ -46,10 +46,7 @@ impl TemplateFile {
     /// The joints of a robot in it.
     pub fn of<'a>(&'a self, robot: &Robot, arguments: &Arguments) -> Result<Template<'a>, Failure> {
         let path = arguments.template.as_deref().unwrap_or(Path::new(""));
-        Template::new(&self.urdf, robot, &arguments.options.import()?).map_err(|error| match error {
-            Ok(unlike) => Failure::Input(format!("{}: {unlike}", path.display())),
-            Err(mistakes) => urdf_files::refused(path, &mistakes),
-        })
+        urdf_files::template(path, &self.urdf, robot, &arguments.options.import()?)
     }
 }
 
@@ -57,7 +54,7 @@ impl Fitted {
     /// The robot that was asked for, with the bodies nearest to the prior where it is a model.
     pub fn new(arguments: &Arguments, template: Option<&TemplateFile>) -> Result<Self, Failure> {
         let path = Path::new(&arguments.what);
-        if path.extension().is_none_or(|extension| extension != "json") {
+        if !is_model(path) {
             let robot = resolve(&arguments.what, None)?.model().robot().clone();
             let Some(nominal) = &robot.nominal else {
                 return Err(Failure::Input(format!(

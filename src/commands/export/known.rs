@@ -11,7 +11,7 @@ use super::Arguments;
 use crate::failure::Failure;
 use crate::output::{self, make_folder, print, warn};
 use crate::robots::resolve;
-use crate::saved::{known_parameters, own_dynamics, read_model};
+use crate::saved::{is_model, known_parameters, own_dynamics, read_model};
 
 /// A robot, and what is known of it.
 pub(super) struct Exported {
@@ -22,10 +22,10 @@ pub(super) struct Exported {
 impl Exported {
     /// By the name of a robot, the path of its YAML, or the path of a model.
     pub fn find(what: &str) -> Result<Self, Failure> {
-        if !what.ends_with(".json") {
+        let path = Path::new(what);
+        if !is_model(path) {
             return Ok(Exported { robot: resolve(what, None)?.model().robot().clone(), known: None });
         }
-        let path = Path::new(what);
         let identified = read_model(path)?;
         let robot = own_dynamics(&identified, path)?.model().robot().clone();
         let chi = known_parameters(&identified, &robot, path)?;

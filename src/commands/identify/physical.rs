@@ -7,13 +7,13 @@ use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{Identified, difference};
 use dynid_runtime::prediction::observed_errors;
 use dynid_runtime::report::percent;
-use dynid_urdf::{ImportOptions, Template};
+use dynid_urdf::ImportOptions;
 
 use crate::failure::Failure;
 use crate::near_bodies::NearBodies;
 use crate::robots::resolve;
-use crate::saved::read_model;
-use crate::urdf_files::{self, is_urdf, refused};
+use crate::saved::{is_model, read_model};
+use crate::urdf_files::{self, is_urdf};
 
 /// Makes a model one of bodies: its base parameters become theirs, its table's nominal values their standard parameters.
 /// Returns what to say of it. `prior` is a URDF, a robot YAML or a model; the robot's nominal values where it is not given.
@@ -30,10 +30,7 @@ pub(super) fn make_physical(
         Some(path) if is_urdf(path) => {
             let options = ImportOptions::default();
             let urdf = urdf_files::parsed(path, &urdf_files::bytes(path)?, options.snap)?;
-            let template = Template::new(&urdf, robot, &options).map_err(|error| match error {
-                Ok(unlike) => Failure::Input(format!("{}: {unlike}", path.display())),
-                Err(mistakes) => refused(path, &mistakes),
-            })?;
+            let template = urdf_files::template(path, &urdf, robot, &options)?;
             NearBodies::new(identified, robot, nominal(robot).as_deref(), Some(&template))
         }
         Some(path) => NearBodies::new(identified, robot, Some(&nominal_of(path, robot)?), None),
@@ -74,7 +71,7 @@ fn nominal(robot: &Robot) -> Option<Vec<f64>> {
 /// Nominal standard parameters of a robot YAML or of a model's table.
 fn nominal_of(path: &Path, robot: &Robot) -> Result<Vec<f64>, Failure> {
     let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
-    let other = if path.extension().is_some_and(|extension| extension == "json") {
+    let other = if is_model(path) {
         read_model(path)?.table.ok_or_else(|| wrong("a model without its table is no prior".to_owned()))?
     } else {
         resolve(&path.display().to_string(), None)?.model().robot().clone()

@@ -10,7 +10,7 @@ use dynid_runtime::simulation::{Plant, Residue, SimulationError, World, check_st
 use super::Arguments;
 use super::elastic::elastic_joint;
 use crate::failure::Failure;
-use crate::saved::{known_parameters, read_model};
+use crate::saved::{is_model, known_parameters, read_model};
 
 /// The robot that is simulated.
 pub(super) enum Parameters {
@@ -47,7 +47,7 @@ pub(super) fn missing(robot: &Robot, saved: bool, followed: bool) -> Option<Stri
 /// The model that a name is the file of; `None` where it is none.
 pub(super) fn saved_model(name: &str) -> Result<Option<Identified>, Failure> {
     let path = Path::new(name);
-    if path.extension().is_none_or(|extension| extension != "json") {
+    if !is_model(path) {
         return Ok(None);
     }
     read_model(path).map(Some)

@@ -117,8 +117,9 @@ struct LawsAtRest {
 fn laws_at_rest(context: &Context<'_>) -> LawsAtRest {
     let mut friction = vec![0.0_f64; context.model.robot().joints()];
     let toward = |speed: f64| {
+        let reference = context.reference.as_ref()?;
         let at: Vec<Signals> = context.signals.iter().map(|s| resting(s, s.q.clone(), speed)).collect();
-        context.reference.as_ref()?.torques(context.model, &at).ok()
+        reference.torques(context.model, &at).ok()
     };
     let (Some(mut torque), Some(back)) = (toward(SLOW), toward(-SLOW)) else {
         return LawsAtRest { torque: Vec::new(), friction };

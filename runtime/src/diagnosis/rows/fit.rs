@@ -138,9 +138,9 @@ impl Fit {
 
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].
     pub fn known_beforehand(&self, design: &Design) -> f64 {
+        let Some(prior) = &design.prior else { return 0.0 };
         let inverse = self.factor.inverse();
-        let covariance = |i: usize, k: usize| inverse[(i, k)] * self.scale[i] * self.scale[k];
-        design.prior.as_ref().map_or(0.0, |prior| prior.parameters(covariance))
+        prior.parameters(|i, k| inverse[(i, k)] * self.scale[i] * self.scale[k])
     }
 
     /// Columns that the segments do not determine: the part that the others do not make is below `least` of their
