@@ -60,7 +60,7 @@ pub const TABLE: [Hiding; 28] = [
             let level = m * joint.friction;
             let p = if s.chance[0] < 0.7 { s.between(1, 0.35, 0.7) } else { s.between(1, 1.6, 2.4) };
             world.put(&joint.term(s, vec![p], vec![level]));
-            Ok(vec![("f", level), ("p", p)])
+            Ok(vec![("f", level), ("v0", joint.speed), ("p", p)])
         },
     ),
     law(EffectKind::LoadDependentFriction, "mu", 0.05, 0.3, |world, model, s, m| {

@@ -139,8 +139,8 @@ pub fn length(
     world.change_table(|robot| {
         let frame = &mut robot.frames.to_mut()[length.frame];
         let value = if length.is_d { &mut frame.d } else { &mut frame.r };
-        error = -*value * magnitude;
-        *value += *value * magnitude;
+        error = *value * magnitude;
+        *value += error;
     })?;
     Ok(vec![(if length.is_d { "error_d" } else { "error_r" }, error)])
 }

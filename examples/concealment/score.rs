@@ -145,7 +145,19 @@ fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
 fn deviations(finding: &Finding, truth: &Hidden) -> Vec<(String, String, f64)> {
     let own = |(name, value): &(&'static str, f64)| {
         let told = finding.parameters.get(*name).filter(|p| p.sigma > 0.0 && p.sigma.is_finite())?;
+        let value = value * as_told(finding, truth, name);
         Some((finding.effect.clone(), (*name).to_owned(), (told.value - value) / told.sigma))
     };
     truth.numbers.iter().filter_map(own).collect()
+}
+
+/// What a hidden number is multiplied by to mean what the finding's means: a friction f at a speed v0 that grows with
+/// the power p of the speed is told at the finding's own v0.
+fn as_told(finding: &Finding, truth: &Hidden, name: &str) -> f64 {
+    let drawn =
+        |wanted: &str| truth.numbers.iter().find(|(name, _)| *name == wanted).map(|(_, value)| *value);
+    match (name, drawn("v0"), drawn("p"), finding.parameters.get("v0")) {
+        ("f", Some(speed), Some(power), Some(told)) => (told.value / speed).powf(power),
+        _ => 1.0,
+    }
 }

@@ -1,13 +1,18 @@
 //! Pushes from outside in the course of a diagnosis: found beside the standard model, set aside, looked at again beside the
 //! laws that were found.
 
+use super::candidates::trial::dense_columns;
 use super::contact::felt::Around;
+use super::contact::moving::{self, Left};
 use super::contact::search::{self as contact_search, Contacts};
-use super::contact::{moving, standing};
+use super::contact::standing;
 use super::error::DiagnosisError;
 use super::preparation::Prepared;
+use super::rows::design::Design;
 use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
+use super::search::extended_model::ExtendedModel;
 use super::search::state::Search;
+use super::search::tangents::tangents;
 use super::settings::Settings;
 use crate::model::Model;
 
@@ -94,13 +99,28 @@ fn pushed_in_motion(
     let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
     let context = &search.model.context;
     let level = if search.model.terms.is_empty() { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
-    let look = moving::look(context, &outside, &search.model.residual_on(&outside), level);
+    let ringing = ringing(&search.model, &outside);
+    let left = Left { residual: &search.model.residual_on(&outside), beside: &ringing };
+    let look = moving::look(context, &outside, &left, level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
     let design = all.as_ref().unwrap_or(&outside);
     let residual = search.model.residual_on(design);
     let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
     let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
     (confirmed, moving::seen(&around, &look))
+}
+
+/// What transmissions with spring or play do on the rows of a design, and what an error of their numbers would: they ring
+/// in bursts that all joints feel through the inertia of the links, and no number of them is known so well that nothing
+/// of that is left.
+fn ringing(model: &ExtendedModel<'_>, design: &Design) -> Vec<Vec<f64>> {
+    let mut columns = Vec::new();
+    for term in model.terms.iter().filter(|t| t.effect.form().is_fast_only()) {
+        let (effect, place) = (term.effect, term.place);
+        columns.extend(dense_columns(&model.context, design, effect, place, &term.shape, model.change));
+        columns.extend(tangents(model, design, term, &[]).into_iter().map(|(_, slope)| slope));
+    }
+    columns
 }
 
 /// Whether contacts still stand out of what the model with its effects leaves.

@@ -68,9 +68,6 @@ pub(super) const PARAMETERS_PER_UNDETERMINED: usize = 4;
 pub(super) const LEAST_EXPLAINED_BY_MODEL: f64 = 40.0;
 /// Part of the samples of a joint that its top speed is not below: single spikes do not set it. Statistics.
 pub(super) const TOP_SPEED_PERCENT: usize = 98;
-/// Cut-off of the motion that drives compliant links, Hz: below the ringing itself. Mechanics; joint_elasticity and
-/// backlash in `docs/concealment.md`.
-pub(super) const DRIVING_BAND: f64 = 15.0;
 /// Least inertia behind a transmission, as a part of that with the rotor. Mechanics: no division by zero.
 pub(super) const LEAST_LINK_INERTIA: f64 = 1e-3;
 /// Rounds in which a skew is taken out: the second takes what linearisation left of the first. Mechanics.
@@ -411,6 +408,10 @@ pub(super) const SCAN_NORMAL_SCALE: f64 = 2.0 / 1.1;
 /// Rows of a joint this close to its own reversals are not looked at, s. Mechanics: presliding, play and the ringing of a
 /// gear die away within two periods of 20 Hz.
 pub(super) const REVERSAL_LEFT_OUT: f64 = 0.1;
+/// Nor are those at which it creeps, as a fraction of its top speed. Mechanics: friction at such speeds (Stribeck's, what
+/// sticks and comes loose) is not that of the rest of the motion, and few rows show it: what one slow passage leaves is no
+/// push.
+pub(super) const CREEPING: f64 = 0.05;
 /// A joint feels a push that was found on another one from this many standard deviations of its mean on. Statistics: one
 /// in four hundred by accident.
 pub(super) const FELT: f64 = 3.0;

@@ -60,6 +60,13 @@ pub trait Compliance: Sync {
     /// Shapes to try: natural frequency Hz, damping ratio, rotor fraction, play as a fraction of the travel.
     fn shapes(&self) -> Vec<[f64; 4]>;
 
+    /// Places in the shape of what rows do not show that keep nothing above `highest`, Hz: where the joint rings above it,
+    /// frequency and damping of the ringing, whatever fits best. How far the link lags behind below it, or falls
+    /// through its play, still shows.
+    fn unseen(&self, shape: &[f64], highest: f64) -> std::ops::Range<usize> {
+        if shape.first().is_some_and(|frequency| *frequency > highest) { 0..2 } else { 0..0 }
+    }
+
     /// The quantities a person knows: name, value, unit.
     fn describe(&self, transmission: &Transmission) -> Vec<(&'static str, f64, &'static str)>;
 }

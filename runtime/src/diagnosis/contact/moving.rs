@@ -8,7 +8,9 @@ use crate::diagnosis::contact::windows::duration;
 use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{CONTACT_MARGIN, LARGEST_PUSHED_FRACTION, REVERSAL_LEFT_OUT, SETTLING};
+use crate::diagnosis::rules::{
+    CONTACT_MARGIN, CREEPING, LARGEST_PUSHED_FRACTION, REVERSAL_LEFT_OUT, SETTLING,
+};
 use crate::effects::ContactForce;
 
 /// What a look at a residual finds.
@@ -20,43 +22,56 @@ pub(in crate::diagnosis) struct Look {
     level: f64,
 }
 
-/// Looks for pushes in what a model leaves of the torques on the rows of a design that known contacts are left out of.
+/// What a model leaves of the torques.
+pub(in crate::diagnosis) struct Left<'a> {
+    /// Of every row.
+    pub residual: &'a [f64],
+    /// Columns on the same rows of which every joint may have its own part: what is like them is no push.
+    pub beside: &'a [Vec<f64>],
+}
+
+/// Looks for pushes in what a model leaves on the rows of a design that known contacts are left out of.
 pub(in crate::diagnosis) fn look(
     context: &Context<'_>,
     design: &Design,
-    residual: &[f64],
+    left: &Left<'_>,
     level: f64,
 ) -> Look {
     let signals = context.signals;
     let first = signals.iter().position(|s| s.is_target).unwrap_or(0);
     let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
-    let tracks: Vec<Track> =
-        (0..design.joints).map(|joint| track(context, design, residual, joint)).collect();
+    let tracks: Vec<Track> = (0..design.joints).map(|joint| track(context, design, left, joint)).collect();
     let (pushed, noise) = scan(&tracks, step, level);
     Look { groups: together(pushed, step), noise, level }
 }
 
-/// The rows of a joint, but for those near its own reversals and near the beginning and the end of a motion: what friction,
-/// play and flexible gears do there comes and goes as a push does.
-fn track(context: &Context<'_>, design: &Design, residual: &[f64], joint: usize) -> Track {
+/// The rows of a joint, but for those at which it creeps or is near its own reversals, and those near the beginning and the
+/// end of a motion: what friction, play and flexible gears do there comes and goes as a push does.
+fn track(context: &Context<'_>, design: &Design, left: &Left<'_>, joint: usize) -> Track {
     let signals = context.signals;
     let places = Places::of(design, joint);
-    let mut at = Vec::new();
+    let mut kept: Vec<usize> = Vec::new();
+    let creeping = CREEPING * context.scales[joint].speed;
     let mut of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
         let s = &signals[k];
         let reach = (REVERSAL_LEFT_OUT * s.rate) as usize;
         let mut near = near_reversals(&s.dq[joint], reach);
+        near.iter_mut().zip(&s.dq[joint]).for_each(|(near, dq)| *near |= dq.abs() < creeping);
         let settling = ((SETTLING * s.rate) as usize + s.edge_samples).min(near.len());
         near[..settling].fill(true);
         let end = near.len() - settling;
         near[end..].fill(true);
         let rows = rows.iter().filter(|(_, r)| !near[design.rows[*r].centre]);
         let rows: Vec<(usize, usize)> = rows.copied().collect();
-        at.extend(rows.iter().map(|&(_, r)| (k, design.rows[r].centre)));
-        (s.is_target, rows.iter().map(|&(place, r)| (place, residual[r])).collect())
+        kept.extend(rows.iter().map(|&(_, r)| r));
+        (s.is_target, rows.iter().map(|&(place, r)| (place, left.residual[r])).collect())
     };
     let motions = places.motions().iter().enumerate().map(&mut of_motion).collect();
-    Track { joint, motions, beside: curves(context, joint, &at) }
+    let at: Vec<(usize, usize)> =
+        kept.iter().map(|&r| (design.rows[r].signal, design.rows[r].centre)).collect();
+    let mut beside = curves(context, joint, &at);
+    beside.extend(left.beside.iter().map(|column| kept.iter().map(|&r| column[r]).collect()));
+    Track { joint, motions, beside }
 }
 
 /// Whether a speed changes its sign within so many samples of each.

@@ -49,8 +49,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     let regression = model.regression(window);
     let range = regression.term_columns[k].clone();
     let amplitude: Vec<f64> = range.map(|c| regression.fit.chi[c]).collect();
-    let mut deviations = uncertainty(model, k, &amplitude)?;
-    deviations.0.iter_mut().chain(&mut deviations.1).for_each(|s| *s *= accepted.inflation);
+    let deviations = uncertainty(model, k, &amplitude)?;
     let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
     let reduced = model.without(k)?;
     let after = regression.held_out(false)?.error_on(&accepted.shows_on);

@@ -1,19 +1,20 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
-use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, QUANTITY_STEP, SHAPE_STEP};
+use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, LONGEST_BLOCK, QUANTITY_STEP};
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::tangents::tangents;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter, Step};
+use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter};
 use crate::model::JointIndex;
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
-/// derivative of the columns (variable projection, Golub and Pereyra 1973).
+/// derivative of the columns (variable projection, Golub and Pereyra 1973). Each is the larger of two: with the noise
+/// that the test of the term allowed for, and as blocks of motion differ.
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit with these derivatives.
@@ -25,45 +26,32 @@ pub(in crate::diagnosis) fn uncertainty(
     let term = &model.terms[k];
     let side = model.regression(term.effect.properties().window);
     let mut design = side.design.clone();
-    let dense = |shape: &[f64]| {
-        dense_columns(&model.context, &side.design, term.effect, term.place, shape, model.change)
-    };
     let start = design.columns.len();
     let mut varied = Vec::new();
-    let form = term.effect.form();
-    let steps = form.shape_search(term.place, &model.context.scales, &[]).steps;
-    // What the search does not vary chooses between forms of the law, and is no estimate. The shape of a sensitivity is
-    // its amplitude once more.
-    let estimated =
-        |i: usize| !form.shape_is_amplitude() && steps.get(i).is_some_and(|step| !matches!(step, Step::Keep));
-    for (i, &value) in term.shape.iter().enumerate().filter(|(i, _)| estimated(*i)) {
-        let step = SHAPE_STEP * value.abs().max(1e-6);
-        let moved = |s: f64| {
-            let mut shape = term.shape.clone();
-            shape[i] += s * step;
-            dense(&shape)
-        };
-        let (plus, minus) = (moved(1.0), moved(-1.0));
-        let weights: Vec<f64> = if term.fixed.is_some() { vec![1.0] } else { amplitude.to_vec() };
-        let mut slope = vec![0.0; design.rows.len()];
-        for ((p, m), a) in plus.iter().zip(&minus).zip(&weights) {
-            for ((s, p), m) in slope.iter_mut().zip(p).zip(m) {
-                *s += a * (p - m) / (2.0 * step);
-            }
-        }
-        if slope.iter().any(|x| *x != 0.0) {
-            design.push(slope);
-            varied.push(i);
-        }
+    for (i, slope) in tangents(model, &side.design, term, amplitude) {
+        design.push(slope);
+        varied.push(i);
     }
     design.refresh_from(start);
     let fit = Fit::whole(&design, &side.sigma)?;
     let variances = fit.variances();
-    let sd = |c: usize| variances[c].max(0.0).sqrt();
+    let residual = fit.residual(&design);
+    let rows = design.rows_within(LONGEST_BLOCK);
+    // White noise is what one already allows for; noise that lasts and what the law lacks show in blocks.
+    let sd = |c: usize| {
+        let white = term.inflation * term.inflation * variances[c];
+        white.max(fit.variance_by_blocks(&design, &residual, c, rows)).max(0.0).sqrt()
+    };
     let amplitudes = side.term_columns[k].clone().map(sd).collect();
     let mut shapes = vec![0.0; term.shape.len()];
     for (at, &i) in varied.iter().enumerate() {
         shapes[i] = sd(start + at).min(LARGEST_SHAPE_SIGMA * term.shape[i].abs());
+    }
+    if let Form::Compliance(law) = term.effect.form() {
+        let highest = 0.5 / design.step;
+        for i in law.unseen(&term.shape, highest) {
+            shapes[i] = LARGEST_SHAPE_SIGMA * term.shape[i].abs();
+        }
     }
     Ok((amplitudes, shapes))
 }

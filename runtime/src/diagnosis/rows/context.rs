@@ -5,23 +5,21 @@ use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rows::user::user_columns;
-use crate::diagnosis::rules::{DRIVING_BAND, LEAST_LINK_INERTIA, RATE_PER_CUTOFF};
+use crate::diagnosis::rules::LEAST_LINK_INERTIA;
 use crate::effects::{
     At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
     Transmission, body_columns, deflection, derivable, derivative,
 };
 use crate::model::{Link, Model, RecursiveModel};
-use crate::signal::{Butterworth, Stencil, central_difference};
 use std::sync::{Arc, OnceLock};
 
 /// One column in one motion at the full rate: the joints that it acts on, with their torques.
 pub(in crate::diagnosis) type Series = Vec<(usize, Vec<f64>)>;
 
-/// What links ask for through compliant transmissions, from positions below the band of the ringing itself.
+/// What links ask for through compliant transmissions.
 struct Links {
     /// Rigid torque, `[j][t]`.
     load: Vec<Vec<f64>>,
-    ddq: Vec<Vec<f64>>,
     /// Mass matrix, `[i * n + j][t]`.
     mass: Vec<Vec<f64>>,
 }
@@ -264,7 +262,8 @@ impl<'a> Context<'a> {
         let own = &links.mass[j * n + j];
         let inertia: Vec<f64> =
             own.iter().map(|m| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9)).collect();
-        let load: Vec<f64> = links.load[j].iter().zip(&links.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
+        let load: Vec<f64> =
+            links.load[j].iter().zip(&self.signals[signal].ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
         let mut transmitted_torque = vec![0.0; load.len()];
         deflection(&load, &inertia, self.signals[signal].rate, &t, &mut transmitted_torque);
         (0..n)
@@ -290,30 +289,17 @@ impl<'a> Context<'a> {
         self.links[signal].get_or_init(|| {
             let s = &self.signals[signal];
             let n = s.q.len();
-            let filter = Butterworth::low_pass(4, DRIVING_BAND.min(s.rate / RATE_PER_CUTOFF), s.rate).ok();
-            let q: Vec<Vec<f64>> =
-                s.q.iter()
-                    .map(|x| filter.as_ref().and_then(|f| f.zero_phase(x).ok()).unwrap_or_else(|| x.clone()))
-                    .collect();
-            let derivative = |x: &Vec<f64>| {
-                let mut out = vec![0.0; x.len()];
-                central_difference(x, s.rate, Stencil::Seven, &mut out);
-                out
-            };
-            let dq: Vec<Vec<f64>> = q.iter().map(derivative).collect();
-            let ddq: Vec<Vec<f64>> = dq.iter().map(derivative).collect();
             let mut links =
-                Links { load: vec![vec![0.0; s.len()]; n], ddq, mass: vec![vec![0.0; s.len()]; n * n] };
+                Links { load: vec![vec![0.0; s.len()]; n], mass: vec![vec![0.0; s.len()]; n * n] };
             let (mut a, mut b, mut mass, mut bias) =
                 (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
             for t in 0..s.len() {
                 for j in 0..n {
-                    (a[j], b[j]) = (q[j][t], dq[j][t]);
+                    (a[j], b[j]) = (s.q[j][t], s.dq[j][t]);
                 }
                 self.model.mass_and_bias(&self.chi, &a, &b, &mut mass, &mut bias);
                 for i in 0..n {
-                    links.load[i][t] =
-                        bias[i] + (0..n).map(|k| mass[i * n + k] * links.ddq[k][t]).sum::<f64>();
+                    links.load[i][t] = bias[i] + (0..n).map(|k| mass[i * n + k] * s.ddq[k][t]).sum::<f64>();
                     for k in 0..n {
                         links.mass[i * n + k][t] = mass[i * n + k];
                     }

@@ -5,6 +5,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::Gram;
 use crate::diagnosis::rules::{LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A fit of the columns of a design on some of its segments, with weights 1 / sigma² per joint.
@@ -134,6 +135,24 @@ impl Fit {
     pub fn variances(&self) -> DVector<f64> {
         let inverse = self.factor.inverse();
         DVector::from_fn(self.chi.len(), |k, _| inverse[(k, k)] * self.scale[k] * self.scale[k])
+    }
+
+    /// Variance of the parameter of a column where blocks of motion, of `rows` rows, err independently of each other, each
+    /// by as much as its residual shows: for noise that lasts, and for what the model lacks (White 1980; Liang and Zeger
+    /// 1986).
+    pub fn variance_by_blocks(&self, design: &Design, residual: &[f64], column: usize, rows: usize) -> f64 {
+        let unit = DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 });
+        let weights = self.solve(&unit);
+        let mut blocks: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        for (j, sigma) in self.sigma.iter().enumerate() {
+            for row in design.of_joint(j) {
+                let influence: f64 = design.columns.iter().zip(weights.iter()).map(|(c, w)| c[row] * w).sum();
+                *blocks.entry(design.block(design.rows[row], rows)).or_default() +=
+                    influence * residual[row] / (sigma * sigma);
+            }
+        }
+        let count = blocks.len().max(2) as f64;
+        blocks.values().map(|b| b * b).sum::<f64>() * count / (count - 1.0)
     }
 
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].

@@ -17,5 +17,6 @@ pub(in crate::diagnosis) mod run;
 pub(in crate::diagnosis) mod select;
 pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod state;
+pub(in crate::diagnosis) mod tangents;
 pub(in crate::diagnosis) mod term;
 mod user_law;

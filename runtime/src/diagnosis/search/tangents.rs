@@ -1,0 +1,44 @@
+//! How the torque of a law moves with the numbers of its shape.
+
+use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::SHAPE_STEP;
+use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::term::Accepted;
+use crate::effects::Step;
+
+/// Derivatives of a term's torque on the rows of a design by the numbers of its shape that are estimated, by central
+/// differences; each with its place in the shape. What changes nothing is left out.
+pub(in crate::diagnosis) fn tangents(
+    model: &ExtendedModel<'_>,
+    design: &Design,
+    term: &Accepted,
+    amplitude: &[f64],
+) -> Vec<(usize, Vec<f64>)> {
+    let dense =
+        |shape: &[f64]| dense_columns(&model.context, design, term.effect, term.place, shape, model.change);
+    let form = term.effect.form();
+    let steps = form.shape_search(term.place, &model.context.scales, &[]).steps;
+    // What the search does not vary chooses between forms of the law, and is no estimate. The shape of a sensitivity is
+    // its amplitude once more.
+    let estimated =
+        |i: usize| !form.shape_is_amplitude() && steps.get(i).is_some_and(|step| !matches!(step, Step::Keep));
+    let weights: Vec<f64> = term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed]);
+    let along = |i: usize| {
+        let step = SHAPE_STEP * term.shape[i].abs().max(1e-6);
+        let moved = |by: f64| {
+            let mut shape = term.shape.clone();
+            shape[i] += by;
+            dense(&shape)
+        };
+        let mut slope = vec![0.0; design.rows.len()];
+        for ((plus, minus), a) in moved(step).iter().zip(&moved(-step)).zip(&weights) {
+            for ((s, p), m) in slope.iter_mut().zip(plus).zip(minus) {
+                *s += a * (p - m) / (2.0 * step);
+            }
+        }
+        (i, slope)
+    };
+    let all = (0..term.shape.len()).filter(|&i| estimated(i)).map(along);
+    all.filter(|(_, slope)| slope.iter().any(|x| *x != 0.0)).collect()
+}
