@@ -108,7 +108,8 @@ fn found(
     settings: &Settings,
 ) -> Result<(Vec<Finding>, HeldOut), DiagnosisError> {
     let model = &search.model;
-    let mut findings: Vec<Finding> = ended.contacts.map(of_contacts).into_iter().collect();
+    let robot = model.context.model.robot();
+    let mut findings: Vec<Finding> = ended.contacts.map(|c| of_contacts(robot, c)).into_iter().collect();
     findings.extend(effects);
     findings.extend(line::findings(search, settings.least_confidence));
     let expected = model.context.reference.as_ref().map_or(0.0, |r| r.delay());

@@ -133,8 +133,8 @@ fn alternatives(model: &ExtendedModel<'_>, k: usize) -> Vec<Alternative> {
     accepted.rivals.iter().map(alternative).collect()
 }
 
-/// The contacts as one finding.
-pub(in crate::diagnosis) fn of_contacts(contacts: &Contacts) -> Finding {
+/// The contacts as one finding, in the units of the robot's joints.
+pub(in crate::diagnosis) fn of_contacts(robot: &Robot, contacts: &Contacts) -> Finding {
     let largest = contacts.wrenches.iter().max_by(|a, b| norm(a.force).total_cmp(&norm(b.force)));
     let mut parameters = std::collections::BTreeMap::new();
     let value = |value: f64, unit: &str| ParameterValue { value, sigma: 0.0, unit: unit.into() };
@@ -145,7 +145,8 @@ pub(in crate::diagnosis) fn of_contacts(contacts: &Contacts) -> Finding {
     }
     let joints = contacts.wrenches.iter().flat_map(|w| &w.joint_torques);
     if let Some(most) = joints.max_by(|a, b| a.largest.abs().total_cmp(&b.largest.abs())) {
-        let torque = ParameterValue { value: most.largest, sigma: most.sigma, unit: "N.m".into() };
+        let unit = words::torque_unit(robot, most.joint).into();
+        let torque = ParameterValue { value: most.largest, sigma: most.sigma, unit };
         parameters.insert("largest_joint_torque".into(), torque);
         parameters.insert("joint".into(), value(most.joint as f64, "1"));
     }
@@ -161,7 +162,7 @@ pub(in crate::diagnosis) fn of_contacts(contacts: &Contacts) -> Finding {
             ..unit_term(EffectKind::Contact, Place::Robot, Vec::new())
         })
     };
-    finding.sentence = words::contact(&finding);
+    finding.sentence = words::contact(robot, &finding);
     finding
 }
 

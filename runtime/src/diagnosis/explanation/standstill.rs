@@ -24,7 +24,7 @@ pub(in crate::diagnosis) fn explain(
         return None;
     }
     let contacts = rest.contacts(context.signals.len());
-    let findings: Vec<Finding> = contacts.iter().map(of_contacts).collect();
+    let findings: Vec<Finding> = contacts.iter().map(|c| of_contacts(robot, c)).collect();
     let before = Errors::of_squares(&rest.by_joint[0], &rest.by_joint[2]);
     let after = Errors::of_squares(&rest.by_joint[1], &rest.by_joint[2]);
     let estimated = Estimated { chi: context.chi.clone(), sigma: chi_sigma.to_vec() };

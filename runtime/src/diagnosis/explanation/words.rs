@@ -3,7 +3,7 @@
 use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
 use crate::diagnosis::rules;
 use crate::effects::{EffectKind, FreeLaw, Parameter, Place, Quantities, UserLaw};
-use crate::model::{JointIndex, Robot};
+use crate::model::{JointIndex, JointKind, Robot};
 use crate::report::{falls_or_rises, significant};
 
 impl Finding {
@@ -131,8 +131,15 @@ fn capital(text: &str) -> String {
     chars.next().map_or_else(String::new, |c| c.to_uppercase().collect::<String>() + chars.as_str())
 }
 
+/// Unit of the torque of the joint with this number: that of a prismatic joint is a force.
+pub(in crate::diagnosis) fn torque_unit(robot: &Robot, number: usize) -> &'static str {
+    let kinds = robot.joint_kinds();
+    let joint = (0..robot.joints()).find(|&j| robot.joint_number(JointIndex(j)).0 == number);
+    if joint.is_some_and(|j| kinds[j] == JointKind::Prismatic) { "N" } else { "N.m" }
+}
+
 /// A contact.
-pub(in crate::diagnosis) fn contact(f: &Finding) -> String {
+pub(in crate::diagnosis) fn contact(robot: &Robot, f: &Finding) -> String {
     let windows: Vec<String> = f
         .contacts
         .iter()
@@ -141,7 +148,10 @@ pub(in crate::diagnosis) fn contact(f: &Finding) -> String {
                 let joints: Vec<String> = w
                     .joint_torques
                     .iter()
-                    .map(|t| format!("{} ({} N.m)", t.joint, significant(t.largest, 3)))
+                    .map(|t| {
+                        let unit = torque_unit(robot, t.joint);
+                        format!("{} ({} {unit})", t.joint, significant(t.largest, 3))
+                    })
                     .collect();
                 format!("joint {}", joints.join(" and "))
             } else {
