@@ -25,6 +25,7 @@ pub fn numeric_robot(table: &RobotTable, set: &BaseSet) -> Robot {
         description: table.description.clone().into(),
         gravity: table.gravity,
         frames: table.frames.iter().map(|row| row.evaluated()).collect(),
+        dependent: table.dependent.clone().into(),
         drive: Drive {
             gear: table.drive.gear.concat().into(),
             coupled_friction: table.drive.coupled_friction.clone().into(),
@@ -76,6 +77,7 @@ pub(crate) fn table_of(robot: &Robot) -> (RobotTable, BaseSet) {
         gravity: robot.gravity,
         constants: Vec::new(),
         frames,
+        dependent: robot.dependent.to_vec(),
         drive: DriveTable { gear, coupled_friction: robot.drive.coupled_friction.to_vec() },
         limits: robot.limits.clone(),
         nominal: None,

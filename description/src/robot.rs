@@ -1,7 +1,8 @@
 //! A robot as numbers.
 
 use crate::{
-    BaseParameter, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Nominal, StandardParameter,
+    BaseParameter, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Motion, Nominal,
+    StandardParameter, motions,
 };
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -19,6 +20,9 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// One row per frame, base first, parents before children.
     pub frames: Cow<'static, [Frame]>,
+    /// The frames that move with other variables than their own joint's alone, ascending; none in most robots.
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    pub dependent: Cow<'static, [DependentFrame]>,
     /// Transmission between motors and joints.
     pub drive: Drive,
     /// Limits per joint, SI.
@@ -38,12 +42,35 @@ impl Robot {
         self.joint_frames().count()
     }
 
+    /// How each frame moves on its parent.
+    ///
+    /// ```
+    /// use dynid_description::{DependentFrame, Drive, Frame, JointKind, Limits, Robot};
+    ///
+    /// // Two axes on the base, and a bar on the second one that the first keeps parallel to itself.
+    /// let axis = Frame::on_base(JointKind::Revolute);
+    /// let bar = Frame { parent: Some(1), kind: JointKind::Fixed, ..axis };
+    /// let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
+    /// let gravity = [0.0, -9.81, 0.0];
+    /// let mut robot = Robot::with_standard_as_base("bars", gravity, vec![axis, axis, bar], drive, Limits::default());
+    /// let terms = vec![(0, 1.0), (1, -1.0)].into();
+    /// robot.dependent = vec![DependentFrame { frame: 2, kind: JointKind::Revolute, terms }].into();
+    ///
+    /// assert_eq!(robot.joints(), 2);
+    /// assert_eq!(robot.motions()[1].terms, [(1, 1.0)]);
+    /// assert_eq!(robot.motions()[2].terms, [(0, 1.0), (1, -1.0)]);
+    /// ```
+    pub fn motions(&self) -> Vec<Motion> {
+        motions(self.frames.iter().map(|f| f.kind), &self.dependent)
+    }
+
     /// How each joint moves, in the order of the joints: revolute or prismatic, never fixed.
     pub fn joint_kinds(&self) -> Vec<JointKind> {
         self.joint_frames().map(|frame| self.frames[frame].kind).collect()
     }
 
-    /// Joint of each frame as a 0-based index, `None` for a fixed frame.
+    /// The joint whose own frame each frame is, as a 0-based index; `None` for a fixed frame, and for one that moves with the
+    /// variables of other frames only.
     pub fn joint_of_frame(&self) -> Vec<Option<usize>> {
         let mut joint = 0;
         self.frames

@@ -56,6 +56,7 @@ impl Robot {
             description: Cow::Borrowed("every standard parameter by itself"),
             gravity,
             frames: Cow::Owned(frames),
+            dependent: Cow::Borrowed(&[]),
             drive,
             limits,
             standard: Cow::Owned(standard),

@@ -25,6 +25,7 @@
 //! ```
 
 mod attainable;
+mod dependent;
 mod friction;
 mod placement;
 mod regroup;
@@ -49,7 +50,11 @@ pub struct BaseSet {
 /// The base parameters of a robot.
 pub fn base_set(robot: &RobotTable) -> BaseSet {
     let standard = robot.standard_parameters();
-    let mut regrouping = regroup::regroup(robot, &standard);
+    let mut regrouping = if robot.dependent.is_empty() {
+        regroup::regroup(robot, &standard)
+    } else {
+        dependent::regroup_dependent(robot, &standard)
+    };
     friction::regroup_friction(robot, &standard, &mut regrouping);
     let kept = (0..standard.len()).filter(|column| !regrouping.contains_key(column));
     let base = kept.map(|column| base_parameter(robot, &standard, &regrouping, column)).collect();

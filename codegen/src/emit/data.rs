@@ -10,6 +10,7 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
     let (name, description) = (&robot.name, super::header::one_line(&robot.description));
     let gravity = robot.gravity.map(float);
     let frames = frames(robot);
+    let dependent = dependent(robot);
     let gear = floats(&robot.drive.gear);
     let coupled = borrowed(robot.drive.coupled_friction.iter().map(|&m| index(m)));
     let limits = limits(&robot.limits);
@@ -44,6 +45,7 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
             description: Cow::Borrowed(#description),
             gravity: [#(#gravity),*],
             frames: #frames,
+            dependent: #dependent,
             drive: Drive { gear: #gear, coupled_friction: #coupled },
             limits: #limits,
             standard: #standard,
@@ -76,6 +78,17 @@ fn frames(robot: &Robot) -> TokenStream {
                 gamma: #gamma, b: #b, alpha: #alpha, d: #d, theta: #theta, r: #r,
             }
         }
+    }))
+}
+
+fn dependent(robot: &Robot) -> TokenStream {
+    borrowed(robot.dependent.iter().map(|d| {
+        let (frame, kind) = (index(d.frame), format_ident!("{}", format!("{:?}", d.kind)));
+        let terms = borrowed(d.terms.iter().map(|&(joint, c)| {
+            let (joint, c) = (index(joint), float(c));
+            quote!((#joint, #c))
+        }));
+        quote!(DependentFrame { frame: #frame, kind: JointKind::#kind, terms: #terms })
     }))
 }
 

@@ -81,7 +81,8 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
         }),
         None => Some([0.0, 0.0, -9.81]),
     };
-    let frames = reader.required(&fields, "frames").and_then(|node| read_frames(reader, node, &constants))?;
+    let (frames, dependent) =
+        reader.required(&fields, "frames").and_then(|node| read_frames(reader, node, &constants))?;
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let drive = match fields.get("drive") {
         Some(node) => read_drive(reader, node, &frames, &constants),
@@ -99,6 +100,7 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
         gravity: gravity?,
         constants,
         frames,
+        dependent,
         drive,
         limits,
         nominal,

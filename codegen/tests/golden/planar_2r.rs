@@ -80,6 +80,7 @@ pub static ROBOT: Robot = Robot {
             },
         ],
     ),
+    dependent: Cow::Borrowed(&[]),
     drive: Drive {
         gear: Cow::Borrowed(&[50.0, 0.0, 0.0, 50.0]),
         coupled_friction: Cow::Borrowed(&[]),
