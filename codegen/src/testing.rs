@@ -61,7 +61,8 @@ pub fn make_dependent(robot: &mut RobotTable, mut pick: impl FnMut(usize) -> usi
             continue;
         }
         let mut terms: Vec<(usize, f64)> = Vec::new();
-        let allowed = |joint: usize| kind == JointKind::Prismatic || kinds[owners[joint]] == JointKind::Revolute;
+        let allowed =
+            |joint: usize| kind == JointKind::Prismatic || kinds[owners[joint]] == JointKind::Revolute;
         for joint in 0..owners.len() {
             let whole = [1.0, -1.0, 1.0, -1.0, 2.0][pick(5)];
             let taken = Some(joint) == own || pick(2) == 0;

@@ -21,8 +21,19 @@ fn robot(name: &str) -> RobotTable {
     parse(name, &std::fs::read(path).unwrap()).unwrap()
 }
 
-const ROBOTS: [&str; 9] =
-    ["branched", "cobot6", "panda", "planar_2r", "puma560", "scara4", "stanford", "tx40", "ur10e"];
+const ROBOTS: [&str; 11] = [
+    "branched",
+    "cobot6",
+    "palletiser",
+    "panda",
+    "parallelogram6",
+    "planar_2r",
+    "puma560",
+    "scara4",
+    "stanford",
+    "tx40",
+    "ur10e",
+];
 
 /// Standard columns at enough random states for every rank to show.
 fn observations(robot: &RobotTable, set: &BaseSet, random: &mut Pcg64) -> nalgebra::DMatrix<f64> {

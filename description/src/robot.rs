@@ -115,6 +115,14 @@ impl Robot {
         self.joint_frames().position(|known| known == frame).map(JointIndex)
     }
 
+    /// Index of the frame that a payload is on: the last one of the table, of those that have a joint or are fixed. Bars
+    /// without a joint of their own carry none.
+    pub fn flange(&self) -> Option<usize> {
+        let is_bar =
+            |k: usize| self.frames[k].kind == JointKind::Fixed && self.dependent.iter().any(|d| d.frame == k);
+        (0..self.frames.len()).rev().find(|&k| !is_bar(k))
+    }
+
     /// Standard parameters, by index, that no base parameter holds: they have no effect on any torque.
     pub fn without_effect(&self) -> Vec<usize> {
         let held = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));

@@ -1,7 +1,7 @@
 //! `dynid show ROBOT`: its table, what can be identified, what evaluating it costs.
 
 use clap::Args;
-use dynid_runtime::model::{Frame, JointKind, Robot};
+use dynid_runtime::model::{JointIndex, JointKind, Motion, Robot};
 use dynid_runtime::report::significant;
 
 use crate::failure::Failure;

@@ -62,8 +62,7 @@ fn regroup_as_if_free(robot: &RobotTable, standard: &[StandardParameter]) -> Reg
     }
     free.dependent = Vec::new();
     free.drive = DriveTable::direct(free.joint_frames().len());
-    let places: Vec<usize> =
-        (0..standard.len()).filter(|&k| standard[k].kind <= ParameterKind::M).collect();
+    let places: Vec<usize> = (0..standard.len()).filter(|&k| standard[k].kind <= ParameterKind::M).collect();
     let bodies: Vec<StandardParameter> = places.iter().map(|&k| standard[k].clone()).collect();
     let found = regroup(&free, &bodies);
     found
@@ -143,7 +142,10 @@ fn energies_at_random(
                     let product = |i: usize, k: usize| {
                         Number::from(form[i][k].clone()) * state.dq[i] * state.dq[k] * half()
                     };
-                    (0..joints).flat_map(|i| (0..joints).map(move |k| (i, k))).map(|(i, k)| product(i, k)).sum()
+                    (0..joints)
+                        .flat_map(|i| (0..joints).map(move |k| (i, k)))
+                        .map(|(i, k)| product(i, k))
+                        .sum()
                 }
                 kind => bodies[parameter.frame][kind as usize],
             }
@@ -365,7 +367,8 @@ mod tests {
                     - {j: 4, parent: 1, sigma: 0, alpha: 0, d: d2, theta: q2 - q1, r: 0}\n";
         let relations = names(rows);
         assert_eq!(relations[0], "ZZ1 + Ia1 + ZZ3 + d2^2*M4");
-        let inertias = relations.iter().filter(|r| r.contains("ZZ") || r.starts_with("MX3") || r.starts_with("MX4"));
+        let inertias =
+            relations.iter().filter(|r| r.contains("ZZ") || r.starts_with("MX3") || r.starts_with("MX4"));
         assert_eq!(inertias.count(), 3, "{relations:?}");
         assert!(relations.contains(&"ZZ2 + Ia2 + 0.01*M3 + ZZ4".to_owned()), "{relations:?}");
     }

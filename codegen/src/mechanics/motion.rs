@@ -100,9 +100,10 @@ pub fn screws(g: &mut Graph, geometry: &Geometry) -> Vec<Vec<Screw>> {
             let from_reference =
                 link.reference.and_then(|r| all[r].iter().find(|s| s.joint == outer.joint).copied());
             let (mut axis, turn) = match from_reference {
-                Some(screw) => {
-                    (link.from_reference.inward(g, screw.axis), turn_of(&link.from_reference.angle, outer.joint))
-                }
+                Some(screw) => (
+                    link.from_reference.inward(g, screw.axis),
+                    turn_of(&link.from_reference.angle, outer.joint),
+                ),
                 None => (link.from_parent.inward(g, outer.axis), link.own_velocity(outer.joint).0),
             };
             let turn = g.constant(turn);

@@ -227,7 +227,8 @@ fn energy_power_and_rows_are_right_for_random_trees_however_they_are_derived() {
 fn torques_are_the_regressor_times_the_base_parameters_of_random_trees() {
     let mut random = Random(29);
     for case in 0..160 {
-        let mut robot = if case < 80 { random_robot(&mut random) } else { random_dependent_robot(&mut random) };
+        let mut robot =
+            if case < 80 { random_robot(&mut random) } else { random_dependent_robot(&mut random) };
         let joints = robot.drive.gear.len();
         // Every other drive is coupled: the last motor turns with the joint before it too.
         if case % 2 == 0 && joints > 1 {

@@ -7,8 +7,8 @@ use super::magnitudes;
 use super::reader::Reader;
 use super::table::TableRow;
 use super::variables::{Moving, dependent_frames};
-use dynid_description::{DependentFrame, JointKind};
 use dynid_description::bounds::MAX_FRAMES;
+use dynid_description::{DependentFrame, JointKind};
 use std::f64::consts::FRAC_PI_4;
 
 const KEYS: [&str; 9] = ["j", "parent", "sigma", "gamma", "b", "alpha", "d", "theta", "r"];

@@ -39,13 +39,19 @@ impl Moving {
             if coefficient == 0.0 {
                 reader.report(at, format!("q{k} cancels in {key} of frame {j}: it moves nothing there"));
             } else if let Err(what) = check_coefficient(key, coefficient) {
-                reader.report(at, format!("{key} of frame {j}: q{k} has the coefficient {coefficient}; {what}"));
+                reader.report(
+                    at,
+                    format!("{key} of frame {j}: q{k} has the coefficient {coefficient}; {what}"),
+                );
             }
         }
         if let Some(&(_, _, at)) = terms.get(MAX_TERMS) {
             reader.report(
                 at,
-                format!("{key} of frame {j} has {} joint variables: expected at most {MAX_TERMS}", terms.len()),
+                format!(
+                    "{key} of frame {j} has {} joint variables: expected at most {MAX_TERMS}",
+                    terms.len()
+                ),
             );
         }
         terms.iter_mut().filter(|_| kind == JointKind::Revolute).for_each(|t| t.1 = t.1.round());
@@ -61,7 +67,11 @@ impl Moving {
 fn check_coefficient(key: &str, coefficient: f64) -> Result<(), String> {
     if key == "r" {
         let fits = coefficient.is_finite() && (1.0 / LONGEST..=LONGEST).contains(&coefficient.abs());
-        return if fits { Ok(()) } else { Err(format!("expected at most {LONGEST} and at least 1/{LONGEST}")) };
+        return if fits {
+            Ok(())
+        } else {
+            Err(format!("expected at most {LONGEST} and at least 1/{LONGEST}"))
+        };
     }
     if (coefficient - coefficient.round()).abs() > WHOLE {
         return Err(
@@ -94,8 +104,7 @@ pub(super) fn dependent_frames(reader: &mut Reader, moving: &[Option<Moving>]) -
                 } else {
                     format!("frame {k} has no q{k} in its own row, so that there is no such joint")
                 };
-                let variables =
-                    if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+                let variables = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
                 reader.report(
                     place,
                     format!("{key} of frame {j}: {why}; joint variables of this table: {variables}"),
@@ -105,7 +114,9 @@ pub(super) fn dependent_frames(reader: &mut Reader, moving: &[Option<Moving>]) -
             if row.kind == JointKind::Revolute && joint.kind == JointKind::Prismatic {
                 reader.report(
                     place,
-                    format!("{key} of frame {j}: q{k} is a length, and an angle is a sum of angles: {NO_SOLVER}"),
+                    format!(
+                        "{key} of frame {j}: q{k} is a length, and an angle is a sum of angles: {NO_SOLVER}"
+                    ),
                 );
             }
         }

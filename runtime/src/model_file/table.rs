@@ -70,7 +70,8 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
 fn check_dependent(robot: &Robot, n: usize) -> Result<(), FileError> {
     let mut before = None;
     for (k, d) in robot.dependent.iter().enumerate() {
-        let wrong = |field: &str, what: &str| Err(FileError::new(format!("table.dependent[{k}].{field}"), what));
+        let wrong =
+            |field: &str, what: &str| Err(FileError::new(format!("table.dependent[{k}].{field}"), what));
         let Some(frame) = robot.frames.get(d.frame).filter(|_| before < Some(d.frame)) else {
             return wrong("frame", "there is no such frame, or it is not after the one before");
         };

@@ -108,8 +108,9 @@ pub(super) fn add_mass_and_bias(
             while let Some(a) = at {
                 if links[a].kind() != JointKind::Fixed {
                     let m = if links[a].kind() == JointKind::Prismatic { force[2] } else { moment[2] };
-                    for (&(joint, c), &(i, d)) in
-                        own.iter().flat_map(|term| links[a].terms().each().iter().map(move |other| (term, other)))
+                    for (&(joint, c), &(i, d)) in own
+                        .iter()
+                        .flat_map(|term| links[a].terms().each().iter().map(move |other| (term, other)))
                     {
                         mass[joint * n + i] += c * d * m;
                         if a != k {

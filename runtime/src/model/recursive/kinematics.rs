@@ -84,7 +84,6 @@ impl Terms {
             }
         }
     }
-
 }
 
 /// Whether every frame moves with one joint's variable as it is, and every joint moves one frame.

@@ -41,7 +41,8 @@ pub(super) fn rigid_torques<T: Number>(
         if let Some(p) = frame.parent {
             carried[p] = (add(carried[p].0, force), add(carried[p].1, moment));
         }
-    }    if !plain {
+    }
+    if !plain {
         torques.iter().take(q.len()).enumerate().for_each(|(joint, torque)| emit(joint, *torque));
     }
 }
