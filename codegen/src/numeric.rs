@@ -30,6 +30,7 @@ pub fn numeric_robot(table: &RobotTable, set: &BaseSet) -> Robot {
             gear: table.drive.gear.concat().into(),
             coupled_friction: table.drive.coupled_friction.clone().into(),
         },
+        known: table.known.clone().into(),
         limits: table.limits.clone(),
         standard: set.standard.clone().into(),
         base: set.base.clone().into(),
@@ -79,6 +80,7 @@ pub(crate) fn table_of(robot: &Robot) -> (RobotTable, BaseSet) {
         frames,
         dependent: robot.dependent.to_vec(),
         drive: DriveTable { gear, coupled_friction: robot.drive.coupled_friction.to_vec() },
+        known: robot.known.to_vec(),
         limits: robot.limits.clone(),
         nominal: None,
     };

@@ -39,6 +39,7 @@ pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> RobotTable {
         frames,
         dependent: Vec::new(),
         drive: DriveTable { gear, coupled_friction: Vec::new() },
+        known: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

@@ -308,6 +308,22 @@ fn rows_may_move_with_variables_of_others() {
 }
 
 #[test]
+fn what_is_known_to_be_0_is_no_base_parameter() {
+    let rows = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n  \
+                - {j: 2, sigma: 0, alpha: 0, d: 0.1, theta: q2, r: 0}\n";
+    let arm = |rest: &str| format!("name: arm\ngravity: [0, -9.81, 0]\nframes:\n{rows}{rest}");
+    let robot = read(&arm("massless: [2]\nknown: {Ia1: 0, off1: 1 - 1}\n"));
+    let set = dynid_codegen::base::base_set(&robot);
+    let names: Vec<&str> = set.base.iter().map(|p| p.relation.as_ref()).collect();
+    assert_eq!(names, ["ZZ1", "MX1", "MY1", "Fv1", "Fc1", "Ia2", "Fv2", "Fc2", "off2"]);
+    one_mistake(&arm("known: {M2: 0.3}\n"), "6:13", &["M2 is known to be 0.3", "only 0 is supported"]);
+    one_mistake(&arm("known: {M9: 0}\n"), "6:9", &["'M9' is not a standard parameter"]);
+    one_mistake(&arm("massless: [3]\n"), "6:12", &["massless names 3", "1 to 2"]);
+    let nominal = "massless: [2]\nnominal: {parameters: {M2: 1}}\n";
+    one_mistake(&arm(nominal), "7:10", &["nominal has M2: 1, which is known to be 0"]);
+}
+
+#[test]
 fn theta_is_the_joint_variable_plus_a_constant_in_any_order() {
     let expected = 0.5 - std::f64::consts::PI / 2.0;
     for theta in [

@@ -25,6 +25,9 @@ pub struct Robot {
     pub dependent: Cow<'static, [DependentFrame]>,
     /// Transmission between motors and joints.
     pub drive: Drive,
+    /// Standard parameters, by index, that are known to be 0; none in most robots.
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    pub known: Cow<'static, [usize]>,
     /// Limits per joint, SI.
     pub limits: Limits,
     /// The standard parameters in the order of chi_st: for each frame XX XY XZ YY YZ ZZ MX MY MZ M, then,
@@ -123,10 +126,11 @@ impl Robot {
         (0..self.frames.len()).rev().find(|&k| !is_bar(k))
     }
 
-    /// Standard parameters, by index, that no base parameter holds: they have no effect on any torque.
+    /// Standard parameters, by index, that no base parameter holds, but for those that are known to be 0: they have no effect
+    /// on any torque.
     pub fn without_effect(&self) -> Vec<usize> {
         let held = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
-        (0..self.standard.len()).filter(|&k| !held(k)).collect()
+        (0..self.standard.len()).filter(|&k| !held(k) && !self.known.contains(&k)).collect()
     }
 
     /// chi from chi_st: every base parameter as its combination of standard parameters.

@@ -58,6 +58,7 @@ impl Robot {
             frames: Cow::Owned(frames),
             dependent: Cow::Borrowed(&[]),
             drive,
+            known: Cow::Borrowed(&[]),
             limits,
             standard: Cow::Owned(standard),
             base: Cow::Owned(base),

@@ -21,7 +21,7 @@ const SPARE: usize = 8;
 pub(super) fn regroup_dependent(robot: &RobotTable, standard: &[StandardParameter]) -> Regrouping {
     let mut regrouping = regroup_as_if_free(robot, standard);
     let inertial = |k: &usize| standard[*k].kind <= ParameterKind::M && !regrouping.contains_key(k);
-    let all = 0..standard.len();
+    let all = (0..standard.len()).filter(|k| !robot.known.contains(k));
     let of_kind = |kind: ParameterKind| all.clone().filter(move |&k| standard[k].kind == kind);
     // First choice is what stands first in the table; rotors and offsets go into bodies where they can.
     let columns: Vec<usize> = all
@@ -61,8 +61,11 @@ fn regroup_as_if_free(robot: &RobotTable, standard: &[StandardParameter]) -> Reg
         frame.kind = motion.kind;
     }
     free.dependent = Vec::new();
+    free.known = Vec::new();
     free.drive = DriveTable::direct(free.joint_frames().len());
-    let places: Vec<usize> = (0..standard.len()).filter(|&k| standard[k].kind <= ParameterKind::M).collect();
+    let places: Vec<usize> = (0..standard.len())
+            .filter(|k| standard[*k].kind <= ParameterKind::M && !robot.known.contains(k))
+            .collect();
     let bodies: Vec<StandardParameter> = places.iter().map(|&k| standard[k].clone()).collect();
     let found = regroup(&free, &bodies);
     found

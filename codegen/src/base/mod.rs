@@ -56,6 +56,8 @@ pub fn base_set(robot: &RobotTable) -> BaseSet {
         dependent::regroup_dependent(robot, &standard)
     };
     friction::regroup_friction(robot, &standard, &mut regrouping);
+    // What is 0 is in no combination.
+    regrouping.extend(robot.known.iter().map(|&column| (column, Vec::new())));
     let kept = (0..standard.len()).filter(|column| !regrouping.contains_key(column));
     let base = kept.map(|column| base_parameter(robot, &standard, &regrouping, column)).collect();
     BaseSet { standard, base }

@@ -13,6 +13,7 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
     let dependent = dependent(robot);
     let gear = floats(&robot.drive.gear);
     let coupled = borrowed(robot.drive.coupled_friction.iter().map(|&m| index(m)));
+    let known = borrowed(robot.known.iter().map(|&k| index(k)));
     let limits = limits(&robot.limits);
     let standard = borrowed(robot.standard.iter().map(|p| {
         let (name, kind, frame) = (&p.name, format_ident!("{}", format!("{:?}", p.kind)), index(p.frame));
@@ -47,6 +48,7 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
             frames: #frames,
             dependent: #dependent,
             drive: Drive { gear: #gear, coupled_friction: #coupled },
+            known: #known,
             limits: #limits,
             standard: #standard,
             base: #base,

@@ -48,6 +48,7 @@ fn random_robot(random: &mut Random) -> RobotTable {
         frames,
         dependent: Vec::new(),
         drive: DriveTable::direct(joints),
+        known: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

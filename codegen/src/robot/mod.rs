@@ -12,6 +12,8 @@
 //! drive:                            # optional
 //!   gear: [32, 32, 400]             # one ratio a joint, or a matrix: motor speed = gear * joint speed
 //!   coupled_friction: [2]           # motors with friction at motor speed (Fvm2, Fcm2)
+//! massless: [3]                     # optional: frames whose ten inertial parameters are 0
+//! known: {Ia1: 0, MZ2: 0}           # optional: standard parameters that are 0; other values are not supported
 //! limits:                           # optional, each of them; x stands for [-x, x], one value for every joint
 //!   position: [pi, [-1, 2], 0.2]
 //!   velocity: 3
@@ -55,6 +57,7 @@ mod drive;
 mod drive_table;
 mod expression;
 mod formula;
+mod known;
 mod magnitudes;
 mod parse;
 mod reader;

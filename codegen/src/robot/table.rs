@@ -23,6 +23,8 @@ pub struct RobotTable {
     pub dependent: Vec<DependentFrame>,
     /// Motors and transmission.
     pub drive: DriveTable,
+    /// Standard parameters, by index, that are known to be 0: they are no part of any base parameter.
+    pub known: Vec<usize>,
     /// Limits per joint.
     pub limits: Limits,
     /// Values for simulation.

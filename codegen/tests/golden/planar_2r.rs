@@ -85,6 +85,7 @@ pub static ROBOT: Robot = Robot {
         gear: Cow::Borrowed(&[50.0, 0.0, 0.0, 50.0]),
         coupled_friction: Cow::Borrowed(&[]),
     },
+    known: Cow::Borrowed(&[]),
     limits: Limits {
         position: Cow::Borrowed(
             &[
