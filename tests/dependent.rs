@@ -2,6 +2,9 @@
 //! (`benches/peers/dependent_reference.py`), by the closed form and by the recursive engine.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
 
+mod common;
+
+use common::{Folder, error_of, json_of};
 use dynid_codegen::base::base_set;
 use dynid_codegen::mechanics::Equations;
 use dynid_codegen::numeric_robot;
@@ -103,4 +106,54 @@ fn the_recursive_engine_has_the_closed_form_of_random_tables() {
             }
         }
     }
+}
+
+/// From a table by path to a model and back: parallelograms, and a link that is known to weigh nothing.
+#[test]
+fn a_robot_with_bars_is_simulated_identified_and_its_model_simulated_again() {
+    let folder = Folder::new("bars");
+    let table = include_str!("../robots/palletiser.yaml").replace("name: palletiser", "name: bars");
+    let without: Vec<&str> = table.lines().filter(|line| !line.contains("XX8: ")).collect();
+    folder.write(
+        "bars.yaml",
+        &format!("{}\nmassless: [8]\nknown: {{Ia5: 0}}\n", without.join("\n")).replace("Ia5: 0.6, ", ""),
+    );
+    let ok = |words: &[&str]| {
+        let output = folder.run(words);
+        assert!(output.status.success(), "{words:?}: {}", error_of(&output));
+        output
+    };
+    ok(&["simulate", "./bars.yaml", "--out", "a", "--rate", "500", "--period", "6"]);
+    ok(&["identify", "a/recording.yaml", "--out", "m.json"]);
+    let model = std::fs::read_to_string(folder.path("m.json")).unwrap();
+    let model: serde_json::Value = serde_json::from_str(&model).unwrap();
+    assert!(model["relative_error"].as_f64().unwrap() < 0.02);
+    let names: Vec<&str> =
+        model["base_parameters"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
+    assert!(
+        !names.iter().any(|name| name.ends_with('8') || name.ends_with("8R") || *name == "Ia5"),
+        "{names:?}"
+    );
+    // Without its YAML: the table of the model is written beside the recording.
+    ok(&["simulate", "m.json", "--out", "b", "--rate", "500", "--period", "6", "--seed", "5"]);
+    let output = ok(&["validate", "m.json", "b/recording.yaml", "--json", "-"]);
+    assert!(json_of(&output)["relative_error"].as_f64().unwrap() < 0.02);
+    assert!(error_of(&output).is_empty(), "{}", error_of(&output));
+    let written = std::fs::read_dir(folder.path("b")).unwrap().map(|e| e.unwrap().path());
+    let written = written.filter(|path| path.extension().is_some_and(|e| e == "yaml"));
+    let tables: Vec<String> = written.map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    let own = tables.iter().find(|text| text.contains("frames:")).unwrap();
+    let again = parse("own.yaml", own.as_bytes()).unwrap();
+    let first = parse("bars.yaml", &std::fs::read(folder.path("bars.yaml")).unwrap()).unwrap();
+    assert_eq!((again.motions(), &again.known), (first.motions(), &first.known));
+    for (a, b) in base_set(&again).base.iter().zip(&base_set(&first).base) {
+        assert_eq!(a.name, b.name);
+    }
+    let refused = folder.run(&["export", "m.json", "--to", "urdf", "--out", "bars.urdf"]);
+    assert!(
+        !refused.status.success() && error_of(&refused).contains("combination of joints"),
+        "{}",
+        error_of(&refused)
+    );
+    ok(&["export", "m.json", "--to", "c", "--out", "c"]);
 }

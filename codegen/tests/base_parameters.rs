@@ -134,7 +134,8 @@ fn the_base_of_random_tables_with_dependent_frames_has_the_numeric_rank_and_the_
 }
 
 #[test]
-fn the_base_of_random_tables_in_which_parameters_are_known_to_be_0_has_the_numeric_rank_and_the_same_torques() {
+fn the_base_of_random_tables_in_which_parameters_are_known_to_be_0_has_the_numeric_rank_and_the_same_torques()
+{
     let mut random = Pcg64::seed_from_u64(22);
     let mut wrong = Vec::new();
     for trial in 0..200 {

@@ -128,6 +128,10 @@ fn relations(robot: &Robot) -> String {
     if !silent.is_empty() {
         text.push_str(&format!("\nwithout any effect on the joint torques: {}", silent.join(" ")));
     }
+    if !robot.known.is_empty() {
+        let known: Vec<&str> = robot.known.iter().map(|&k| robot.standard[k].name.as_ref()).collect();
+        text.push_str(&format!("\nknown to be 0: {}", known.join(" ")));
+    }
     text
 }
 

@@ -64,8 +64,8 @@ fn regroup_as_if_free(robot: &RobotTable, standard: &[StandardParameter]) -> Reg
     free.known = Vec::new();
     free.drive = DriveTable::direct(free.joint_frames().len());
     let places: Vec<usize> = (0..standard.len())
-            .filter(|k| standard[*k].kind <= ParameterKind::M && !robot.known.contains(k))
-            .collect();
+        .filter(|k| standard[*k].kind <= ParameterKind::M && !robot.known.contains(k))
+        .collect();
     let bodies: Vec<StandardParameter> = places.iter().map(|&k| standard[k].clone()).collect();
     let found = regroup(&free, &bodies);
     found

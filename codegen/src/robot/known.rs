@@ -16,10 +16,15 @@ pub(super) fn read_known(
 ) -> Vec<usize> {
     let standard = standard_parameters(frames, drive);
     let mut zero = Vec::new();
-    for item in massless.and_then(|node| reader.list(node, "massless as a list of frame numbers")).unwrap_or(&[]) {
+    for item in
+        massless.and_then(|node| reader.list(node, "massless as a list of frame numbers")).unwrap_or(&[])
+    {
         let Some(j) = reader.integer(item, "the number j of a frame") else { continue };
         if !frames.iter().any(|f| f.j == j) {
-            reader.report(item.place, format!("massless names {j}: the table has frames 1 to {}", frames.len()));
+            reader.report(
+                item.place,
+                format!("massless names {j}: the table has frames 1 to {}", frames.len()),
+            );
         }
         let of_frame = |k: &usize| standard[*k].frame + 1 == j && standard[*k].kind <= ParameterKind::M;
         zero.extend((0..standard.len()).filter(of_frame));
@@ -27,16 +32,19 @@ pub(super) fn read_known(
     if let Some(node) = known {
         let Value::Mapping(pairs) = &node.value else {
             let found = node.describe();
-            reader.report(node.place, format!("expected known parameters by name ({{M4: 0}}), found {found}"));
+            reader
+                .report(node.place, format!("expected known parameters by name ({{M4: 0}}), found {found}"));
             return zero;
         };
         for (key, value) in pairs {
             let Some(name) = reader.text(key, "the name of a standard parameter") else { continue };
             let Some(k) = standard.iter().position(|p| p.name == name) else {
                 let names = standard.iter().map(|p| p.name.as_ref());
-                let hint = nearest(name, names).map_or_else(String::new, |close| format!("; did you mean {close}?"));
+                let hint =
+                    nearest(name, names).map_or_else(String::new, |close| format!("; did you mean {close}?"));
                 let shown = shortened(name);
-                reader.report(key.place, format!("'{shown}' is not a standard parameter of this robot{hint}"));
+                reader
+                    .report(key.place, format!("'{shown}' is not a standard parameter of this robot{hint}"));
                 continue;
             };
             let Some(number) = reader.number(value, name, constants) else { continue };

@@ -133,7 +133,9 @@ fn check_nominal(
     let standard = standard_parameters(frames, drive);
     for &k in known {
         let name = &standard[k].name;
-        if let Some((_, value)) = nominal.standard.iter().find(|(named, value)| named == name && *value != 0.0) {
+        if let Some((_, value)) =
+            nominal.standard.iter().find(|(named, value)| named == name && *value != 0.0)
+        {
             reader.report(node.place, format!("nominal has {name}: {value}, which is known to be 0"));
         }
     }

@@ -37,6 +37,11 @@ pub fn to_yaml(robot: &Robot) -> String {
             .collect();
         let _ = writeln!(text, "  coupled_friction: [{}]", motors.join(", "));
     }
+    if !robot.known.is_empty() {
+        let known = robot.known.iter().filter_map(|&k| robot.standard.get(k));
+        let zero: Vec<String> = known.map(|p| format!("{}: 0", p.name)).collect();
+        let _ = writeln!(text, "known: {{{}}}", zero.join(", "));
+    }
     text
 }
 

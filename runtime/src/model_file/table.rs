@@ -33,6 +33,9 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
             return wrong(format!("standard[{k}].frame"), "there is no such frame");
         }
     }
+    if let Some(k) = robot.known.iter().position(|&known| known >= robot.standard.len()) {
+        return wrong(format!("known[{k}]"), "there is no such standard parameter");
+    }
     for (k, base) in robot.base.iter().enumerate() {
         let known = |&(s, c): &(usize, f64)| s < robot.standard.len() && c.is_finite();
         if base.standard >= robot.standard.len() {

@@ -27,6 +27,8 @@ pub(super) fn altered(robot: &Robot, table: Table) -> Option<RecursiveModel> {
     let (drive, limits) = (robot.drive.clone(), robot.limits.clone());
     let mut other = Robot::with_standard_as_base(&robot.name, gravity, frames, drive, limits);
     other.dependent = robot.dependent.clone();
+    other.known = robot.known.clone();
+    other.base.to_mut().retain(|base| !robot.known.contains(&base.standard));
     RecursiveModel::new(other).ok()
 }
 
