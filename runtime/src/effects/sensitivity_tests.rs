@@ -40,10 +40,12 @@ fn arm() -> Robot {
         description: "three axes".into(),
         gravity: [0.0, 0.0, -9.81],
         frames: frames.into(),
+        dependent: Vec::new().into(),
         drive: Drive {
             gear: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0].into(),
             coupled_friction: vec![].into(),
         },
+        known: Vec::new().into(),
         limits: Limits::default(),
         standard: standard.into(),
         base: Cow::Owned(base),
