@@ -119,18 +119,7 @@ impl Urdf {
                 "no joint moves there: expected at least one that is revolute, continuous or prismatic";
             mistakes.push(Mistake::new(self.links[base].place, words));
         }
-        let moves = |joint: usize| tree.bodies.iter().any(|body| body.joint == joint);
-        for body in &tree.bodies {
-            if let Some(follows) = body.follows.filter(|follows| !moves(follows.joint)) {
-                let (joint, of) = (&self.joints[body.joint], shown(&self.joints[follows.joint].name));
-                let place = joint.mimic.as_ref().map_or(joint.place, |mimic| mimic.place);
-                let words = format!(
-                    "joint '{}' mimics '{of}', which does not move here: choose --base and --tip so that both move, or neither",
-                    shown(&joint.name)
-                );
-                mistakes.push(Mistake::new(place, words));
-            }
-        }
+        mistakes.extend(self.left_behind(&tree));
         tree.held.sort_unstable();
         if mistakes.is_empty() { Ok(self.in_order(tree)) } else { Err(mistakes) }
     }
@@ -165,6 +154,24 @@ impl Urdf {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Joints that mimic one that does not move.
+    fn left_behind(&self, tree: &Tree) -> Vec<Mistake> {
+        let moves = |joint: usize| tree.bodies.iter().any(|body| body.joint == joint);
+        let left = |body: &&Moving| body.follows.is_some_and(|follows| !moves(follows.joint));
+        let words = |body: &Moving| {
+            let joint = &self.joints[body.joint];
+            let (place, of) =
+                joint.mimic.as_ref().map_or((joint.place, ""), |mimic| (mimic.place, &mimic.of));
+            let words = format!(
+                "joint '{}' mimics '{}', which does not move here: choose --base and --tip so that both move, or neither",
+                shown(&joint.name),
+                shown(of)
+            );
+            Mistake::new(place, words)
+        };
+        tree.bodies.iter().filter(left).map(words).collect()
     }
 
     /// What moves a joint that mimics another, through joints that mimic in their turn.

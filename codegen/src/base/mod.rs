@@ -28,6 +28,7 @@ mod attainable;
 mod dependent;
 mod friction;
 mod placement;
+mod random_states;
 mod regroup;
 
 use crate::exact::Form;

@@ -96,27 +96,7 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
     let mut moving = None;
     let mut entry = |key: &'static str, moves: JointKind| {
         let node = reader.required(&fields, key)?;
-        let formula = reader.formula(node, key, constants)?;
-        match kind {
-            Some(kind) if kind == moves && !formula.variables.is_empty() => {
-                let at = |offset: usize| reader.place_in(node, offset);
-                let terms = formula.variables.iter().map(|&(k, c, offset)| (k, c, at(offset))).collect();
-                moving = Some(Moving::new(reader, j, (key, kind), terms));
-            }
-            Some(kind) => {
-                if let Err(message) = check_variable(&formula, key, j, kind, kind == moves) {
-                    reader.report(node.place, message);
-                }
-            }
-            None => {}
-        }
-        if let Some(value) = &formula.constant {
-            magnitudes::check(reader, node, key, value);
-        }
-        if let Some(angle) = formula.constant.as_ref().filter(|_| key == "theta") {
-            warn_of_rounded(reader, node, key, angle);
-        }
-        formula.constant
+        read_entry(reader, (node, key), j, (kind, moves), constants, &mut moving)
     };
     let theta = entry("theta", JointKind::Revolute).unwrap_or(Expression::ZERO);
     let r = entry("r", JointKind::Prismatic).unwrap_or(Expression::ZERO);
@@ -128,6 +108,38 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
     };
     let frame = TableRow { j, parent: parent.unwrap_or(j - 1), kind: own, gamma, b, alpha, d, theta, r };
     Some(Row { frame, parent_place, moving })
+}
+
+/// Reads theta or r of row `j`, which moves where its kind is `moves`: the constant, and into `moving` the variables.
+fn read_entry(
+    reader: &mut Reader,
+    (node, key): (&Node, &'static str),
+    j: usize,
+    (kind, moves): (Option<JointKind>, JointKind),
+    constants: &[(String, f64)],
+    moving: &mut Option<Moving>,
+) -> Option<Expression> {
+    let formula = reader.formula(node, key, constants)?;
+    match kind {
+        Some(kind) if kind == moves && !formula.variables.is_empty() => {
+            let at = |offset: usize| reader.place_in(node, offset);
+            let terms = formula.variables.iter().map(|&(k, c, offset)| (k, c, at(offset))).collect();
+            *moving = Some(Moving::new(reader, j, (key, kind), terms));
+        }
+        Some(kind) => {
+            if let Err(message) = check_variable(&formula, key, j, kind, kind == moves) {
+                reader.report(node.place, message);
+            }
+        }
+        None => {}
+    }
+    if let Some(value) = &formula.constant {
+        magnitudes::check(reader, node, key, value);
+    }
+    if let Some(angle) = formula.constant.as_ref().filter(|_| key == "theta") {
+        warn_of_rounded(reader, node, key, angle);
+    }
+    formula.constant
 }
 
 /// Warns of an angle that is written as a rounded multiple of pi/4: it is taken as it stands, as a general angle.

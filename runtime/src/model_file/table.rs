@@ -33,9 +33,6 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
             return wrong(format!("standard[{k}].frame"), "there is no such frame");
         }
     }
-    if let Some(k) = robot.known.iter().position(|&known| known >= robot.standard.len()) {
-        return wrong(format!("known[{k}]"), "there is no such standard parameter");
-    }
     for (k, base) in robot.base.iter().enumerate() {
         let known = |&(s, c): &(usize, f64)| s < robot.standard.len() && c.is_finite();
         if base.standard >= robot.standard.len() {
@@ -70,7 +67,12 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
     }
 }
 
+/// What moves the frames, and which parameters are known.
 fn check_dependent(robot: &Robot, n: usize) -> Result<(), FileError> {
+    if let Some(k) = robot.known.iter().position(|&known| known >= robot.standard.len()) {
+        let what = "there is no such standard parameter";
+        return Err(FileError::new(format!("table.known[{k}]"), what));
+    }
     let mut before = None;
     for (k, d) in robot.dependent.iter().enumerate() {
         let wrong =
