@@ -118,8 +118,13 @@ fn prior(robot: &Robot, nominal: Option<&[f64]>, template: Option<&Template<'_>>
         .iter()
         .enumerate()
         .map(|(f, (body, name))| {
-            // A fixed frame that carries nothing is only a frame.
-            (moves[f].is_some() || body.mass > 0.0).then(|| possible(body, mean, name).parameters())
+            // A fixed frame that carries nothing is only a frame, and so is one whose link is known to have no mass.
+            let massless = robot
+                .known
+                .iter()
+                .any(|&k| robot.standard[k].frame == f && robot.standard[k].kind == ParameterKind::M);
+            (!massless && (moves[f].is_some() || body.mass > 0.0))
+                .then(|| possible(body, mean, name).parameters())
         })
         .collect();
     let ia = |f: usize| value(robot, &nominal, f, ParameterKind::Ia);

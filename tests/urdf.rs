@@ -37,7 +37,7 @@ fn bodies(robot: &Robot) -> Vec<f64> {
 
 #[test]
 fn a_table_has_the_torques_that_pinocchio_has_of_the_urdf() {
-    for name in ["leaning", "twins"] {
+    for name in ["leaning", "twins", "winch"] {
         let urdf = std::fs::read_to_string(inputs().join(format!("{name}.urdf"))).unwrap();
         let reference = std::fs::read_to_string(inputs().join(format!("{name}.json"))).unwrap();
         let reference: serde_json::Value = serde_json::from_str(&reference).unwrap();
@@ -53,6 +53,23 @@ fn a_table_has_the_torques_that_pinocchio_has_of_the_urdf() {
             }
         }
     }
+}
+
+#[test]
+fn joints_that_mimic_others_are_rows_that_move_with_them() {
+    let urdf = std::fs::read(inputs().join("winch.urdf")).unwrap();
+    let options = ImportOptions::default();
+    let urdf = read(&urdf, options.snap).unwrap();
+    let imported = import(&urdf, "winch.urdf", &options).unwrap();
+    assert_eq!(imported.joints, ["turn", "lift"]);
+    let robot = robot_of(&imported.yaml);
+    assert_eq!((robot.joints(), robot.frames.len()), (2, 6));
+    for entry in ["theta: -q2 + 0.3,", "theta: -q2 + 0.4,", "r: 0.15*q2 + ", "r: -0.15*q2 + "] {
+        assert!(imported.yaml.contains(entry), "{entry}: {}", imported.yaml);
+    }
+    let chain = ImportOptions { base: Some("arm".to_owned()), tip: Some("plate".to_owned()), ..options };
+    let mistakes = import(&urdf, "winch.urdf", &chain).unwrap_err();
+    assert!(mistakes.len() == 1 && mistakes[0].message.contains("does not move here"), "{mistakes:?}");
 }
 
 #[test]
@@ -73,6 +90,10 @@ fn a_table_written_as_urdf_comes_back_with_the_same_base_parameters() {
     let mut count = 0;
     for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("robots")).unwrap() {
         let robot = robot_of(&std::fs::read_to_string(entry.unwrap().path()).unwrap());
+        // A URDF has no words for a bar that turns with the difference of two joints.
+        if !robot.dependent.is_empty() {
+            continue;
+        }
         let standard = bodies(&robot);
         let size = robot.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let text = write_urdf(&Skeleton::of_table(&robot, &standard));
@@ -115,7 +136,7 @@ fn what_is_wrong_in_a_urdf_is_told_with_its_place() {
     let one = joint("j1", "revolute", ["a", "b"], "<axis xyz=\"0 0 1\"/>");
     let whole = |rest: &str| format!("{HEAD}{one}{rest}</robot>");
     let chain = joint("j2", "revolute", ["b", "c"], "");
-    let cases: [(String, &[&str]); 16] = [
+    let cases: [(String, &[&str]); 19] = [
         ("<robot".to_owned(), &["w.urdf:1:", "not XML"]),
         ("<sdf/>".to_owned(), &["w.urdf:1:1", "<robot>", "<sdf>"]),
         (whole(""), &["w.urdf:4:1", "'c' hangs together with nothing"]),
@@ -125,8 +146,24 @@ fn what_is_wrong_in_a_urdf_is_told_with_its_place() {
         (whole(&joint("j2", "hinge", ["b", "c"], "")), &["w.urdf:6:1", "'hinge'", "revolute"]),
         (whole(&joint("j2", "floating", ["b", "c"], "")), &["w.urdf:6:1", "floating", "--base"]),
         (
-            whole(&joint("j2", "revolute", ["b", "c"], "<mimic joint=\"j1\"/>")),
-            &["w.urdf:6:", "mimics 'j1'", "--tip"],
+            whole(&joint("j2", "revolute", ["b", "c"], "<mimic joint=\"j1\" multiplier=\"0.5\"/>")),
+            &["w.urdf:6:", "mimics 'j1' 0.5 times", "whole multiples", "--tip"],
+        ),
+        (
+            whole(&joint("j2", "revolute", ["b", "c"], "<mimic joint=\"j1\" multiplier=\"0\"/>")),
+            &["w.urdf:6:", "mimics 'j1' 0 times", "fixed"],
+        ),
+        (
+            whole(&joint("j2", "revolute", ["b", "c"], "<mimic joint=\"j2\"/>")),
+            &["w.urdf:6:", "'j2' mimics itself"],
+        ),
+        (
+            format!(
+                "{HEAD}{}{}</robot>",
+                joint("j1", "prismatic", ["a", "b"], ""),
+                joint("j2", "revolute", ["b", "c"], "<mimic joint=\"j1\"/>")
+            ),
+            &["w.urdf:6:", "'j2' turns and mimics 'j1'", "no sum of angles"],
         ),
         (
             whole(&joint("j2", "revolute", ["b", "c"], "<mimic joint=\"j9\"/>")),
@@ -221,10 +258,10 @@ proptest! {
 
     #[test]
     fn whatever_becomes_of_a_urdf_it_is_answered(
-        which in 0..2_usize,
+        which in 0..3_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0..PIECES.len(), 0..4_u8), 1..5),
     ) {
-        let name = ["leaning.urdf", "twins.urdf"][which];
+        let name = ["leaning.urdf", "twins.urdf", "winch.urdf"][which];
         let mut text = std::fs::read_to_string(inputs().join(name)).unwrap();
         for (at, piece, kind) in changes {
             // Words between quotes, spaces and brackets.

@@ -25,10 +25,12 @@ pub fn numeric_robot(table: &RobotTable, set: &BaseSet) -> Robot {
         description: table.description.clone().into(),
         gravity: table.gravity,
         frames: table.frames.iter().map(|row| row.evaluated()).collect(),
+        dependent: table.dependent.clone().into(),
         drive: Drive {
             gear: table.drive.gear.concat().into(),
             coupled_friction: table.drive.coupled_friction.clone().into(),
         },
+        known: table.known.clone().into(),
         limits: table.limits.clone(),
         standard: set.standard.clone().into(),
         base: set.base.clone().into(),
@@ -76,7 +78,9 @@ pub(crate) fn table_of(robot: &Robot) -> (RobotTable, BaseSet) {
         gravity: robot.gravity,
         constants: Vec::new(),
         frames,
+        dependent: robot.dependent.to_vec(),
         drive: DriveTable { gear, coupled_friction: robot.drive.coupled_friction.to_vec() },
+        known: robot.known.to_vec(),
         limits: robot.limits.clone(),
         nominal: None,
     };

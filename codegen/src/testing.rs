@@ -5,7 +5,7 @@ use crate::base::BaseSet;
 use crate::mechanics::Equations;
 use crate::robot::{DriveTable, Expression, RobotTable, TableRow};
 use crate::symbolic::Point;
-use dynid_description::{BaseParameter, JointKind, Limits, ParameterKind};
+use dynid_description::{BaseParameter, DependentFrame, JointKind, Limits, MAX_TERMS, ParameterKind};
 use std::f64::consts::FRAC_PI_2;
 
 /// A row of a table: sigma, alpha, d, theta, r, as in the reference file.
@@ -37,10 +37,47 @@ pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> RobotTable {
         gravity,
         constants: Vec::new(),
         frames,
+        dependent: Vec::new(),
         drive: DriveTable { gear, coupled_friction: Vec::new() },
+        known: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }
+}
+
+/// Makes frames move with several joints, and several frames with one: some keep a variable of their own beside others, some
+/// move with those of others only. `pick(n)` draws from 0 to n - 1. At least one joint stays.
+pub fn make_dependent(robot: &mut RobotTable, mut pick: impl FnMut(usize) -> usize) {
+    let kinds: Vec<JointKind> = robot.frames.iter().map(|f| f.kind).collect();
+    for (frame, &kind) in robot.frames.iter_mut().zip(&kinds).skip(1) {
+        if kind != JointKind::Fixed && pick(4) == 0 {
+            frame.kind = JointKind::Fixed;
+        }
+    }
+    let owners = robot.joint_frames();
+    let mut dependent = Vec::new();
+    for (k, &kind) in kinds.iter().enumerate() {
+        let own = owners.iter().position(|&f| f == k);
+        if kind == JointKind::Fixed || own.is_some() && pick(3) > 0 {
+            continue;
+        }
+        let mut terms: Vec<(usize, f64)> = Vec::new();
+        let allowed =
+            |joint: usize| kind == JointKind::Prismatic || kinds[owners[joint]] == JointKind::Revolute;
+        for joint in 0..owners.len() {
+            let whole = [1.0, -1.0, 1.0, -1.0, 2.0][pick(5)];
+            let taken = Some(joint) == own || pick(2) == 0;
+            if taken && allowed(joint) && terms.len() < MAX_TERMS {
+                let length = [1.0, -1.0, 0.35, -0.2][pick(4)];
+                terms.push((joint, if kind == JointKind::Revolute { whole } else { length }));
+            }
+        }
+        if !terms.is_empty() && own.is_none_or(|own| terms.iter().any(|t| t.0 == own)) {
+            dependent.push(DependentFrame { frame: k, kind, terms: terms.into() });
+        }
+    }
+    robot.dependent = dependent;
+    robot.drive = DriveTable::direct(owners.len());
 }
 
 pub fn planar_2r() -> RobotTable {

@@ -5,7 +5,7 @@ mod numeric;
 
 use dynid_codegen::base::{BaseSet, base_set};
 use dynid_codegen::robot::{DriveTable, Expression, RobotTable, TableRow, parse};
-use dynid_description::{BaseParameter, JointKind, Limits, ParameterKind};
+use dynid_description::{BaseParameter, DependentFrame, JointKind, Limits, ParameterKind};
 use numeric::regressor;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -21,8 +21,19 @@ fn robot(name: &str) -> RobotTable {
     parse(name, &std::fs::read(path).unwrap()).unwrap()
 }
 
-const ROBOTS: [&str; 9] =
-    ["branched", "cobot6", "panda", "planar_2r", "puma560", "scara4", "stanford", "tx40", "ur10e"];
+const ROBOTS: [&str; 11] = [
+    "branched",
+    "cobot6",
+    "palletiser",
+    "panda",
+    "parallelogram6",
+    "planar_2r",
+    "puma560",
+    "scara4",
+    "stanford",
+    "tx40",
+    "ur10e",
+];
 
 /// Standard columns at enough random states for every rank to show.
 fn observations(robot: &RobotTable, set: &BaseSet, random: &mut Pcg64) -> nalgebra::DMatrix<f64> {
@@ -56,6 +67,9 @@ fn rank(matrix: &nalgebra::DMatrix<f64>) -> (usize, f64) {
 fn check(robot: &RobotTable, random: &mut Pcg64) -> Result<(), String> {
     let set = base_set(robot);
     let rows = observations(robot, &set, random);
+    // What is known to be 0 is no column.
+    let mut rows = rows;
+    robot.known.iter().for_each(|&k| rows.column_mut(k).fill(0.0));
     let (rank, gap) = rank(&rows);
     if set.base.len() != rank {
         return Err(format!("{} base parameters, numeric rank {rank} (gap {gap:.1e})", set.base.len()));
@@ -103,10 +117,88 @@ fn the_base_of_random_tables_has_the_numeric_rank_and_the_same_torques() {
     assert!(wrong.is_empty(), "{} of 300 wrong\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
 }
 
+#[test]
+fn the_base_of_random_tables_with_dependent_frames_has_the_numeric_rank_and_the_same_torques() {
+    let mut random = Pcg64::seed_from_u64(21);
+    let (mut wrong, mut dependent) = (Vec::new(), 0);
+    for trial in 0..300 {
+        let mut robot = random_robot(&mut random);
+        make_dependent(&mut robot, &mut random);
+        dependent += usize::from(!robot.dependent.is_empty());
+        if let Err(e) = check(&robot, &mut random) {
+            wrong.push(format!("table {trial}: {e}\n{}", table(&robot)));
+        }
+    }
+    assert!(dependent > 150, "{dependent}");
+    assert!(wrong.is_empty(), "{} of 300 wrong\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
+}
+
+#[test]
+fn the_base_of_random_tables_in_which_parameters_are_known_to_be_0_has_the_numeric_rank_and_the_same_torques()
+{
+    let mut random = Pcg64::seed_from_u64(22);
+    let mut wrong = Vec::new();
+    for trial in 0..200 {
+        let mut robot = random_robot(&mut random);
+        if trial % 2 == 1 {
+            make_dependent(&mut robot, &mut random);
+        }
+        let standard = robot.standard_parameters();
+        let massless = random.random_range(0..robot.frames.len());
+        robot.known = (0..standard.len())
+            .filter(|&k| {
+                let p = &standard[k];
+                let body = p.kind <= ParameterKind::Ia && random.random_bool(0.2);
+                body || p.frame == massless && p.kind <= ParameterKind::M
+            })
+            .collect();
+        if let Err(e) = check(&robot, &mut random) {
+            wrong.push(format!("table {trial}: {e} {:?}\n{}", robot.known, table(&robot)));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of 200 wrong\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
+}
+
+/// Makes frames move with several joints, and several frames with one. The gear stays where no joint is lost.
+fn make_dependent(robot: &mut RobotTable, random: &mut Pcg64) {
+    let kinds: Vec<JointKind> = robot.frames.iter().map(|f| f.kind).collect();
+    for (frame, &kind) in robot.frames.iter_mut().zip(&kinds).skip(1) {
+        if kind != JointKind::Fixed && random.random_bool(0.25) {
+            frame.kind = JointKind::Fixed;
+        }
+    }
+    let mut owners = robot.joint_frames();
+    if owners.is_empty() {
+        robot.frames[0].kind = JointKind::Revolute;
+        owners = vec![0];
+    }
+    if owners.len() != robot.drive.gear.len() {
+        robot.drive = random_drive(random, owners.len());
+    }
+    for (k, &kind) in kinds.iter().enumerate() {
+        let own = owners.iter().position(|&f| f == k);
+        if kind == JointKind::Fixed || own.is_some() && random.random_bool(0.6) {
+            continue;
+        }
+        let mut terms: Vec<(usize, f64)> = Vec::new();
+        for (joint, &owner) in owners.iter().enumerate() {
+            let allowed = kind == JointKind::Prismatic || robot.frames[owner].kind == JointKind::Revolute;
+            if allowed && terms.len() < 4 && (Some(joint) == own || random.random_bool(0.5)) {
+                let whole = [1.0, -1.0, 1.0, -1.0, 2.0][random.random_range(0..5)];
+                let length = [1.0, -1.0, 0.35, -0.2][random.random_range(0..4)];
+                terms.push((joint, if kind == JointKind::Revolute { whole } else { length }));
+            }
+        }
+        if !terms.is_empty() && own.is_none_or(|own| terms.iter().any(|t| t.0 == own)) {
+            robot.dependent.push(DependentFrame { frame: k, kind, terms: terms.into() });
+        }
+    }
+}
+
 fn table(robot: &RobotTable) -> String {
     let mut text = format!(
-        "gravity {:?} gear {:?} {:?}\n",
-        robot.gravity, robot.drive.gear, robot.drive.coupled_friction
+        "gravity {:?} gear {:?} {:?} {:?}\n",
+        robot.gravity, robot.drive.gear, robot.drive.coupled_friction, robot.dependent
     );
     for f in &robot.frames {
         text.push_str(&format!(
@@ -162,7 +254,9 @@ fn random_robot(random: &mut Pcg64) -> RobotTable {
         gravity,
         constants: Vec::new(),
         frames,
+        dependent: Vec::new(),
         drive,
+        known: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

@@ -248,10 +248,20 @@ fn sigma_is_0_1_or_2() {
 fn the_joint_variable_stands_where_sigma_says() {
     let rows = [
         ("sigma: 0, alpha: 0, d: 0, theta: 0.3, r: 0", "theta of frame 2 does not match sigma 0"),
-        ("sigma: 0, alpha: 0, d: 0, theta: q1, r: 0", "expected q2 once, plus a constant"),
-        ("sigma: 0, alpha: 0, d: 0, theta: q2 + q2, r: 0", "expected q2 once"),
-        ("sigma: 0, alpha: 0, d: 0, theta: -q2, r: 0", "expected q2 once"),
-        ("sigma: 0, alpha: 0, d: 0, theta: 2*q2, r: 0", "q2 may only be added"),
+        ("sigma: 0, alpha: 0, d: 0, theta: q2 - q2, r: 0", "q2 cancels in theta of frame 2"),
+        (
+            "sigma: 0, alpha: 0, d: 0, theta: q2/2, r: 0",
+            "q2 has the coefficient 0.5; an angle needs whole numbers",
+        ),
+        ("sigma: 0, alpha: 0, d: 0, theta: 17*q2, r: 0", "expected at most 16 in an angle"),
+        ("sigma: 0, alpha: 0, d: 0, theta: q2*q1, r: 0", "needs a numerical solver"),
+        ("sigma: 0, alpha: 0, d: 0, theta: 1/q2, r: 0", "may only be added, or multiplied by a number"),
+        (
+            "sigma: 0, alpha: 0, d: 0, theta: q2 + q7, r: 0",
+            "there is no frame 7; joint variables of this table: q1, q2",
+        ),
+        ("sigma: 0, alpha: 0, d: 0, theta: q1 + q3, r: 0", "there is no frame 3"),
+        ("sigma: 1, alpha: 0, d: 0, theta: 0, r: 1e6*q2", "q2 has the coefficient 1000000"),
         ("sigma: 0, alpha: 0, d: 0, theta: q2, r: q2", "r of frame 2 does not match sigma 0"),
         ("sigma: 1, alpha: 0, d: 0, theta: q2, r: q2", "theta of frame 2 does not match sigma 1"),
         ("sigma: 1, alpha: 0, d: 0, theta: 0, r: 0.1", "r of frame 2 does not match sigma 1"),
@@ -265,6 +275,52 @@ fn the_joint_variable_stands_where_sigma_says() {
             "{row}: {found:?}"
         );
     }
+}
+
+#[test]
+fn a_mistake_of_a_variable_is_told_at_its_character() {
+    let row = |theta: &str| arm_with_row(&format!("j: 2, sigma: 0, alpha: 0, d: 0, theta: {theta}, r: 0"));
+    // theta starts in column 45.
+    one_mistake(&row("q2 + 0.3*q1"), "5:54", &["q1 has the coefficient 0.3", "drive: gear"]);
+    one_mistake(&row("q2 - 2*(q9 + d2)"), "5:53", &["there is no frame 9"]);
+    one_mistake(&row("atan2(q1)"), "5:45", &["'atan2' is a function", "numerical solver"]);
+}
+
+#[test]
+fn rows_may_move_with_variables_of_others() {
+    let rows = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: -q1 + pi/2, r: 0}\n  \
+                - {j: 2, sigma: 0, alpha: 0, d: 0.1, theta: 2*(q3 - q1)/2, r: 0}\n  \
+                - {j: 3, sigma: 0, alpha: 0, d: 0.1, theta: q3 - q1, r: 0}\n  \
+                - {j: 4, sigma: 1, alpha: 0, d: 0.1, theta: 0, r: 0.05*q1 - 0.2}\n";
+    let robot = read(&format!("name: arm\nframes:\n{rows}"));
+    assert_eq!(robot.joint_frames(), [0, 2]);
+    let terms: Vec<Vec<(usize, f64)>> = robot.motions().into_iter().map(|m| m.terms).collect();
+    let expected = [vec![(0, -1.0)], vec![(0, -1.0), (1, 1.0)], vec![(0, -1.0), (1, 1.0)], vec![(0, 0.05)]];
+    assert_eq!(terms, expected);
+    assert_eq!(robot.frames[3].kind, JointKind::Fixed);
+    assert_eq!(robot.motions()[3].kind, JointKind::Prismatic);
+    let mixed = rows.replace("r: 0.05*q1 - 0.2", "r: q4").replace("q3 - q1, r", "q3 + q4, r");
+    let found = mistakes(format!("name: arm\nframes:\n{mixed}"));
+    assert!(found.len() == 1 && found[0].contains("q4 is a length"), "{found:?}");
+    let without = rows.replace("theta: q3 - q1, r", "theta: 2*q1, r");
+    let found = mistakes(format!("name: arm\nframes:\n{without}"));
+    assert!(found.len() == 1 && found[0].contains("frame 3 has no q3 in its own row"), "{found:?}");
+}
+
+#[test]
+fn what_is_known_to_be_0_is_no_base_parameter() {
+    let rows = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n  \
+                - {j: 2, sigma: 0, alpha: 0, d: 0.1, theta: q2, r: 0}\n";
+    let arm = |rest: &str| format!("name: arm\ngravity: [0, -9.81, 0]\nframes:\n{rows}{rest}");
+    let robot = read(&arm("massless: [2]\nknown: {Ia1: 0, off1: 1 - 1}\n"));
+    let set = dynid_codegen::base::base_set(&robot);
+    let names: Vec<&str> = set.base.iter().map(|p| p.relation.as_ref()).collect();
+    assert_eq!(names, ["ZZ1", "MX1", "MY1", "Fv1", "Fc1", "Ia2", "Fv2", "Fc2", "off2"]);
+    one_mistake(&arm("known: {M2: 0.3}\n"), "6:13", &["M2 is known to be 0.3", "only 0 is supported"]);
+    one_mistake(&arm("known: {M9: 0}\n"), "6:9", &["'M9' is not a standard parameter"]);
+    one_mistake(&arm("massless: [3]\n"), "6:12", &["massless names 3", "1 to 2"]);
+    let nominal = "massless: [2]\nnominal: {parameters: {M2: 1}}\n";
+    one_mistake(&arm(nominal), "7:10", &["nominal has M2: 1, which is known to be 0"]);
 }
 
 #[test]

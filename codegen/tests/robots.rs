@@ -27,8 +27,19 @@ fn robots() -> Vec<RobotTable> {
 #[test]
 fn every_robot_reads_and_is_called_like_its_file() {
     let names: Vec<String> = robots().into_iter().map(|robot| robot.name).collect();
-    let expected =
-        ["branched", "cobot6", "panda", "planar_2r", "puma560", "scara4", "stanford", "tx40", "ur10e"];
+    let expected = [
+        "branched",
+        "cobot6",
+        "palletiser",
+        "panda",
+        "parallelogram6",
+        "planar_2r",
+        "puma560",
+        "scara4",
+        "stanford",
+        "tx40",
+        "ur10e",
+    ];
     assert_eq!(names, expected);
 }
 

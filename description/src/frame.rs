@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Frame {
     /// Index of the parent in `Robot::frames`; `None` for the base (frame 0).
     pub parent: Option<usize>,
-    /// Revolute, prismatic or fixed.
+    /// What the frame's own joint is; fixed where it has none.
     pub kind: JointKind,
     /// Branch angle, rad.
     pub gamma: f64,
@@ -49,6 +49,7 @@ pub enum JointKind {
     Revolute,
     /// sigma = 1: q is added to r.
     Prismatic,
-    /// sigma = 2: no variable.
+    /// sigma = 2: no variable. In [`Frame::kind`] also a frame without a variable of its own that moves with those of
+    /// others: [`Robot::motions`](crate::Robot::motions) says how.
     Fixed,
 }

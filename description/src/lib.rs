@@ -18,6 +18,7 @@
 
 mod base_parameter;
 pub mod bounds;
+mod dependent;
 mod drive;
 pub mod formula;
 mod frame;
@@ -29,6 +30,7 @@ mod robot;
 mod standard;
 
 pub use base_parameter::BaseParameter;
+pub use dependent::{DependentFrame, MAX_TERMS, Motion, motions};
 pub use drive::Drive;
 pub use frame::{Frame, JointKind};
 pub use joint::{JointIndex, JointNumber};

@@ -1,7 +1,8 @@
 //! A robot as numbers.
 
 use crate::{
-    BaseParameter, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Nominal, StandardParameter,
+    BaseParameter, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Motion, Nominal,
+    StandardParameter, motions,
 };
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -19,8 +20,14 @@ pub struct Robot {
     pub gravity: [f64; 3],
     /// One row per frame, base first, parents before children.
     pub frames: Cow<'static, [Frame]>,
+    /// The frames that move with other variables than their own joint's alone, ascending; none in most robots.
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    pub dependent: Cow<'static, [DependentFrame]>,
     /// Transmission between motors and joints.
     pub drive: Drive,
+    /// Standard parameters, by index, that are known to be 0; none in most robots.
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    pub known: Cow<'static, [usize]>,
     /// Limits per joint, SI.
     pub limits: Limits,
     /// The standard parameters in the order of chi_st: for each frame XX XY XZ YY YZ ZZ MX MY MZ M, then,
@@ -38,12 +45,35 @@ impl Robot {
         self.joint_frames().count()
     }
 
+    /// How each frame moves on its parent.
+    ///
+    /// ```
+    /// use dynid_description::{DependentFrame, Drive, Frame, JointKind, Limits, Robot};
+    ///
+    /// // Two axes on the base, and a bar on the second one that the first keeps parallel to itself.
+    /// let axis = Frame::on_base(JointKind::Revolute);
+    /// let bar = Frame { parent: Some(1), kind: JointKind::Fixed, ..axis };
+    /// let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
+    /// let gravity = [0.0, -9.81, 0.0];
+    /// let mut robot = Robot::with_standard_as_base("bars", gravity, vec![axis, axis, bar], drive, Limits::default());
+    /// let terms = vec![(0, 1.0), (1, -1.0)].into();
+    /// robot.dependent = vec![DependentFrame { frame: 2, kind: JointKind::Revolute, terms }].into();
+    ///
+    /// assert_eq!(robot.joints(), 2);
+    /// assert_eq!(robot.motions()[1].terms, [(1, 1.0)]);
+    /// assert_eq!(robot.motions()[2].terms, [(0, 1.0), (1, -1.0)]);
+    /// ```
+    pub fn motions(&self) -> Vec<Motion> {
+        motions(self.frames.iter().map(|f| f.kind), &self.dependent)
+    }
+
     /// How each joint moves, in the order of the joints: revolute or prismatic, never fixed.
     pub fn joint_kinds(&self) -> Vec<JointKind> {
         self.joint_frames().map(|frame| self.frames[frame].kind).collect()
     }
 
-    /// Joint of each frame as a 0-based index, `None` for a fixed frame.
+    /// The joint whose own frame each frame is, as a 0-based index; `None` for a fixed frame, and for one that moves with the
+    /// variables of other frames only.
     pub fn joint_of_frame(&self) -> Vec<Option<usize>> {
         let mut joint = 0;
         self.frames
@@ -88,10 +118,19 @@ impl Robot {
         self.joint_frames().position(|known| known == frame).map(JointIndex)
     }
 
-    /// Standard parameters, by index, that no base parameter holds: they have no effect on any torque.
+    /// Index of the frame that a payload is on: the last one of the table, of those that have a joint or are fixed. Bars
+    /// without a joint of their own carry none.
+    pub fn flange(&self) -> Option<usize> {
+        let is_bar =
+            |k: usize| self.frames[k].kind == JointKind::Fixed && self.dependent.iter().any(|d| d.frame == k);
+        (0..self.frames.len()).rev().find(|&k| !is_bar(k))
+    }
+
+    /// Standard parameters, by index, that no base parameter holds, but for those that are known to be 0: they have no effect
+    /// on any torque.
     pub fn without_effect(&self) -> Vec<usize> {
         let held = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
-        (0..self.standard.len()).filter(|&k| !held(k)).collect()
+        (0..self.standard.len()).filter(|&k| !held(k) && !self.known.contains(&k)).collect()
     }
 
     /// chi from chi_st: every base parameter as its combination of standard parameters.

@@ -1,7 +1,7 @@
 //! `dynid show ROBOT`: its table, what can be identified, what evaluating it costs.
 
 use clap::Args;
-use dynid_runtime::model::{Frame, JointKind, Robot};
+use dynid_runtime::model::{JointIndex, JointKind, Motion, Robot};
 use dynid_runtime::report::significant;
 
 use crate::failure::Failure;
@@ -59,15 +59,11 @@ fn frames(robot: &Robot) -> String {
             text
         }
     };
-    let variable = |frame: &Frame, kind: JointKind, j: usize, constant: f64| {
-        if frame.kind != kind {
+    let variable = |motion: &Motion, kind: JointKind, constant: f64| {
+        if motion.kind != kind {
             return number(constant);
         }
-        match constant {
-            0.0 => format!("q{j}"),
-            c if c < 0.0 => format!("q{j} - {}", number(-c)),
-            c => format!("q{j} + {}", number(c)),
-        }
+        motion.entry(|joint| robot.joint_number(JointIndex(joint)).0, &number(constant))
     };
     let branched = robot.frames.iter().any(|f| f.gamma != 0.0 || f.b != 0.0);
     let mut header = vec!["j", "a(j)", "sigma", "alpha", "d", "theta", "r"];
@@ -77,10 +73,11 @@ fn frames(robot: &Robot) -> String {
     let rows = robot
         .frames
         .iter()
+        .zip(robot.motions())
         .enumerate()
-        .map(|(k, frame)| {
+        .map(|(k, (frame, motion))| {
             let j = k + 1;
-            let sigma = match frame.kind {
+            let sigma = match motion.kind {
                 JointKind::Revolute => "0",
                 JointKind::Prismatic => "1",
                 JointKind::Fixed => "2",
@@ -91,8 +88,8 @@ fn frames(robot: &Robot) -> String {
                 sigma.to_owned(),
                 number(frame.alpha),
                 number(frame.d),
-                variable(frame, JointKind::Revolute, j, frame.theta),
-                variable(frame, JointKind::Prismatic, j, frame.r),
+                variable(&motion, JointKind::Revolute, frame.theta),
+                variable(&motion, JointKind::Prismatic, frame.r),
             ];
             if branched {
                 row.splice(3..3, [number(frame.gamma), number(frame.b)]);
@@ -130,6 +127,10 @@ fn relations(robot: &Robot) -> String {
     let mut text = table(&["<", "<", "<"], rows);
     if !silent.is_empty() {
         text.push_str(&format!("\nwithout any effect on the joint torques: {}", silent.join(" ")));
+    }
+    if !robot.known.is_empty() {
+        let known: Vec<&str> = robot.known.iter().map(|&k| robot.standard[k].name.as_ref()).collect();
+        text.push_str(&format!("\nknown to be 0: {}", known.join(" ")));
     }
     text
 }

@@ -89,6 +89,9 @@ pub(crate) struct Joint {
 pub(crate) struct Mimic {
     pub place: Place,
     pub of: String,
+    pub multiplier: f64,
+    /// rad or m.
+    pub offset: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -341,7 +344,12 @@ fn read_joint(
     };
     let (damping, friction) = (friction("damping"), friction("friction"));
     let mimic = first(node, "mimic").and_then(|node| {
-        Some(Mimic { place: reader.place_of(node), of: reader.required(node, "joint")?.to_owned() })
+        Some(Mimic {
+            place: reader.place_of(node),
+            of: reader.required(node, "joint")?.to_owned(),
+            multiplier: reader.number(node, "multiplier").unwrap_or(1.0),
+            offset: reader.number(node, "offset").unwrap_or(0.0),
+        })
     });
     let limit = read_limit(reader, node, kind);
     let (parent, child, axis) = (parent?, child?, axis?);
@@ -436,7 +444,8 @@ fn connect(reader: &mut Reader<'_>, place: Place, links: &mut [Link], joints: &[
             reader.report(
                 joint.place,
                 format!(
-                    "link '{}' is the child of joint '{}' already: '{}' closes a loop, and dynid takes trees",
+                    "link '{}' is the child of joint '{}' already: '{}' closes a loop, and dynid takes trees; a parallelogram \
+                     is a tree whose bars mimic its joints, any other loop needs a numerical solver, which dynid has not",
                     shown(link),
                     shown(first),
                     shown(second)

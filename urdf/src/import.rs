@@ -11,9 +11,9 @@ use crate::mistake::{Mistake, shown};
 use crate::pose::Pose;
 use crate::text::{angle, length, number, plain, quoted, tidy, variable};
 use crate::tree::{Tree, too_many};
-use dynid_description::JointKind;
 use dynid_description::ParameterKind;
 use dynid_description::bounds::{MAX_FRAMES, NEGLIGIBLE};
+use dynid_description::{JointKind, Motion};
 
 /// What of a URDF is taken, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,8 +61,10 @@ pub fn import(urdf: &Urdf, file: &str, options: &ImportOptions) -> Result<Import
     let mut warnings = urdf.warnings.clone();
     warnings.extend(held(urdf, &tree));
     warnings.extend(without_mass(urdf, &tree));
+    warnings.extend(friction_of_followers(urdf, &tree));
     let yaml = Writer { urdf, tree: &tree, frames: &frames, options }.yaml(file);
-    let joints = tree.bodies.iter().map(|m| urdf.joints[m.joint].name.clone()).collect();
+    let own = tree.bodies.iter().filter(|m| m.follows.is_none());
+    let joints = own.map(|m| urdf.joints[m.joint].name.clone()).collect();
     Ok(Imported { yaml, joints, warnings })
 }
 
@@ -91,6 +93,19 @@ fn without_mass(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
         Mistake::new(urdf.links[link].place, words)
     };
     tree.bodies.iter().filter(|m| massless(&m.links)).map(|m| words(m.links[0].0)).collect()
+}
+
+fn friction_of_followers(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
+    let followers = tree.bodies.iter().filter(|m| m.follows.is_some()).map(|m| &urdf.joints[m.joint]);
+    let has = |joint: &&Joint| [joint.damping, joint.friction].into_iter().flatten().any(|x| x != 0.0);
+    let words = |joint: &Joint| {
+        let words = format!(
+            "damping and friction of '{}' are left out: a table has friction of joints with a variable of their own",
+            shown(&joint.name)
+        );
+        Mistake::new(joint.place, words)
+    };
+    followers.filter(has).map(words).collect()
 }
 
 /// What the YAML is written from.
@@ -149,14 +164,23 @@ impl Writer<'_> {
 
     fn row(&self, j: usize, row: &Row) -> (String, &str) {
         let screw = &row.screw;
+        let follows = row.body.and_then(|k| self.tree.bodies[k].follows);
+        let offset = follows.map_or(0.0, |follows| follows.offset);
         let (mut theta, mut r) = (angle(screw.theta), length(screw.r));
+        let entry = |constant: &str| match follows.and_then(|f| Some((f, self.number_of(f.joint)?))) {
+            Some((follows, number)) => {
+                let motion = Motion { kind: row.kind, terms: vec![(number, follows.multiplier)] };
+                motion.entry(|number| number, constant)
+            }
+            None => variable(j, constant),
+        };
         let sigma = match row.kind {
             JointKind::Revolute => {
-                theta = variable(j, &theta);
+                theta = entry(&angle(screw.theta + offset));
                 0
             }
             JointKind::Prismatic => {
-                r = variable(j, &r);
+                r = entry(&length(screw.r + offset));
                 1
             }
             JointKind::Fixed => 2,
@@ -173,8 +197,20 @@ impl Writer<'_> {
         (text, name)
     }
 
+    /// Number of the row of a joint.
+    fn number_of(&self, joint: usize) -> Option<usize> {
+        let body = self.tree.bodies.iter().position(|m| m.joint == joint)?;
+        self.frames.number.get(body).copied()
+    }
+
+    /// The joints that have a variable of their own.
+    fn own_joints(&self) -> impl Iterator<Item = &Joint> {
+        let own = self.tree.bodies.iter().filter(|m| m.follows.is_none());
+        own.map(|m| &self.urdf.joints[m.joint])
+    }
+
     fn drive(&self) -> String {
-        let gears: Vec<Option<f64>> = (0..self.tree.bodies.len()).map(|k| self.joint(k).gear).collect();
+        let gears: Vec<Option<f64>> = self.own_joints().map(|joint| joint.gear).collect();
         if gears.iter().flatten().all(|gear| *gear == 1.0) {
             return String::new();
         }
@@ -187,7 +223,7 @@ impl Writer<'_> {
 
     /// Limits that every joint has; the reader takes no list with gaps.
     fn limits(&self) -> String {
-        let joints: Vec<&Joint> = (0..self.tree.bodies.len()).map(|k| self.joint(k)).collect();
+        let joints: Vec<&Joint> = self.own_joints().collect();
         let mut text = String::new();
         let position = |joint: &&Joint| match (joint.kind, joint.limit.position) {
             (JointType::Continuous, _) => Some("2*pi".to_owned()),
@@ -234,7 +270,7 @@ impl Writer<'_> {
                 }
             }
             let friction = [(ParameterKind::Fv, joint.damping), (ParameterKind::Fc, joint.friction)];
-            for (kind, value) in friction {
+            for (kind, value) in friction.into_iter().filter(|_| self.tree.bodies[k].follows.is_none()) {
                 if let Some(value) = value.filter(|x| *x != 0.0) {
                     named.push(format!("{}{j}: {}", kind.symbol(), number(value)));
                 }

@@ -64,6 +64,10 @@ impl<'a> Template<'a> {
         let root = urdf.pose_in_root(tree.base);
         let gravity = root.rotation.transpose() * Vector3::from(options.gravity);
         let skeleton = Skeleton::of_tree(urdf, &tree, gravity);
+        if !robot.dependent.is_empty() || tree.bodies.iter().any(|body| body.follows.is_some()) {
+            let words = "joints that depend on others (mimic) have no place in a template yet";
+            return Err(Ok(Unlike(words.to_owned())));
+        }
         let table = Skeleton::of_table(robot, &vec![0.0; robot.standard.len()]);
         let in_link = matched(&table, &skeleton).map_err(Ok)?;
         let joints = robot.joint_of_frame();

@@ -23,10 +23,22 @@ pub(crate) struct Moving {
     pub joint: usize,
     /// Body that carries it; `None` for the base.
     pub parent: Option<usize>,
+    /// What moves it where it has no variable of its own.
+    pub follows: Option<Follows>,
     /// Its frame at 0 in the frame of the carrying body.
     pub origin: Pose,
     /// Links with their poses in the frame of the joint's child link, which is the first.
     pub links: Vec<(usize, Pose)>,
+}
+
+/// A joint that mimics another: q = multiplier * q of the other + offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Follows {
+    /// The joint, which has a variable of its own.
+    pub joint: usize,
+    pub multiplier: f64,
+    /// rad or m.
+    pub offset: f64,
 }
 
 /// More joints than a table has.
@@ -37,6 +49,9 @@ pub(crate) fn too_many(count: usize, place: Place, base: &str) -> Mistake {
     );
     Mistake::new(place, words)
 }
+
+/// A multiplier this close to a whole number, relatively, is one: how ratios are rounded in a file.
+const WHOLE: f64 = 1e-6;
 
 impl Urdf {
     /// What moves of the links from `base` on, or between `base` and `tip`.
@@ -85,7 +100,12 @@ impl Urdf {
                 } else if let Err(mistake) = self.check_moving(j) {
                     mistakes.push(mistake);
                 } else {
-                    tree.bodies.push(Moving { joint: j, parent: body, origin: there, links: Vec::new() });
+                    let follows = self.followed(j).unwrap_or_else(|mistake| {
+                        mistakes.push(mistake);
+                        None
+                    });
+                    let links = Vec::new();
+                    tree.bodies.push(Moving { joint: j, parent: body, follows, origin: there, links });
                     open.push((joint.child, Some(tree.bodies.len() - 1), Pose::identity()));
                 }
             }
@@ -99,6 +119,7 @@ impl Urdf {
                 "no joint moves there: expected at least one that is revolute, continuous or prismatic";
             mistakes.push(Mistake::new(self.links[base].place, words));
         }
+        mistakes.extend(self.left_behind(&tree));
         tree.held.sort_unstable();
         if mistakes.is_empty() { Ok(self.in_order(tree)) } else { Err(mistakes) }
     }
@@ -122,14 +143,6 @@ impl Urdf {
     fn check_moving(&self, j: usize) -> Result<(), Mistake> {
         let joint = &self.joints[j];
         let name = shown(&joint.name);
-        if let Some(mimic) = &joint.mimic {
-            let words = format!(
-                "joint '{name}' mimics '{}': a table has no dependent joints. --base and --tip choose a chain without it; \
-                 it is then held at 0",
-                shown(&mimic.of)
-            );
-            return Err(Mistake::new(mimic.place, words));
-        }
         match joint.kind {
             JointType::Floating | JointType::Planar => {
                 let what = if joint.kind == JointType::Planar { "planar" } else { "floating" };
@@ -141,6 +154,68 @@ impl Urdf {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Joints that mimic one that does not move.
+    fn left_behind(&self, tree: &Tree) -> Vec<Mistake> {
+        let moves = |joint: usize| tree.bodies.iter().any(|body| body.joint == joint);
+        let left = |body: &&Moving| body.follows.is_some_and(|follows| !moves(follows.joint));
+        let words = |body: &Moving| {
+            let joint = &self.joints[body.joint];
+            let (place, of) =
+                joint.mimic.as_ref().map_or((joint.place, ""), |mimic| (mimic.place, &mimic.of));
+            let words = format!(
+                "joint '{}' mimics '{}', which does not move here: choose --base and --tip so that both move, or neither",
+                shown(&joint.name),
+                shown(of)
+            );
+            Mistake::new(place, words)
+        };
+        tree.bodies.iter().filter(left).map(words).collect()
+    }
+
+    /// What moves a joint that mimics another, through joints that mimic in their turn.
+    fn followed(&self, j: usize) -> Result<Option<Follows>, Mistake> {
+        let Some(first) = &self.joints[j].mimic else { return Ok(None) };
+        let name = shown(&self.joints[j].name);
+        let mistake = |words: String| Err(Mistake::new(first.place, words));
+        let mut follows = Follows { joint: j, multiplier: 1.0, offset: 0.0 };
+        let mut steps = 0;
+        while let Some(mimic) = &self.joints[follows.joint].mimic {
+            let Some(of) = self.joints.iter().position(|joint| joint.name == mimic.of) else {
+                return Ok(None);
+            };
+            follows.offset += follows.multiplier * mimic.offset;
+            follows = Follows { joint: of, multiplier: follows.multiplier * mimic.multiplier, ..follows };
+            steps += 1;
+            if steps > self.joints.len() {
+                return mistake(format!("joint '{name}' mimics itself, through others"));
+            }
+        }
+        let of = &self.joints[follows.joint];
+        let (multiplier, other) = (follows.multiplier, shown(&of.name));
+        let is_length = |kind: JointType| kind == JointType::Prismatic;
+        if multiplier == 0.0 || !multiplier.is_finite() || !follows.offset.is_finite() {
+            return mistake(format!(
+                "joint '{name}' mimics '{other}' {multiplier} times: a joint that stands is fixed"
+            ));
+        }
+        if is_length(self.joints[j].kind) {
+            return Ok(Some(follows));
+        }
+        if is_length(of.kind) || of.kind == JointType::Fixed {
+            return mistake(format!(
+                "joint '{name}' turns and mimics '{other}', which does not: its angle is no sum of angles"
+            ));
+        }
+        let whole = multiplier.round();
+        if (multiplier - whole).abs() > WHOLE * multiplier.abs() {
+            return mistake(format!(
+                "joint '{name}' mimics '{other}' {multiplier} times: a table has sines and cosines of sums of joint angles, \
+                 which need whole multiples. --base and --tip choose a chain without it; it is then held at 0"
+            ));
+        }
+        Ok(Some(Follows { multiplier: whole, ..follows }))
     }
 
     /// The bodies depth first in the order of the file: children are pushed when their parent is met, so that siblings

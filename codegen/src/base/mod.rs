@@ -25,8 +25,10 @@
 //! ```
 
 mod attainable;
+mod dependent;
 mod friction;
 mod placement;
+mod random_states;
 mod regroup;
 
 use crate::exact::Form;
@@ -49,8 +51,14 @@ pub struct BaseSet {
 /// The base parameters of a robot.
 pub fn base_set(robot: &RobotTable) -> BaseSet {
     let standard = robot.standard_parameters();
-    let mut regrouping = regroup::regroup(robot, &standard);
+    let mut regrouping = if robot.dependent.is_empty() {
+        regroup::regroup(robot, &standard)
+    } else {
+        dependent::regroup_dependent(robot, &standard)
+    };
     friction::regroup_friction(robot, &standard, &mut regrouping);
+    // What is 0 is in no combination.
+    regrouping.extend(robot.known.iter().map(|&column| (column, Vec::new())));
     let kept = (0..standard.len()).filter(|column| !regrouping.contains_key(column));
     let base = kept.map(|column| base_parameter(robot, &standard, &regrouping, column)).collect();
     BaseSet { standard, base }

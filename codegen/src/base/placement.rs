@@ -104,7 +104,8 @@ fn cos_sin(angle: &Expression, angles: &Angles) -> (Form, Form) {
 /// A length that an expression leaves over from rounding is zero.
 const NOTHING: f64 = 1e-12;
 
-fn length(expression: &Expression) -> Form {
+/// A length of the table.
+pub(super) fn length(expression: &Expression) -> Form {
     if expression.value().abs() < NOTHING { Form::zero() } else { form(expression) }
 }
 

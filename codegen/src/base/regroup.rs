@@ -81,6 +81,9 @@ fn candidates(
     let rotors = robot.drive.rotor_matrices();
     let mut candidates = Vec::new();
     for (column, parameter) in standard.iter().enumerate() {
+        if robot.known.contains(&column) {
+            continue;
+        }
         let mut candidate = Candidate { column, ..Candidate::default() };
         match (parameter.kind, joint_of(parameter.frame)) {
             (ParameterKind::Ia, Some(joint)) => {

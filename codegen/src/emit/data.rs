@@ -10,8 +10,10 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
     let (name, description) = (&robot.name, super::header::one_line(&robot.description));
     let gravity = robot.gravity.map(float);
     let frames = frames(robot);
+    let dependent = dependent(robot);
     let gear = floats(&robot.drive.gear);
     let coupled = borrowed(robot.drive.coupled_friction.iter().map(|&m| index(m)));
+    let known = borrowed(robot.known.iter().map(|&k| index(k)));
     let limits = limits(&robot.limits);
     let standard = borrowed(robot.standard.iter().map(|p| {
         let (name, kind, frame) = (&p.name, format_ident!("{}", format!("{:?}", p.kind)), index(p.frame));
@@ -44,7 +46,9 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
             description: Cow::Borrowed(#description),
             gravity: [#(#gravity),*],
             frames: #frames,
+            dependent: #dependent,
             drive: Drive { gear: #gear, coupled_friction: #coupled },
+            known: #known,
             limits: #limits,
             standard: #standard,
             base: #base,
@@ -76,6 +80,17 @@ fn frames(robot: &Robot) -> TokenStream {
                 gamma: #gamma, b: #b, alpha: #alpha, d: #d, theta: #theta, r: #r,
             }
         }
+    }))
+}
+
+fn dependent(robot: &Robot) -> TokenStream {
+    borrowed(robot.dependent.iter().map(|d| {
+        let (frame, kind) = (index(d.frame), format_ident!("{}", format!("{:?}", d.kind)));
+        let terms = borrowed(d.terms.iter().map(|&(joint, c)| {
+            let (joint, c) = (index(joint), float(c));
+            quote!((#joint, #c))
+        }));
+        quote!(DependentFrame { frame: #frame, kind: JointKind::#kind, terms: #terms })
     }))
 }
 

@@ -3,7 +3,7 @@
 use crate::base::BaseSet;
 use crate::mechanics::Equations;
 use crate::robot::{Expression, RobotTable, TableRow};
-use dynid_description::JointKind;
+use dynid_description::{JointKind, Motion};
 use std::fmt::Write;
 
 /// Table, base parameters and operation counts as module documentation.
@@ -27,8 +27,9 @@ pub fn table_lines(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> 
     line("");
     line("| j | parent | sigma | gamma | b | alpha | d | theta | r |");
     line("|---|---|---|---|---|---|---|---|---|");
-    for frame in &robot.frames {
-        line(&row(frame));
+    let numbers: Vec<usize> = robot.joint_frames().iter().map(|&f| robot.frames[f].j).collect();
+    for (frame, motion) in robot.frames.iter().zip(&robot.motions()) {
+        line(&row(frame, motion, &numbers));
     }
     line("");
     if !robot.constants.is_empty() {
@@ -67,23 +68,13 @@ pub fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned()
 }
 
-fn row(frame: &TableRow) -> String {
-    let with_variable = |constant: &Expression, moves: bool| {
+fn row(frame: &TableRow, motion: &Motion, numbers: &[usize]) -> String {
+    let entry = |constant: &Expression, moves: JointKind| {
         let constant = constant.to_string();
-        match (moves, constant.as_str()) {
-            (false, _) => constant,
-            (true, "0") => format!("q{}", frame.j),
-            (true, _) => match constant.strip_prefix('-') {
-                Some(rest) => {
-                    let inner = rest.strip_prefix('(').and_then(|r| r.strip_suffix(')')).unwrap_or(rest);
-                    let inside = if inner.contains(['+', '-', '(']) { rest } else { inner };
-                    format!("q{} - {inside}", frame.j)
-                }
-                None => format!("q{} + {constant}", frame.j),
-            },
-        }
+        let joint = |joint: usize| numbers[joint];
+        if motion.kind == moves { motion.entry(joint, &constant) } else { constant }
     };
-    let sigma = match frame.kind {
+    let sigma = match motion.kind {
         JointKind::Revolute => 0,
         JointKind::Prismatic => 1,
         JointKind::Fixed => 2,
@@ -96,7 +87,7 @@ fn row(frame: &TableRow) -> String {
         frame.b,
         frame.alpha,
         frame.d,
-        with_variable(&frame.theta, sigma == 0),
-        with_variable(&frame.r, sigma == 1),
+        entry(&frame.theta, JointKind::Revolute),
+        entry(&frame.r, JointKind::Prismatic),
     )
 }

@@ -27,11 +27,12 @@ fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStre
     let operations = operations(equations);
     // A robot without values for simulation does not name their type.
     let nominal = robot.nominal.as_ref().map(|_| quote!(Nominal,));
+    let dependent = (!robot.dependent.is_empty()).then(|| quote!(DependentFrame,));
     quote! {
         #![allow(non_snake_case, unused_variables, clippy::all)]
 
         use dynid_runtime::model::{
-            BaseParameter, Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
+            BaseParameter, #dependent Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
             ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut, evaluate_block, evaluate_line,
             evaluate_lines,
         };

@@ -36,16 +36,26 @@ pub struct Rotation {
 }
 
 impl Rotation {
+    /// The rotation by 2 atan(t).
+    pub fn of_half_tangent(t: Number) -> Rotation {
+        let square = t * t;
+        // The sum of two squares is 0 modulo P only if both are: P is 3 modulo 4.
+        let scale = (Number::ONE + square).inverse().unwrap_or(Number::ZERO);
+        Rotation { cos: (Number::ONE - square) * scale, sin: (t + t) * scale }
+    }
+
     const NONE: Rotation = Rotation { cos: Number::ONE, sin: Number::ZERO };
 
-    fn then(self, next: Rotation) -> Rotation {
+    /// One turn after the other.
+    pub fn then(self, next: Rotation) -> Rotation {
         Rotation {
             cos: self.cos * next.cos - self.sin * next.sin,
             sin: self.sin * next.cos + self.cos * next.sin,
         }
     }
 
-    fn times(self, count: i64) -> Rotation {
+    /// The turn so many times.
+    pub fn times(self, count: i64) -> Rotation {
         let mut square = if count < 0 { Rotation { sin: -self.sin, ..self } } else { self };
         let mut left = count.unsigned_abs();
         let mut turned = Rotation::NONE;

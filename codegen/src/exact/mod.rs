@@ -7,7 +7,7 @@ mod number;
 mod rational;
 mod span;
 
-pub use angle::Angles;
+pub use angle::{Angles, Rotation};
 pub use form::Form;
 pub use number::Number;
 pub use rational::{decimal, determinant, inverse};

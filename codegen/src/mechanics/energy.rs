@@ -34,11 +34,9 @@ pub fn frame_energies(g: &mut Graph, geometry: &Geometry, motions: &[FrameMotion
         let mut v = link.from_parent.inward(g, v);
         let swept = vector::cross(g, dw, link.position);
         let mut b = vector::add(g, parent.b, swept);
-        let prismatic = link.joint.filter(|_| link.kind == JointKind::Prismatic);
-        if let Some(joint) = prismatic {
-            let dq = g.symbol(Symbol::Velocity(joint));
-            let along = link.position.map(|e| g.partial(e, Symbol::Position(joint)));
-            let along = vector::scale(g, dq, along);
+        let dr = link.length_rate(g, Symbol::Velocity);
+        if link.kind == JointKind::Prismatic {
+            let along = link.along.map(|x| g.scale(x, dr));
             let turned = vector::cross(g, w, along);
             b = vector::add(g, b, turned);
         }
@@ -46,11 +44,9 @@ pub fn frame_energies(g: &mut Graph, geometry: &Geometry, motions: &[FrameMotion
         let rate = angle_rate(g, &link.from_parent.angle, Symbol::Velocity);
         let turned = [g.mul(rate, v[1]), -g.mul(rate, v[0]), Graph::ZERO];
         b = vector::add(g, b, turned);
-        if let Some(joint) = prismatic {
-            let (dq, ddq) = (g.symbol(Symbol::Velocity(joint)), g.symbol(Symbol::Acceleration(joint)));
-            v[2] = g.add(v[2], dq);
-            b[2] = g.add(b[2], ddq);
-        }
+        let ddr = link.length_rate(g, Symbol::Acceleration);
+        v[2] = g.add(v[2], dr);
+        b[2] = g.add(b[2], ddr);
         let gravity = link.from_reference.inward(g, reference.gravity);
         let drop = vector::dot(g, parent.gravity, link.position);
         let fall = g.add(parent.fall, drop);

@@ -61,18 +61,10 @@ pub fn mass_matrix(g: &mut Graph, geometry: &Geometry, set: &BaseSet, screws: &[
             g.name(e, &format!("j{}_{axis}", link.j));
         }
         vector::name(g, body.first_moment, &format!("ms{}_", link.j));
-        if let Some(joint) = link.joint {
-            let [mx, my, _] = body.first_moment;
-            let (force, moment) = match link.kind {
-                // Momentum of the composite body for a unit rate of its joint.
-                JointKind::Prismatic => ([Graph::ZERO, Graph::ZERO, body.mass], [my, -mx, Graph::ZERO]),
-                _ => ([-my, mx, Graph::ZERO], [body.inertia[2], body.inertia[4], body.inertia[5]]),
-            };
-            for screw in &screws[index] {
-                let turning = vector::dot(g, screw.axis, moment);
-                let moving = vector::dot(g, screw.lever, force);
-                mass[joint * (joint + 1) / 2 + screw.joint] = g.add(turning, moving);
-            }
+        for entry in momentum_products(g, link, &body, &screws[index]) {
+            let ([i, k], product) = entry;
+            let place = &mut mass[i * (i + 1) / 2 + k];
+            *place = g.add(*place, product);
         }
         if let Some(parent) = link.parent {
             let carried = carried_inward(g, link, &body);
@@ -85,6 +77,42 @@ pub fn mass_matrix(g: &mut Graph, geometry: &Geometry, set: &BaseSet, screws: &[
         }
     }
     mass
+}
+
+/// What the momentum of a composite body, for a unit rate of its own axis, is worth on the joints that move it: entries
+/// [i, k], k <= i, of the mass matrix.
+///
+/// With the frames' own mass matrix F and the frames' rates G dq it is GT F G: the frame's row of F on the joints of the
+/// frame, and its column, without the diagonal, on those of the frames that carry it.
+fn momentum_products(g: &mut Graph, link: &Link, body: &Body, screws: &[Screw]) -> Vec<([usize; 2], Expr)> {
+    let [mx, my, _] = body.first_moment;
+    let (force, moment) = match link.kind {
+        JointKind::Prismatic => ([Graph::ZERO, Graph::ZERO, body.mass], [my, -mx, Graph::ZERO]),
+        _ => ([-my, mx, Graph::ZERO], [body.inertia[2], body.inertia[4], body.inertia[5]]),
+    };
+    let worth = |g: &mut Graph, axis: Vector, lever: Vector| {
+        let turning = vector::dot(g, axis, moment);
+        let moving = vector::dot(g, lever, force);
+        g.add(turning, moving)
+    };
+    let mut entries = Vec::new();
+    for &(joint, k) in &link.terms {
+        for screw in screws {
+            let all = worth(g, screw.axis, screw.lever);
+            if screw.joint <= joint {
+                entries.push(([joint, screw.joint], g.scale(k, all)));
+            }
+            if screw.joint >= joint {
+                let (turn, shift) = link.own_velocity(screw.joint);
+                let (mut axis, mut lever) = (screw.axis, screw.lever);
+                let (turn, shift) = (g.constant(turn), g.constant(shift));
+                (axis[2], lever[2]) = (g.sub(axis[2], turn), g.sub(lever[2], shift));
+                let carried = worth(g, axis, lever);
+                entries.push(([screw.joint, joint], g.scale(k, carried)));
+            }
+        }
+    }
+    entries
 }
 
 /// The parameters of a body in the frame of its parent.
@@ -149,8 +177,10 @@ pub(super) fn carried_inwards(
         let (force, moment) = wrenches[index];
         vector::name(g, force, &format!("f{}_", link.j));
         vector::name(g, moment, &format!("m{}_", link.j));
-        if let Some(joint) = link.joint {
-            torques[joint] = if link.kind == JointKind::Prismatic { force[2] } else { moment[2] };
+        let on_axis = if link.kind == JointKind::Prismatic { force[2] } else { moment[2] };
+        for &(joint, k) in &link.terms {
+            let share = g.scale(k, on_axis);
+            torques[joint] = g.add(torques[joint], share);
         }
         if let Some(parent) = link.parent {
             let force = link.from_parent.outward(g, force);

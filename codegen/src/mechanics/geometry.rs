@@ -19,10 +19,14 @@ pub struct Rotation {
 pub struct Link {
     /// Number of the frame, from 1.
     pub j: usize,
-    /// Revolute, prismatic or fixed.
+    /// Revolute where theta moves, prismatic where r does, fixed where nothing does.
     pub kind: JointKind,
-    /// Index of its joint, unless it is fixed.
+    /// Index of the joint whose own frame it is.
     pub joint: Option<usize>,
+    /// Joints that move it on its parent, with their coefficients.
+    pub terms: Vec<(usize, f64)>,
+    /// z of the frame, along which r moves, in the parent frame.
+    pub along: [f64; 3],
     /// Index of the parent frame; `None` is the base.
     pub parent: Option<usize>,
     /// Orientation in the parent frame.
@@ -72,7 +76,7 @@ impl Geometry {
     pub fn new(g: &mut Graph, robot: &RobotTable, merge: bool) -> Self {
         let mut links: Vec<Link> = Vec::with_capacity(robot.frames.len());
         let mut joint_frames = Vec::new();
-        for frame in &robot.frames {
+        for (frame, motion) in robot.frames.iter().zip(robot.motions()) {
             let joint = (frame.kind != JointKind::Fixed).then(|| {
                 joint_frames.push(links.len());
                 joint_frames.len() - 1
@@ -82,14 +86,19 @@ impl Geometry {
             let alpha = ConstantAngle::from_radians(frame.alpha.value());
             let mut theta = Angle::constant(ConstantAngle::from_radians(frame.theta.value()));
             let mut r = g.constant(frame.r.value());
-            match (frame.kind, joint) {
-                (JointKind::Revolute, Some(joint)) => theta = &theta + &Angle::joint(joint),
-                (JointKind::Prismatic, Some(joint)) => {
-                    let q = g.symbol(Symbol::Position(joint));
+            match motion.kind {
+                // Coefficients of angles are whole numbers.
+                JointKind::Revolute => {
+                    for &(joint, k) in &motion.terms {
+                        theta = &theta + &Angle { terms: vec![(joint, k as i32)], ..Angle::default() };
+                    }
+                }
+                JointKind::Prismatic => {
+                    let q = weighted(g, &motion.terms, Symbol::Position);
                     r = g.add(r, q);
                     g.name(r, &format!("r{}", frame.j));
                 }
-                _ => {}
+                JointKind::Fixed => {}
             }
             let turn = about_z(gamma);
             let fixed = product(&turn, &about_x(alpha));
@@ -109,8 +118,10 @@ impl Geometry {
             };
             links.push(Link {
                 j: frame.j,
-                kind: frame.kind,
+                kind: motion.kind,
                 joint,
+                terms: motion.terms,
+                along: lever,
                 parent,
                 from_parent,
                 position,
@@ -186,11 +197,33 @@ fn transposed(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
 
 /// Sum of k_j times a rate of joint j, for the joints of an angle.
 pub fn angle_rate(g: &mut Graph, angle: &Angle, rate: impl Fn(usize) -> Symbol) -> Expr {
+    let terms: Vec<(usize, f64)> = angle.terms.iter().map(|&(joint, k)| (joint, f64::from(k))).collect();
+    weighted(g, &terms, rate)
+}
+
+/// Sum of coefficient times a symbol of joints.
+fn weighted(g: &mut Graph, terms: &[(usize, f64)], symbol: impl Fn(usize) -> Symbol) -> Expr {
     let mut total = Graph::ZERO;
-    for &(joint, k) in &angle.terms {
-        let symbol = g.symbol(rate(joint));
-        let term = g.scale(f64::from(k), symbol);
+    for &(joint, k) in terms {
+        let symbol = g.symbol(symbol(joint));
+        let term = g.scale(k, symbol);
         total = g.add(total, term);
     }
     total
+}
+
+impl Link {
+    /// The rate at which r moves; 0 where it does not.
+    pub fn length_rate(&self, g: &mut Graph, rate: impl Fn(usize) -> Symbol) -> Expr {
+        if self.kind == JointKind::Prismatic { weighted(g, &self.terms, rate) } else { Graph::ZERO }
+    }
+
+    /// Velocity of the frame on its parent per unit of one of its joints' speeds: about z, and along z.
+    pub fn own_velocity(&self, joint: usize) -> (f64, f64) {
+        let k = self.terms.iter().find(|t| t.0 == joint).map_or(0.0, |t| t.1);
+        match self.kind {
+            JointKind::Prismatic => (0.0, k),
+            _ => (k, 0.0),
+        }
+    }
 }

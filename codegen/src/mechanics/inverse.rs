@@ -46,11 +46,13 @@ fn carry_inward(g: &mut Graph, geometry: &Geometry, frame: usize, wrench: Wrench
     let mut wrench = wrench;
     while let Some(k) = at {
         let link = &geometry.links[k];
-        if let Some(joint) = link.joint {
-            column[joint] = match link.kind {
-                JointKind::Prismatic => wrench.force[2],
-                _ => wrench.moment[2],
-            };
+        let on_axis = match link.kind {
+            JointKind::Prismatic => wrench.force[2],
+            _ => wrench.moment[2],
+        };
+        for &(joint, k) in &link.terms {
+            let share = g.scale(k, on_axis);
+            column[joint] = g.add(column[joint], share);
         }
         let force = link.from_parent.outward(g, wrench.force);
         let moment = link.from_parent.outward(g, wrench.moment);

@@ -2,7 +2,7 @@
 
 use super::geometry::{Geometry, Link, angle_rate};
 use super::vector::{self, Vector};
-use crate::symbolic::{Expr, Graph, Symbol};
+use crate::symbolic::{Angle, Expr, Graph, Symbol};
 use dynid_description::JointKind;
 
 /// Motion of one frame, in its own axes.
@@ -48,8 +48,8 @@ pub fn frame_motions(g: &mut Graph, geometry: &Geometry, accelerations: bool) ->
         let mut a = parent.u.map(|row| vector::dot(g, row, link.position));
         a = vector::add(g, parent.a, a);
         a = link.from_parent.inward(g, a);
-        if let (JointKind::Prismatic, Some(joint)) = (link.kind, link.joint) {
-            let dq = g.symbol(Symbol::Velocity(joint));
+        if link.kind == JointKind::Prismatic {
+            let dq = link.length_rate(g, Symbol::Velocity);
             let twice = g.scale(2.0, dq);
             let coriolis = [g.mul(twice, w[1]), -g.mul(twice, w[0]), linear];
             a = vector::add(g, a, coriolis);
@@ -63,17 +63,13 @@ pub fn frame_motions(g: &mut Graph, geometry: &Geometry, accelerations: bool) ->
     motions
 }
 
-/// Angular acceleration about z within the reference frame, and acceleration along z of a prismatic joint.
+/// Angular acceleration about z within the reference frame, and acceleration along z where r moves.
 fn accelerations_of(g: &mut Graph, link: &Link, accelerations: bool) -> (Expr, Expr) {
     if !accelerations {
         return (Graph::ZERO, Graph::ZERO);
     }
     let angular = angle_rate(g, &link.from_reference.angle, Symbol::Acceleration);
-    let linear = match (link.kind, link.joint) {
-        (JointKind::Prismatic, Some(joint)) => g.symbol(Symbol::Acceleration(joint)),
-        _ => Graph::ZERO,
-    };
-    (angular, linear)
+    (angular, link.length_rate(g, Symbol::Acceleration))
 }
 
 fn u_matrix(g: &mut Graph, w: Vector, dw: Vector, j: usize) -> [Vector; 3] {
@@ -96,34 +92,45 @@ fn u_matrix(g: &mut Graph, w: Vector, dw: Vector, j: usize) -> [Vector; 3] {
 /// For every frame, the screws of the joints that move it, from the base outwards.
 pub fn screws(g: &mut Graph, geometry: &Geometry) -> Vec<Vec<Screw>> {
     let mut all: Vec<Vec<Screw>> = Vec::with_capacity(geometry.links.len());
-    for (index, link) in geometry.links.iter().enumerate() {
+    for link in &geometry.links {
         let mut own = Vec::new();
         for k in 0..link.parent.map_or(0, |p| all[p].len()) {
             let Some(parent) = link.parent else { continue };
             let outer = all[parent][k];
             let from_reference =
                 link.reference.and_then(|r| all[r].iter().find(|s| s.joint == outer.joint).copied());
-            let axis = match from_reference {
-                Some(screw) => link.from_reference.inward(g, screw.axis),
-                None => link.from_parent.inward(g, outer.axis),
+            let (mut axis, turn) = match from_reference {
+                Some(screw) => (
+                    link.from_reference.inward(g, screw.axis),
+                    turn_of(&link.from_reference.angle, outer.joint),
+                ),
+                None => (link.from_parent.inward(g, outer.axis), link.own_velocity(outer.joint).0),
             };
+            let turn = g.constant(turn);
+            axis[2] = g.add(axis[2], turn);
             let swept = vector::cross(g, outer.axis, link.position);
             let lever = vector::add(g, outer.lever, swept);
-            let lever = link.from_parent.inward(g, lever);
+            let mut lever = link.from_parent.inward(g, lever);
+            let shift = g.constant(link.own_velocity(outer.joint).1);
+            lever[2] = g.add(lever[2], shift);
             let number = geometry.links[geometry.joint_frames[outer.joint]].j;
             vector::name(g, axis, &format!("z{number}_{}", link.j));
             vector::name(g, lever, &format!("v{number}_{}", link.j));
             own.push(Screw { joint: outer.joint, axis, lever });
         }
-        if let Some(joint) = link.joint {
-            debug_assert_eq!(geometry.joint_frames[joint], index);
-            let (axis, lever) = match link.kind {
-                JointKind::Prismatic => (vector::ZERO, vector::Z),
-                _ => (vector::Z, vector::ZERO),
-            };
-            own.push(Screw { joint, axis, lever });
+        for &(joint, _) in &link.terms {
+            if own.iter().all(|screw| screw.joint != joint) {
+                let (turn, shift) = link.own_velocity(joint);
+                let z = |g: &mut Graph, x: f64| [Graph::ZERO, Graph::ZERO, g.constant(x)];
+                own.push(Screw { joint, axis: z(g, turn), lever: z(g, shift) });
+            }
         }
         all.push(own);
     }
     all
+}
+
+/// How often a joint turns an angle.
+fn turn_of(angle: &Angle, joint: usize) -> f64 {
+    angle.terms.iter().find(|t| t.0 == joint).map_or(0.0, |t| f64::from(t.1))
 }

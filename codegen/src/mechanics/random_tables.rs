@@ -6,7 +6,7 @@ use super::inverse::Derivation;
 use super::model::{Equations, Variant};
 use crate::base::base_set;
 use crate::robot::{DriveTable, Expression, RobotTable, TableRow};
-use crate::testing::{Random, all_parameters};
+use crate::testing::{Random, all_parameters, make_dependent};
 use dynid_description::ParameterKind;
 use dynid_description::{JointKind, Limits};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -46,10 +46,19 @@ fn random_robot(random: &mut Random) -> RobotTable {
         gravity,
         constants: Vec::new(),
         frames,
+        dependent: Vec::new(),
         drive: DriveTable::direct(joints),
+        known: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }
+}
+
+/// One whose frames move with several joints, and several with one.
+fn random_dependent_robot(random: &mut Random) -> RobotTable {
+    let mut robot = random_robot(random);
+    make_dependent(&mut robot, |count| ((random.unit() + 1.0) / 2.0 * count as f64) as usize);
+    robot
 }
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
@@ -84,13 +93,13 @@ fn column(m: &Matrix, k: usize) -> Vector {
 /// Energy per unit of each of the ten inertial parameters of every frame.
 fn energies(robot: &RobotTable, q: &[f64], dq: &[f64]) -> Vec<f64> {
     let mut poses: Vec<Matrix> = Vec::new();
-    // Of each frame, the joints that move it, by the frames they turn.
+    // Of each frame, the frames that it moves with.
     let mut paths: Vec<Vec<usize>> = Vec::new();
-    let joint_frames = robot.joint_frames();
-    for (index, frame) in robot.frames.iter().enumerate() {
+    let motions = robot.motions();
+    let combined = |terms: &[(usize, f64)], x: &[f64]| terms.iter().map(|&(k, c)| c * x[k]).sum::<f64>();
+    for (index, (frame, motion)) in robot.frames.iter().zip(&motions).enumerate() {
         let parent = robot.frames.iter().position(|f| f.j == frame.parent);
-        let joint = joint_frames.iter().position(|&f| f == index);
-        let moved = |kind: JointKind| joint.filter(|_| frame.kind == kind).map_or(0.0, |k| q[k]);
+        let moved = |kind: JointKind| if motion.kind == kind { combined(&motion.terms, q) } else { 0.0 };
         let steps = [
             turn(2, frame.gamma.value()),
             shift(2, frame.b.value()),
@@ -102,21 +111,21 @@ fn energies(robot: &RobotTable, q: &[f64], dq: &[f64]) -> Vec<f64> {
         let start = parent.map_or(turn(0, 0.0), |p| poses[p]);
         poses.push(steps.iter().fold(start, |pose, step| product(&pose, step)));
         let mut path = parent.map_or(Vec::new(), |p| paths[p].clone());
-        path.extend(joint);
+        path.extend((motion.kind != JointKind::Fixed).then_some(index));
         paths.push(path);
     }
     let mut h = Vec::new();
     for (pose, path) in poses.iter().zip(&paths) {
         let (mut w, mut v) = ([0.0; 3], [0.0; 3]);
-        for &joint in path {
-            let frame = joint_frames[joint];
+        for &frame in path {
+            let rate = combined(&motions[frame].terms, dq);
             let axis = column(&poses[frame], 2);
             let arm: Vector = std::array::from_fn(|i| pose[i][3] - poses[frame][i][3]);
-            let revolute = robot.frames[frame].kind == JointKind::Revolute;
+            let revolute = motions[frame].kind == JointKind::Revolute;
             let velocity = if revolute { cross(axis, arm) } else { axis };
             for i in 0..3 {
-                w[i] += if revolute { axis[i] * dq[joint] } else { 0.0 };
-                v[i] += velocity[i] * dq[joint];
+                w[i] += if revolute { axis[i] * rate } else { 0.0 };
+                v[i] += velocity[i] * rate;
             }
         }
         let axes = [0, 1, 2].map(|k| column(pose, k));
@@ -157,8 +166,8 @@ fn lagrange_row(robot: &RobotTable, [q, dq, ddq]: [&[f64]; 3], i: usize) -> Vec<
 #[test]
 fn energy_power_and_rows_are_right_for_random_trees_however_they_are_derived() {
     let mut random = Random(11);
-    for case in 0..150 {
-        let robot = random_robot(&mut random);
+    for case in 0..250 {
+        let robot = if case < 150 { random_robot(&mut random) } else { random_dependent_robot(&mut random) };
         let set = all_parameters(&robot);
         let inertial: Vec<usize> =
             (0..set.standard.len()).filter(|&k| set.standard[k].kind <= ParameterKind::M).collect();
@@ -218,8 +227,9 @@ fn energy_power_and_rows_are_right_for_random_trees_however_they_are_derived() {
 #[test]
 fn torques_are_the_regressor_times_the_base_parameters_of_random_trees() {
     let mut random = Random(29);
-    for case in 0..80 {
-        let mut robot = random_robot(&mut random);
+    for case in 0..160 {
+        let mut robot =
+            if case < 80 { random_robot(&mut random) } else { random_dependent_robot(&mut random) };
         let joints = robot.drive.gear.len();
         // Every other drive is coupled: the last motor turns with the joint before it too.
         if case % 2 == 0 && joints > 1 {

@@ -7,9 +7,6 @@ pub type Vector = [Expr; 3];
 
 pub const ZERO: Vector = [Graph::ZERO; 3];
 
-/// Unit vector of the z axis.
-pub const Z: Vector = [Graph::ZERO, Graph::ZERO, Graph::ONE];
-
 pub fn add(g: &mut Graph, a: Vector, b: Vector) -> Vector {
     [g.add(a[0], b[0]), g.add(a[1], b[1]), g.add(a[2], b[2])]
 }

@@ -6,8 +6,8 @@ use dynid_description::formula::{Algebra, FormulaError, parse};
 /// An expression that may have joint variables added to it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Formula {
-    /// Joint variables: number j, sign, and position in the text.
-    pub variables: Vec<(usize, i32, usize)>,
+    /// Joint variables: number j, coefficient, and position in the text.
+    pub variables: Vec<(usize, f64, usize)>,
     /// Everything else; `None` where there is nothing else.
     pub constant: Option<Expression>,
 }
@@ -33,6 +33,13 @@ pub(super) fn joint_variable(name: &str) -> Option<usize> {
     dynid_description::formula::joint_variable(name, "q")
 }
 
+/// What a table cannot say.
+pub(super) const NO_SOLVER: &str = "an angle or a length is a sum of joint variables with constant coefficients; a loop \
+    whose angles are no such sum, as of four bars that are no parallelogram, needs a numerical solver, which dynid has not";
+
+/// Names of functions that the angles of a general loop would need.
+const FUNCTIONS: [&str; 9] = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "hypot"];
+
 /// What expressions of a table mean.
 struct Table<'a> {
     constants: &'a [(String, f64)],
@@ -53,7 +60,7 @@ impl Algebra for Table<'_> {
             return Ok(only(Expression::Pi));
         }
         if let Some(j) = joint_variable(name) {
-            return Ok(Formula { variables: vec![(j, 1, offset)], constant: None });
+            return Ok(Formula { variables: vec![(j, 1.0, offset)], constant: None });
         }
         match self.constants.iter().find(|(known, _)| known == name) {
             Some((_, value)) => Ok(only(Expression::Constant(name.to_owned(), *value))),
@@ -90,6 +97,9 @@ impl Table<'_> {
         if ["nan", "inf", "infinity"].contains(&word.as_str()) {
             return format!("'{name}' is not a finite number");
         }
+        if FUNCTIONS.contains(&word.as_str()) {
+            return format!("'{name}' is a function: {NO_SOLVER}");
+        }
         let known = self.constants.iter().map(|(known, _)| known.as_str()).chain(["pi"]);
         let names = known.collect::<Vec<_>>().join(", ");
         format!("unknown constant '{name}': expected a number, q<j> or one of {names}")
@@ -116,25 +126,28 @@ fn sum(mut left: Formula, mut right: Formula, operator: char) -> Formula {
 }
 
 /// `offset` is where the right side starts.
-fn product(
-    mut left: Formula,
-    right: Formula,
-    operator: char,
-    offset: usize,
-) -> Result<Formula, FormulaError> {
-    if let Some(&(j, _, at)) = left.variables.iter().chain(&right.variables).next() {
-        return error(at, format!("q{j} may only be added: expected q{j} plus a constant"));
+fn product(left: Formula, right: Formula, operator: char, offset: usize) -> Result<Formula, FormulaError> {
+    if let Some(&(j, _, at)) = right.variables.first()
+        && (operator == '/' || !left.variables.is_empty())
+    {
+        return error(at, format!("q{j} may only be added, or multiplied by a number: {NO_SOLVER}"));
     }
-    let a = Box::new(left.constant.unwrap_or(Expression::ZERO));
-    let b = right.constant.unwrap_or(Expression::ZERO);
-    left.constant = Some(if operator == '*' {
-        Expression::Mul(a, Box::new(b))
-    } else if b.value() == 0.0 {
-        return error(offset, format!("division by zero: {b} is 0"));
-    } else {
-        Expression::Div(a, Box::new(b))
-    });
-    Ok(left)
+    let (mut moving, factor) = if right.variables.is_empty() { (left, right) } else { (right, left) };
+    let factor = factor.constant.unwrap_or(Expression::ZERO);
+    let value = factor.value();
+    if operator == '/' && value == 0.0 {
+        return error(offset, format!("division by zero: {factor} is 0"));
+    }
+    for variable in &mut moving.variables {
+        variable.1 = if operator == '*' { variable.1 * value } else { variable.1 / value };
+    }
+    let variable_only = !moving.variables.is_empty() && moving.constant.is_none();
+    if !variable_only {
+        let a = Box::new(moving.constant.unwrap_or(Expression::ZERO));
+        let b = Box::new(factor);
+        moving.constant = Some(if operator == '*' { Expression::Mul(a, b) } else { Expression::Div(a, b) });
+    }
+    Ok(moving)
 }
 
 fn negative(operand: Expression) -> Expression {

@@ -12,6 +12,8 @@
 //! drive:                            # optional
 //!   gear: [32, 32, 400]             # one ratio a joint, or a matrix: motor speed = gear * joint speed
 //!   coupled_friction: [2]           # motors with friction at motor speed (Fvm2, Fcm2)
+//! massless: [3]                     # optional: frames whose ten inertial parameters are 0
+//! known: {Ia1: 0, MZ2: 0}           # optional: standard parameters that are 0; other values are not supported
 //! limits:                           # optional, each of them; x stands for [-x, x], one value for every joint
 //!   position: [pi, [-1, 2], 0.2]
 //!   velocity: 3
@@ -24,7 +26,12 @@
 //! ```
 //!
 //! Wherever a number stands there may be an expression of numbers, `pi` and constants with + - * / and parentheses.
-//! theta of a revolute joint and r of a prismatic one are `q<j>` plus such an expression, in any order.
+//! theta of a row with sigma 0 and r of one with sigma 1 are joint variables plus such an expression, in any order: `q2`,
+//! `-q1 + pi/2`, `q3 - q2`, `-q3`. A row j in which `q<j>` stands is the own frame of joint j: the joint is named after it,
+//! is an angle where its sigma is 0 and a length where it is 1, and limits, drive, Ia, Fv, Fc and off count the joints in
+//! the order of these rows. Other rows may use the same variable, before or after it: the bars of a parallelogram, a
+//! counter-carriage. A row that has only variables of others has no joint. Coefficients of angles are whole numbers (a sum
+//! of joint angles has a closed form), those of lengths any numbers; an angle has no lengths in it.
 //!
 //! Every mistake of a file is reported with its place, not only the first:
 //!
@@ -33,12 +40,14 @@
 //!
 //! let yaml = b"name: arm
 //! frames:
-//!   - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q2, r: 0}
+//!   - {j: 1, sigma: 0, alpha: 0, d: 0, theta: 0.5*q1, r: 0}
 //!   - {j: 2, sigma: 3, alpha: 0, d: 0, theta: q2, r: 0}
 //! ";
 //! let mistakes = parse("arm.yaml", yaml).unwrap_err();
 //! let text: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
-//! assert_eq!(text[0], "arm.yaml:3:45: theta of frame 1: expected q1 once, plus a constant");
+//! assert_eq!(text[0], "arm.yaml:3:49: theta of frame 1: q1 has the coefficient 0.5; an angle needs whole numbers, \
+//!     because only their sines and cosines are those of sums of joint angles. Let the joint variable be the smaller angle, \
+//!     and put the ratio in drive: gear");
 //! assert_eq!(text[1], "arm.yaml:4:19: expected sigma as 0 (revolute), 1 (prismatic) or 2 (fixed), found '3'");
 //! ```
 
@@ -48,12 +57,14 @@ mod drive;
 mod drive_table;
 mod expression;
 mod formula;
+mod known;
 mod magnitudes;
 mod parse;
 mod reader;
 mod rows;
 mod simulation_values;
 mod table;
+mod variables;
 
 pub use diagnostic::Diagnostic;
 pub use drive_table::DriveTable;

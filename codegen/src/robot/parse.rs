@@ -5,17 +5,28 @@ use super::document::{Node, Place, START, Value, read_document};
 use super::drive::read_drive;
 use super::drive_table::DriveTable;
 use super::formula::joint_variable;
+use super::known::read_known;
 use super::magnitudes::within;
 use super::reader::Reader;
 use super::rows::read_frames;
 use super::simulation_values::{read_limits, read_nominal};
-use super::table::RobotTable;
+use super::table::{NominalValues, RobotTable, TableRow, standard_parameters};
 use dynid_description::bounds::HEAVIEST;
 use dynid_description::{JointKind, Limits};
 use std::collections::HashSet;
 
-const KEYS: [&str; 8] =
-    ["name", "description", "gravity", "constants", "frames", "drive", "limits", "nominal"];
+const KEYS: [&str; 10] = [
+    "name",
+    "description",
+    "gravity",
+    "constants",
+    "frames",
+    "drive",
+    "massless",
+    "known",
+    "limits",
+    "nominal",
+];
 
 /// Reads a robot from the bytes of its YAML and checks it.
 ///
@@ -81,28 +92,53 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
         }),
         None => Some([0.0, 0.0, -9.81]),
     };
-    let frames = reader.required(&fields, "frames").and_then(|node| read_frames(reader, node, &constants))?;
+    let (frames, dependent) =
+        reader.required(&fields, "frames").and_then(|node| read_frames(reader, node, &constants))?;
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let drive = match fields.get("drive") {
         Some(node) => read_drive(reader, node, &frames, &constants),
         None => DriveTable::direct(joints),
     };
+    let zero = (fields.get("massless"), fields.get("known"));
+    let known = read_known(reader, zero, (&frames, &drive), &constants);
     let limits = match fields.get("limits") {
         Some(node) => read_limits(reader, node, joints, &constants),
         None => Limits::default(),
     };
     let nominal =
         fields.get("nominal").and_then(|node| read_nominal(reader, node, &frames, &drive, &constants));
+    check_nominal(reader, fields.get("nominal"), nominal.as_ref(), (&frames, &drive, &known));
     Some(RobotTable {
         name: name?,
         description,
         gravity: gravity?,
         constants,
         frames,
+        dependent,
         drive,
+        known,
         limits,
         nominal,
     })
+}
+
+/// What is known to be 0 has no other nominal value.
+fn check_nominal(
+    reader: &mut Reader,
+    node: Option<&Node>,
+    nominal: Option<&NominalValues>,
+    (frames, drive, known): (&[TableRow], &DriveTable, &[usize]),
+) {
+    let (Some(node), Some(nominal)) = (node, nominal) else { return };
+    let standard = standard_parameters(frames, drive);
+    for &k in known {
+        let name = &standard[k].name;
+        if let Some((_, value)) =
+            nominal.standard.iter().find(|(named, value)| named == name && *value != 0.0)
+        {
+            reader.report(node.place, format!("nominal has {name}: {value}, which is known to be 0"));
+        }
+    }
 }
 
 fn read_constants(reader: &mut Reader, node: &Node) -> Vec<(String, f64)> {

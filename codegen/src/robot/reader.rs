@@ -138,13 +138,18 @@ impl Reader {
         match parse_formula(text, constants) {
             Ok(formula) => Some(formula),
             Err(e) => {
-                let plain = matches!(node.value, Value::Scalar { plain: true, .. });
-                let offset = if plain { e.offset } else { 0 };
-                let place = Place { line: node.place.line, column: node.place.column + offset };
+                let place = self.place_in(node, e.offset);
                 self.report(place, format!("{what}: {}", e.message));
                 None
             }
         }
+    }
+
+    /// Where a character of a scalar is: of one in quotes, where it starts.
+    pub fn place_in(&self, node: &Node, offset: usize) -> Place {
+        let plain = matches!(node.value, Value::Scalar { plain: true, .. });
+        let offset = if plain { offset } else { 0 };
+        Place { line: node.place.line, column: node.place.column + offset }
     }
 
     /// An expression without joint variables.

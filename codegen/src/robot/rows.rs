@@ -6,8 +6,9 @@ use super::formula::Formula;
 use super::magnitudes;
 use super::reader::Reader;
 use super::table::TableRow;
-use dynid_description::JointKind;
+use super::variables::{Moving, dependent_frames};
 use dynid_description::bounds::MAX_FRAMES;
+use dynid_description::{DependentFrame, JointKind};
 use std::f64::consts::FRAC_PI_4;
 
 const KEYS: [&str; 9] = ["j", "parent", "sigma", "gamma", "b", "alpha", "d", "theta", "r"];
@@ -18,7 +19,7 @@ pub(super) fn read_frames(
     reader: &mut Reader,
     node: &Node,
     constants: &[(String, f64)],
-) -> Option<Vec<TableRow>> {
+) -> Option<(Vec<TableRow>, Vec<DependentFrame>)> {
     let rows =
         reader.list(node, "frames as a list of rows {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}")?;
     if rows.is_empty() {
@@ -30,22 +31,29 @@ pub(super) fn read_frames(
         reader.report(place, format!("frames has {} rows; expected at most {MAX_FRAMES}", rows.len()));
         return None;
     }
-    let frames: Vec<_> =
+    let mut read: Vec<_> =
         rows.iter().enumerate().map(|(k, row)| read_frame(reader, row, k + 1, constants)).collect();
-    check_parents(reader, &frames, rows.len());
-    let frames: Option<Vec<TableRow>> = frames.into_iter().map(|f| f.map(|row| row.frame)).collect();
+    check_parents(reader, &read, rows.len());
+    let moving: Vec<Option<Moving>> =
+        read.iter_mut().map(|row| row.as_mut().and_then(|row| row.moving.take())).collect();
+    let complete = read.iter().all(Option::is_some);
+    // Where a row could not be read its variable may be missing only because of that.
+    let dependent = if complete { dependent_frames(reader, &moving) } else { Vec::new() };
+    let frames: Option<Vec<TableRow>> = read.into_iter().map(|f| f.map(|row| row.frame)).collect();
     let frames = frames?;
-    if frames.iter().all(|f| f.kind == JointKind::Fixed) {
+    if frames.iter().all(|f| f.kind == JointKind::Fixed) && moving.iter().all(Option::is_none) {
         reader
             .report(node.place, "every frame is fixed (sigma 2); expected at least one joint (sigma 0 or 1)");
-        return None;
     }
-    Some(frames)
+    // Without a joint there is nothing to count: what is wrong has been reported.
+    frames.iter().any(|f| f.kind != JointKind::Fixed).then_some((frames, dependent))
 }
 
 struct Row {
     frame: TableRow,
     parent_place: Place,
+    /// What moves it, unless it is fixed.
+    moving: Option<Moving>,
 }
 
 fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, f64)]) -> Option<Row> {
@@ -85,26 +93,53 @@ fn read_frame(reader: &mut Reader, node: &Node, j: usize, constants: &[(String, 
     };
     let (gamma, b) = (constant("gamma", false), constant("b", false));
     let (alpha, d) = (constant("alpha", true), constant("d", true));
-    let mut moving = |key: &str, moves: JointKind| {
+    let mut moving = None;
+    let mut entry = |key: &'static str, moves: JointKind| {
         let node = reader.required(&fields, key)?;
-        let formula = reader.formula(node, key, constants)?;
-        if let Some(kind) = kind
-            && let Err(message) = check_variable(&formula, key, j, kind, kind == moves)
-        {
-            reader.report(node.place, message);
-        }
-        if let Some(value) = &formula.constant {
-            magnitudes::check(reader, node, key, value);
-        }
-        if let Some(angle) = formula.constant.as_ref().filter(|_| key == "theta") {
-            warn_of_rounded(reader, node, key, angle);
-        }
-        formula.constant
+        read_entry(reader, (node, key), j, (kind, moves), constants, &mut moving)
     };
-    let theta = moving("theta", JointKind::Revolute).unwrap_or(Expression::ZERO);
-    let r = moving("r", JointKind::Prismatic).unwrap_or(Expression::ZERO);
-    let frame = TableRow { j, parent: parent.unwrap_or(j - 1), kind: kind?, gamma, b, alpha, d, theta, r };
-    Some(Row { frame, parent_place })
+    let theta = entry("theta", JointKind::Revolute).unwrap_or(Expression::ZERO);
+    let r = entry("r", JointKind::Prismatic).unwrap_or(Expression::ZERO);
+    // A row that moves with other variables only has no joint; one whose variables could not be read counts as a joint, so
+    // that what counts joints can be checked too.
+    let own = match (&moving, kind?) {
+        (Some(row), _) if !row.is_own(j) => JointKind::Fixed,
+        (_, kind) => kind,
+    };
+    let frame = TableRow { j, parent: parent.unwrap_or(j - 1), kind: own, gamma, b, alpha, d, theta, r };
+    Some(Row { frame, parent_place, moving })
+}
+
+/// Reads theta or r of row `j`, which moves where its kind is `moves`: the constant, and into `moving` the variables.
+fn read_entry(
+    reader: &mut Reader,
+    (node, key): (&Node, &'static str),
+    j: usize,
+    (kind, moves): (Option<JointKind>, JointKind),
+    constants: &[(String, f64)],
+    moving: &mut Option<Moving>,
+) -> Option<Expression> {
+    let formula = reader.formula(node, key, constants)?;
+    match kind {
+        Some(kind) if kind == moves && !formula.variables.is_empty() => {
+            let at = |offset: usize| reader.place_in(node, offset);
+            let terms = formula.variables.iter().map(|&(k, c, offset)| (k, c, at(offset))).collect();
+            *moving = Some(Moving::new(reader, j, (key, kind), terms));
+        }
+        Some(kind) => {
+            if let Err(message) = check_variable(&formula, key, j, kind, kind == moves) {
+                reader.report(node.place, message);
+            }
+        }
+        None => {}
+    }
+    if let Some(value) = &formula.constant {
+        magnitudes::check(reader, node, key, value);
+    }
+    if let Some(angle) = formula.constant.as_ref().filter(|_| key == "theta") {
+        warn_of_rounded(reader, node, key, angle);
+    }
+    formula.constant
 }
 
 /// Warns of an angle that is written as a rounded multiple of pi/4: it is taken as it stands, as a general angle.
@@ -129,7 +164,7 @@ fn warn_of_rounded(reader: &mut Reader, node: &Node, key: &str, angle: &Expressi
     }
 }
 
-/// The joint variable stands once where the joint moves (`expected`), and nowhere else.
+/// An entry without variables where the joint does not move (`expected` is false); with some where it does.
 fn check_variable(
     formula: &Formula,
     key: &str,
@@ -146,9 +181,9 @@ fn check_variable(
     match (expected, formula.variables.as_slice()) {
         (false, []) => Ok(()),
         (false, [(k, ..), ..]) => Err(format!("{mismatch}: expected a constant, found q{k}")),
-        (true, []) => Err(format!("{mismatch}: expected q{j} plus a constant")),
-        (true, [(k, 1, _)]) if *k == j => Ok(()),
-        (true, _) => Err(format!("{key} of frame {j}: expected q{j} once, plus a constant")),
+        (true, _) => Err(format!(
+            "{mismatch}: expected q{j} plus a constant, or a sum of the variables of several joints"
+        )),
     }
 }
 

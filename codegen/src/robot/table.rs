@@ -2,7 +2,7 @@
 
 use super::drive_table::DriveTable;
 use super::expression::Expression;
-use dynid_description::{Frame, JointKind, Limits, StandardParameter};
+use dynid_description::{DependentFrame, Frame, JointKind, Limits, Motion, StandardParameter, motions};
 
 /// A robot read from its YAML, checked: the modified-DH table in symbols, and what else the file says.
 ///
@@ -19,8 +19,12 @@ pub struct RobotTable {
     pub constants: Vec<(String, f64)>,
     /// The rows: parents before children.
     pub frames: Vec<TableRow>,
+    /// The frames that move with other variables than their own joint's alone, ascending.
+    pub dependent: Vec<DependentFrame>,
     /// Motors and transmission.
     pub drive: DriveTable,
+    /// Standard parameters, by index, that are known to be 0: they are no part of any base parameter.
+    pub known: Vec<usize>,
     /// Limits per joint.
     pub limits: Limits,
     /// Values for simulation.
@@ -35,7 +39,7 @@ pub struct TableRow {
     pub j: usize,
     /// Number of the parent frame; 0 is the base.
     pub parent: usize,
-    /// `sigma`.
+    /// What the frame's own joint is; fixed where it has none, also where it moves with the variables of others.
     pub kind: JointKind,
     /// Branch angle, rad.
     pub gamma: Expression,
@@ -45,9 +49,9 @@ pub struct TableRow {
     pub alpha: Expression,
     /// Distance between the z axes along the parent's x, m.
     pub d: Expression,
-    /// Constant part of theta, rad: q_j is added for a revolute joint.
+    /// Constant part of theta, rad: the variables are added where it moves.
     pub theta: Expression,
-    /// Constant part of r, m: q_j is added for a prismatic joint.
+    /// Constant part of r, m: the variables are added where it moves.
     pub r: Expression,
 }
 
@@ -72,6 +76,11 @@ impl RobotTable {
     /// The frames that are joints, in order: index in `frames` of joint 0, 1, ...
     pub fn joint_frames(&self) -> Vec<usize> {
         (0..self.frames.len()).filter(|&k| self.frames[k].kind != JointKind::Fixed).collect()
+    }
+
+    /// How each frame moves on its parent.
+    pub fn motions(&self) -> Vec<Motion> {
+        motions(self.frames.iter().map(|f| f.kind), &self.dependent)
     }
 
     /// The standard parameters in the order of chi_st.

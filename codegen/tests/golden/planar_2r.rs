@@ -80,10 +80,12 @@ pub static ROBOT: Robot = Robot {
             },
         ],
     ),
+    dependent: Cow::Borrowed(&[]),
     drive: Drive {
         gear: Cow::Borrowed(&[50.0, 0.0, 0.0, 50.0]),
         coupled_friction: Cow::Borrowed(&[]),
     },
+    known: Cow::Borrowed(&[]),
     limits: Limits {
         position: Cow::Borrowed(
             &[

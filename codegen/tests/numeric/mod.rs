@@ -29,12 +29,12 @@ fn motions(robot: &RobotTable, q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<Body> 
         jv: vec![zero; n],
         jw: vec![zero; n],
     }];
-    let mut joint = 0;
-    for frame in &robot.frames {
+    for (frame, motion) in robot.frames.iter().zip(robot.motions()) {
         let parent = &bodies[frame.parent];
-        let moving = frame.kind != JointKind::Fixed;
-        let (x, dx, ddx) = if moving { (q[joint], dq[joint], ddq[joint]) } else { (0.0, 0.0, 0.0) };
-        let revolute = frame.kind == JointKind::Revolute;
+        let moving = motion.kind != JointKind::Fixed;
+        let [x, dx, ddx] =
+            [q, dq, ddq].map(|joints| motion.terms.iter().map(|&(k, c)| c * joints[k]).sum::<f64>());
+        let revolute = motion.kind == JointKind::Revolute;
         let theta = frame.theta.value() + if revolute { x } else { 0.0 };
         let r = frame.r.value() + if moving && !revolute { x } else { 0.0 };
         let about = |axis, angle: f64| Rotation3::from_axis_angle(&axis, angle).into_inner();
@@ -53,13 +53,12 @@ fn motions(robot: &RobotTable, q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<Body> 
         if revolute {
             spin += z * dx;
             spin_rate += z * ddx + w.cross(&z) * dx;
-            jw[joint] += z;
+            motion.terms.iter().for_each(|&(k, c)| jw[k] += z * c);
         } else if moving {
             speed += z * dx;
             acceleration += z * ddx + w.cross(&z) * (2.0 * dx);
-            jv[joint] += z;
+            motion.terms.iter().for_each(|&(k, c)| jv[k] += z * c);
         }
-        joint += usize::from(moving);
         bodies.push(Body { axes, origin: parent.origin + p, speed, spin, acceleration, spin_rate, jv, jw });
     }
     bodies

@@ -229,7 +229,8 @@ fn robots_at(
             direction.advance_robot(point, &mut seeds);
             let (mut rows, mut pull) = (seeds.rows.to_vec(), *seeds.gravity);
             direction.effect.seed(variant, &mut Seeds { rows: &mut rows, gravity: &mut pull, ..seeds });
-            let links = robot.frames.iter().zip(&rows).map(|(f, r)| Link::new(f, &wide_row(r))).collect();
+            let rows: Vec<Row<Wide>> = rows.iter().map(wide_row).collect();
+            let links = Link::with_rows(robot, &rows);
             (links, pull.map(wide))
         })
         .collect()

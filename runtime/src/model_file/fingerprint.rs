@@ -10,7 +10,9 @@ use crate::model::Robot;
 /// 1. gravity x y z;
 /// 2. the number of frames, then for each: its parent's number (0 for the base), sigma, gamma, b, alpha, d, theta, r;
 /// 3. the gear matrix row by row; the number of motors with coupled friction, then each;
-/// 4. for each base parameter: its name, then the standard parameter and the coefficient of each term of its combination.
+/// 4. for each base parameter: its name, then the standard parameter and the coefficient of each term of its combination;
+/// 5. for each frame that moves with other variables than its own joint's alone: its index, sigma, then each joint and its
+///    coefficient.
 ///
 /// Name, description, limits and nominal values have no part in it.
 pub fn fingerprint(robot: &Robot) -> String {
@@ -29,6 +31,14 @@ pub fn fingerprint(robot: &Robot) -> String {
         hash.text(&base.name);
         for (standard, coefficient) in base.combination.iter() {
             hash.count(*standard);
+            hash.number(*coefficient);
+        }
+    }
+    for frame in robot.dependent.iter() {
+        hash.count(frame.frame);
+        hash.count(frame.kind as usize);
+        for (joint, coefficient) in frame.terms.iter() {
+            hash.count(*joint);
             hash.number(*coefficient);
         }
     }
@@ -90,6 +100,9 @@ pub fn difference(saved: &Robot, now: &Robot) -> Option<String> {
         if let Some((name, was, is)) = numbers.into_iter().find(|(_, was, is)| was != is) {
             return Some(format!("{name} of frame {} was {was}, now {is}", k + 1));
         }
+    }
+    if saved.dependent != now.dependent {
+        return Some("a frame moves with other joint variables".to_owned());
     }
     if saved.gravity != now.gravity {
         return Some(format!("gravity was {:?}, now {:?}", saved.gravity, now.gravity));

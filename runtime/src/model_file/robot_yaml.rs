@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::model::{Frame, JointIndex, JointKind, Robot};
+use crate::model::{Frame, JointIndex, JointKind, Motion, Robot};
 
 /// A robot as the YAML that it could have been read from: numbers in the place of expressions and constants. Limits and
 /// nominal values are not written.
@@ -16,8 +16,9 @@ pub fn to_yaml(robot: &Robot) -> String {
     }
     let [x, y, z] = robot.gravity;
     let _ = writeln!(text, "gravity: [{x}, {y}, {z}]\nframes:");
-    for (k, f) in robot.frames.iter().enumerate() {
-        let _ = writeln!(text, "  - {}", row(k + 1, f));
+    let number = |joint: usize| robot.joint_number(JointIndex(joint)).0;
+    for (k, (f, motion)) in robot.frames.iter().zip(&robot.motions()).enumerate() {
+        let _ = writeln!(text, "  - {}", row(k + 1, f, motion, number));
     }
     let n = robot.joints();
     let gear: Vec<String> = robot
@@ -36,17 +37,19 @@ pub fn to_yaml(robot: &Robot) -> String {
             .collect();
         let _ = writeln!(text, "  coupled_friction: [{}]", motors.join(", "));
     }
+    if !robot.known.is_empty() {
+        let known = robot.known.iter().filter_map(|&k| robot.standard.get(k));
+        let zero: Vec<String> = known.map(|p| format!("{}: 0", p.name)).collect();
+        let _ = writeln!(text, "known: {{{}}}", zero.join(", "));
+    }
     text
 }
 
-fn row(j: usize, frame: &Frame) -> String {
-    let with = |constant: f64, moves: bool| match (moves, constant) {
-        (false, c) => c.to_string(),
-        (true, 0.0) => format!("q{j}"),
-        (true, c) if c < 0.0 => format!("q{j} - {}", -c),
-        (true, c) => format!("q{j} + {c}"),
+fn row(j: usize, frame: &Frame, motion: &Motion, number: impl Fn(usize) -> usize) -> String {
+    let with = |constant: f64, moves: JointKind| {
+        if motion.kind == moves { motion.entry(&number, &constant.to_string()) } else { constant.to_string() }
     };
-    let sigma = match frame.kind {
+    let sigma = match motion.kind {
         JointKind::Revolute => 0,
         JointKind::Prismatic => 1,
         JointKind::Fixed => 2,
@@ -61,7 +64,7 @@ fn row(j: usize, frame: &Frame) -> String {
         "{{j: {j}, parent: {parent}, sigma: {sigma}, {branch}alpha: {}, d: {}, theta: {}, r: {}}}",
         frame.alpha,
         frame.d,
-        with(frame.theta, frame.kind == JointKind::Revolute),
-        with(frame.r, frame.kind == JointKind::Prismatic)
+        with(frame.theta, JointKind::Revolute),
+        with(frame.r, JointKind::Prismatic)
     )
 }

@@ -2,7 +2,7 @@
 
 use super::error::FileError;
 use crate::model::{RecursiveModel, Robot};
-use dynid_description::bounds;
+use dynid_description::{JointKind, MAX_TERMS, bounds};
 
 /// Checks that models and effects can be evaluated with a table.
 pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
@@ -21,6 +21,7 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
             return wrong(format!("frames[{k}]"), "an angle or a length is not finite, or no robot has it");
         }
     }
+    check_dependent(robot, n)?;
     if robot.drive.gear.iter().any(|x| beyond(x, bounds::FASTEST_GEAR)) {
         return wrong("drive.gear".to_owned(), "a ratio is not finite, or no robot has it");
     }
@@ -64,6 +65,35 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
         Ok(_) => Ok(()),
         Err(error) => Err(FileError::new("table".to_owned(), &error.to_string())),
     }
+}
+
+/// What moves the frames, and which parameters are known.
+fn check_dependent(robot: &Robot, n: usize) -> Result<(), FileError> {
+    if let Some(k) = robot.known.iter().position(|&known| known >= robot.standard.len()) {
+        let what = "there is no such standard parameter";
+        return Err(FileError::new(format!("table.known[{k}]"), what));
+    }
+    let mut before = None;
+    for (k, d) in robot.dependent.iter().enumerate() {
+        let wrong =
+            |field: &str, what: &str| Err(FileError::new(format!("table.dependent[{k}].{field}"), what));
+        let Some(frame) = robot.frames.get(d.frame).filter(|_| before < Some(d.frame)) else {
+            return wrong("frame", "there is no such frame, or it is not after the one before");
+        };
+        before = Some(d.frame);
+        let same = frame.kind == JointKind::Fixed || frame.kind == d.kind;
+        if d.kind == JointKind::Fixed || !same {
+            return wrong("kind", "revolute or prismatic, as the frame's own joint");
+        }
+        let whole = |c: f64| d.kind == JointKind::Prismatic || c.fract() == 0.0;
+        let fits = |c: f64| c != 0.0 && c.abs() <= bounds::LONGEST && whole(c);
+        let ascending = d.terms.windows(2).all(|pair| pair[0].0 < pair[1].0);
+        let known = d.terms.iter().all(|&(joint, c)| joint < n && fits(c));
+        if d.terms.is_empty() || d.terms.len() > MAX_TERMS || !ascending || !known {
+            return wrong("terms", "ascending joints with coefficients, whole numbers for an angle");
+        }
+    }
+    Ok(())
 }
 
 fn check_nominal(robot: &Robot, n: usize) -> Result<(), FileError> {

@@ -84,6 +84,31 @@ fn what_is_written_is_read_again() {
     assert_eq!(model.condition_number, None);
 }
 
+#[test]
+fn frames_that_move_with_joints_that_are_not_there_are_not_believed() {
+    let mut good: Value = serde_json::to_value(model()).unwrap();
+    let frame =
+        |frame: usize, kind: &str, terms: Value| json!([{"frame": frame, "kind": kind, "terms": terms}]);
+    for (dependent, expected) in [
+        (frame(9, "revolute", json!([[0, 1.0]])), "table.dependent[0].frame"),
+        (frame(1, "fixed", json!([[0, 1.0]])), "table.dependent[0].kind"),
+        (frame(0, "prismatic", json!([[0, 1.0]])), "table.dependent[0].kind"),
+        (frame(1, "revolute", json!([[2, 1.0]])), "table.dependent[0].terms"),
+        (frame(1, "revolute", json!([[0, 0.5]])), "table.dependent[0].terms"),
+        (frame(1, "prismatic", json!([[1, 1.0], [0, 1.0]])), "table.dependent[0].terms"),
+        (frame(1, "prismatic", json!([])), "table.dependent[0].terms"),
+        (frame(1, "prismatic", json!([[1, 0.5]])), "fingerprint"),
+    ] {
+        good["table"]["dependent"] = dependent.clone();
+        let error = read(&good.to_string()).expect_err(expected).to_string();
+        assert!(error.contains(expected), "{dependent}: {error}");
+    }
+    good["table"]["dependent"] = json!([]);
+    good["table"]["known"] = json!([999]);
+    let error = read(&good.to_string()).expect_err("no such parameter").to_string();
+    assert!(error.contains("table.known[0]"), "{error}");
+}
+
 /// Every mutation ends in an error that names its field.
 #[test]
 fn no_field_that_cannot_be_is_believed() {

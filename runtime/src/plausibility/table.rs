@@ -25,7 +25,11 @@ pub(super) fn altered(robot: &Robot, table: Table) -> Option<RecursiveModel> {
         }
     }
     let (drive, limits) = (robot.drive.clone(), robot.limits.clone());
-    RecursiveModel::new(Robot::with_standard_as_base(&robot.name, gravity, frames, drive, limits)).ok()
+    let mut other = Robot::with_standard_as_base(&robot.name, gravity, frames, drive, limits);
+    other.dependent = robot.dependent.clone();
+    other.known = robot.known.clone();
+    other.base.to_mut().retain(|base| !robot.known.contains(&base.standard));
+    RecursiveModel::new(other).ok()
 }
 
 /// Gravity of the same size along the axes of frame 0, both ways, but for the one of the table; that of the Earth where

@@ -22,7 +22,7 @@ impl<'m> Push<'m> {
     /// With a force, or without one by the largest torques of the joints. `None` where the robot has no such link.
     pub(super) fn new(robot: &'m Robot, contact: &ContactForce) -> Option<Self> {
         let frame = contact.link.checked_sub(1).filter(|k| *k < robot.frames.len())?;
-        let links = robot.frames.iter().map(Link::constant).collect();
+        let links = Link::of(robot);
         let joint_of = robot.joint_of_frame();
         let joint = |number: usize| joint_of.get(number.checked_sub(1)?).copied().flatten();
         // Where there is a force, the torques are what it does to the joints.

@@ -98,7 +98,7 @@ fn words(recordings: &[&Observed; 2], found: &DriveGains, known: &KnownPayload) 
     });
     text.push_str(&table(&["joint", "gain", "sigma", "<"], rows.collect()));
     match &found.payload {
-        Some(body) => text.push_str(&format!("\n\n{}", payload_table(body, robot.frames.len()))),
+        Some(body) => text.push_str(&format!("\n\n{}", payload_table(body, robot.flange().map_or(0, |k| k + 1)))),
         None => text.push_str(
             "\n\nratios of the gains only: their scale needs the mass of the payload (`mass: ..` in the file of --payload)",
         ),

@@ -110,7 +110,7 @@ fn words(observed: &Observed, found: &PayloadFit, errors: [Option<f64>; 2]) -> S
     }
     text.push_str(&format!(
         "\n{}",
-        payload_table(&found.body, observed.recorded.dynamics.model().robot().frames.len())
+        payload_table(&found.body, observed.recorded.dynamics.model().robot().flange().map_or(0, |k| k + 1))
     ));
     text.push_str(&format!(
         "\n\nrelative error of the torques {} without it, {} with it",

@@ -54,7 +54,7 @@ impl<'a> Context<'a> {
         Ok(Self {
             model,
             engine: derivable(robot)?,
-            tables: robot.frames.iter().map(Link::constant).collect(),
+            tables: Link::of(robot),
             signals,
             torques,
             scales,

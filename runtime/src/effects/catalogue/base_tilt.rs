@@ -83,15 +83,17 @@ impl Sensitivity for BaseTilt {
         let size = g.iter().map(|x| x * x).sum::<f64>().sqrt();
         let joint_of = robot.joint_of_frame();
         let mut columns = Vec::new();
-        for (frame, joint) in robot.frames.iter().zip(joint_of) {
+        for ((frame, joint), motion) in robot.frames.iter().zip(joint_of).zip(robot.motions()) {
             let (Some(j), None, JointKind::Revolute) = (joint, frame.parent, frame.kind) else { continue };
+            // Of a frame that moves with several joints it would not be a column of one joint alone.
+            let [(_, times)] = motion.terms[..] else { continue };
             // Its axis is z of the frame: turned by gamma about z, then by alpha about x.
             let (sine, cosine) = frame.alpha.sin_cos();
             let axis = [frame.gamma.sin() * sine, -frame.gamma.cos() * sine, cosine];
             let along = axis.iter().zip(g).map(|(a, g)| a * g).sum::<f64>().abs();
             if along > 0.999 * size {
-                columns.push((j, q[j].iter().map(|q| q.sin()).collect()));
-                columns.push((j, q[j].iter().map(|q| q.cos()).collect()));
+                columns.push((j, q[j].iter().map(|q| (times * q).sin()).collect()));
+                columns.push((j, q[j].iter().map(|q| (times * q).cos()).collect()));
             }
         }
         columns

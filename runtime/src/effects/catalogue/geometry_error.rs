@@ -62,12 +62,13 @@ impl Sensitivity for GeometryError {
     /// The lengths that the table has: a row that says 0 is taken to be 0.
     fn variants(&self, robot: &Robot) -> Vec<Variant> {
         let mut variants = Vec::new();
+        let motions = robot.motions();
         for (k, frame) in robot.frames.iter().enumerate() {
-            let joint = robot.joint_of_frame()[..=k].iter().flatten().last().copied().unwrap_or(0);
+            let joint = named_joint(robot, k);
             if frame.d != 0.0 {
                 variants.push(Variant { joint: Some(joint), index: 2 * k, name: "error_d", unit: "m" });
             }
-            if frame.r != 0.0 && frame.kind != crate::model::JointKind::Prismatic {
+            if frame.r != 0.0 && motions[k].kind != crate::model::JointKind::Prismatic {
                 variants.push(Variant { joint: Some(joint), index: 2 * k + 1, name: "error_r", unit: "m" });
             }
         }
@@ -82,4 +83,21 @@ impl Sensitivity for GeometryError {
         let row = &mut seeds.rows[variant.index / 2];
         if variant.index.is_multiple_of(2) { row.d.slope = 1.0 } else { row.r.slope = 1.0 }
     }
+}
+
+/// The joint that a length of a row is named on: the last one up to this row; in a table with bars, the last one that moves
+/// the row or, where nothing does, what carries it.
+fn named_joint(robot: &Robot, frame: usize) -> usize {
+    if robot.dependent.is_empty() {
+        return robot.joint_of_frame()[..=frame].iter().flatten().last().copied().unwrap_or(0);
+    }
+    let motions = robot.motions();
+    let mut at = Some(frame);
+    while let Some(k) = at {
+        if let Some(&(joint, _)) = motions[k].terms.last() {
+            return joint;
+        }
+        at = robot.frames[k].parent;
+    }
+    0
 }

@@ -85,13 +85,13 @@ impl KnownPayload {
     }
 }
 
-/// What each of the ten inertial parameters of a body on the last frame of the table adds to each base parameter: base
+/// What each of the ten inertial parameters of a body on the flange, [`Robot::flange`], adds to each base parameter: base
 /// parameters x 10.
 ///
 /// Such a body changes the standard parameters of that frame and nothing else, so that its columns of the regressor are
 /// those of the base parameters times this matrix.
 pub(in crate::estimation) fn base_of_body(robot: &Robot) -> DMatrix<f64> {
-    let frame = robot.frames.len().checked_sub(1);
+    let frame = robot.flange();
     let mut added = DMatrix::zeros(robot.base.len(), 10);
     for (k, kind) in ParameterKind::INERTIAL.iter().enumerate() {
         let place = robot.standard.iter().position(|s| Some(s.frame) == frame && s.kind == *kind);

@@ -83,6 +83,12 @@ pub enum NearPriorError {
     /// A prior body with a density that is negative or vanishes.
     #[error("the prior of frame {} is no body", .0 + 1)]
     Prior(usize),
+    /// A link or rotor of which parameters are known to be 0, but not all ten of a link.
+    #[error(
+        "frame {}: some of its parameters are known to be 0, which no body and no rotor has: all ten of a link are (massless), or none",
+        .0 + 1
+    )]
+    Known(usize),
     /// No parameter has an uncertainty.
     #[error("no base parameter has an uncertainty: nothing says how near they must be")]
     NoInformation,
@@ -112,6 +118,17 @@ pub fn near_prior(
         && prior.rotors.len() == robot.joints();
     if !shapes {
         return Err(NearPriorError::Shape);
+    }
+    for frame in 0..robot.frames.len() {
+        let zero = |of: &dyn Fn(ParameterKind) -> bool| {
+            robot.known.iter().map(|&k| &robot.standard[k]).filter(|p| p.frame == frame && of(p.kind)).count()
+        };
+        let body = zero(&|kind| ParameterKind::INERTIAL.contains(&kind));
+        if zero(&|kind| kind == ParameterKind::Ia) > 0
+            || body > 0 && (body < 10 || prior.bodies[frame].is_some())
+        {
+            return Err(NearPriorError::Known(frame));
+        }
     }
     let search = Search::new(robot, chi, covariance, prior)?;
     let mut path = vec![(FIRST, search.minimum(FIRST, search.start.clone())?)];

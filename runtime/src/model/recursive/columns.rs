@@ -3,8 +3,8 @@
 //! The wrench that moves a link is linear in its ten parameters (Gautier and Khalil 1990); a row of IDM_st is its
 //! product with the twist that a joint gives the link, and the power is its product with the link's own twist.
 
-use super::kinematics::{Body, Link, propagate};
-use super::vector::{Mat3, Vec3, add, apply_transposed, cross, dot};
+use super::kinematics::{Body, Link, is_independent, propagate};
+use super::vector::{Mat3, Vec3, add, apply_transposed, cross, dot, scale};
 use crate::model::{JointKind, Number};
 
 /// The wrench at the origin of a frame per unit of each of its parameters.
@@ -91,21 +91,56 @@ pub fn standard_idm<T: Number>(
     mut visit: impl FnMut(usize, usize, &[T; 10]),
 ) {
     let bodies = propagate(links, gravity, q, dq, ddq);
+    if !is_independent(links) {
+        return dependent_idm(&bodies[..links.len()], q.len(), visit);
+    }
     for (k, body) in bodies[..links.len()].iter().enumerate() {
         let wrench = Wrench::new(body);
         let mut at = Some(k);
         while let Some(a) = at {
             let ancestor = &bodies[a];
-            if ancestor.kind != JointKind::Fixed {
+            if let [(joint, _)] = ancestor.terms.each() {
                 let row = if a == k {
                     wrench.on_own_axis(ancestor.kind)
                 } else {
                     let (w, v) = body.twist_of(ancestor);
                     wrench.on(w, v)
                 };
-                visit(ancestor.joint, k, &row);
+                visit(*joint, k, &row);
             }
             at = ancestor.parent;
+        }
+    }
+}
+
+/// [`standard_idm`] of frames that move with several joints, or several with one: the twist that a joint gives a link is
+/// the sum over the frames that it moves on the way to the base. Each joint and frame is visited once.
+#[inline(always)]
+fn dependent_idm<T: Number>(
+    bodies: &[Body<T>],
+    joints: usize,
+    mut visit: impl FnMut(usize, usize, &[T; 10]),
+) {
+    let zero = [T::constant(0.0); 3];
+    for (k, body) in bodies.iter().enumerate() {
+        let wrench = Wrench::new(body);
+        for joint in (0..joints).rev() {
+            let (mut w, mut v) = (zero, zero);
+            let mut moves = false;
+            let mut at = Some(k);
+            while let Some(a) = at {
+                let ancestor = &bodies[a];
+                if let Some(&(_, c)) = ancestor.terms.each().iter().find(|term| term.0 == joint) {
+                    let (turned, swept) = body.twist_of(ancestor);
+                    w = add(w, scale(T::constant(c), turned));
+                    v = add(v, scale(T::constant(c), swept));
+                    moves = true;
+                }
+                at = ancestor.parent;
+            }
+            if moves {
+                visit(joint, k, &wrench.on(w, v));
+            }
         }
     }
 }

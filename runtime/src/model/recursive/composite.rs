@@ -92,26 +92,30 @@ pub(super) fn add_mass_and_bias(
     for k in 0..links.len() {
         let body = &motion[k];
         wrenches[k] = inertia[k].wrench(body.w, body.dw, body.dv);
-        let position = if body.kind == JointKind::Fixed { 0.0 } else { q[body.joint] };
-        transforms[k] = links[k].transform(position);
+        transforms[k] = links[k].transform_at(q);
     }
     for k in (0..links.len()).rev() {
         let (rotation, origin) = transforms[k];
-        let joint = motion[k].joint;
         let kind = links[k].kind();
         if kind != JointKind::Fixed {
             let (force, moment) = wrenches[k];
-            bias[joint] += if kind == JointKind::Prismatic { force[2] } else { moment[2] };
+            let on_axis = if kind == JointKind::Prismatic { force[2] } else { moment[2] };
+            let own = links[k].terms().each();
+            own.iter().for_each(|&(joint, c)| bias[joint] += c * on_axis);
             let (w, v) = unit_twist(kind);
             let (mut force, mut moment) = composite[k].wrench([0.0; 3], w, v);
             let mut at = Some(k);
             while let Some(a) = at {
                 if links[a].kind() != JointKind::Fixed {
-                    let i = motion[a].joint;
                     let m = if links[a].kind() == JointKind::Prismatic { force[2] } else { moment[2] };
-                    mass[joint * n + i] += m;
-                    if i != joint {
-                        mass[i * n + joint] += m;
+                    for (&(joint, c), &(i, d)) in own
+                        .iter()
+                        .flat_map(|term| links[a].terms().each().iter().map(move |other| (term, other)))
+                    {
+                        mass[joint * n + i] += c * d * m;
+                        if a != k {
+                            mass[i * n + joint] += c * d * m;
+                        }
                     }
                 }
                 (force, moment) = to_parent(&transforms[a], force, moment);

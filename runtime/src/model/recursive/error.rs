@@ -18,6 +18,12 @@ pub enum RecursiveModelError {
         /// 1-based row.
         frame: usize,
     },
+    /// A frame that moves with joints that are not there.
+    #[error("frame {frame}: it moves with joints that are not there, or with too many")]
+    Dependent {
+        /// 1-based row.
+        frame: usize,
+    },
     /// The gear matrix does not fit the joints.
     #[error("the gear matrix has {found} entries: {joints} joints need {}", joints * joints)]
     GearShape {

@@ -4,13 +4,16 @@
 
 use super::error::MAX_FRAMES;
 use super::vector::{Mat3, Vec3, add, apply, apply_transposed, cross, dot, multiply, scale};
-use crate::model::{Frame, JointKind, Number};
+use crate::model::{Frame, JointKind, Motion, Number, Robot};
+use dynid_description::MAX_TERMS;
 
 /// One row of the table, prepared for evaluation: the constant part of the transformation from the parent.
 #[derive(Debug, Clone, Copy)]
 pub struct Link<T> {
     parent: Option<usize>,
+    /// Revolute where theta moves, prismatic where r does.
     kind: JointKind,
+    terms: Terms,
     /// Rot(z, gamma) Rot(x, alpha).
     orientation: Mat3<T>,
     /// Trans(z, b), then d along the turned x axis, in the parent.
@@ -46,22 +49,83 @@ impl<T: Number> Row<T> {
     }
 }
 
-impl<T: Number> Link<T> {
-    /// Prepares a row; `frame` says parent and kind.
-    pub fn new(frame: &Frame, row: &Row<T>) -> Link<T> {
-        let gamma = row.gamma.sin_cos();
-        let alpha = row.alpha.sin_cos();
-        Link::from_trigonometry(frame, row, gamma, alpha)
+/// The joints that move a frame on its parent, with their coefficients; most frames have one with 1.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Terms {
+    list: [(usize, f64); MAX_TERMS],
+    count: usize,
+}
+
+impl Terms {
+    fn of(motion: &Motion) -> Terms {
+        let mut terms = Terms::default();
+        for (own, &term) in terms.list.iter_mut().zip(&motion.terms) {
+            *own = term;
+            terms.count += 1;
+        }
+        terms
     }
 
-    /// A row of the table as it is, with exact zeros where an angle is a multiple of a right angle.
-    pub fn constant(frame: &Frame) -> Link<T> {
+    /// Joints and coefficients.
+    #[inline(always)]
+    pub fn each(&self) -> &[(usize, f64)] {
+        &self.list[..self.count]
+    }
+
+    /// The variable of the frame from those of the joints.
+    #[inline(always)]
+    fn combined<T: Number>(&self, joints: &[T]) -> T {
+        match self.each() {
+            [] => T::constant(0.0),
+            [(joint, 1.0)] => joints[*joint],
+            [(joint, c), more @ ..] => {
+                let first = T::constant(*c) * joints[*joint];
+                more.iter().fold(first, |sum, &(joint, c)| sum + T::constant(c) * joints[joint])
+            }
+        }
+    }
+}
+
+/// Whether every frame moves with one joint's variable as it is, and every joint moves one frame.
+#[inline(always)]
+pub(super) fn is_independent<T>(links: &[Link<T>]) -> bool {
+    let mut seen = 0_u32;
+    links.iter().all(|link| match link.terms.each() {
+        [] => true,
+        [(joint, 1.0)] => {
+            let new = seen & (1 << joint) == 0;
+            seen |= 1 << joint;
+            new
+        }
+        _ => false,
+    })
+}
+
+impl<T: Number> Link<T> {
+    /// Prepares the rows of a robot with other numbers, one per frame.
+    pub fn with_rows(robot: &Robot, rows: &[Row<T>]) -> Vec<Link<T>> {
+        let links = robot.frames.iter().zip(rows).zip(robot.motions());
+        links
+            .map(|((frame, row), motion)| {
+                let (gamma, alpha) = (row.gamma.sin_cos(), row.alpha.sin_cos());
+                Link::from_trigonometry((frame, &motion), row, gamma, alpha)
+            })
+            .collect()
+    }
+
+    /// The rows of a robot as they are, with exact zeros where an angle is a multiple of a right angle.
+    pub fn of(robot: &Robot) -> Vec<Link<T>> {
         let exact = |angle: f64| {
             let (sine, cosine) = angle.sin_cos();
             let snap = |x: f64| if (x - x.round()).abs() < 1e-15 { x.round() } else { x };
             (T::constant(snap(sine)), T::constant(snap(cosine)))
         };
-        Link::from_trigonometry(frame, &Row::new(frame), exact(frame.gamma), exact(frame.alpha))
+        let links = robot.frames.iter().zip(robot.motions());
+        links
+            .map(|(f, motion)| {
+                Link::from_trigonometry((f, &motion), &Row::new(f), exact(f.gamma), exact(f.alpha))
+            })
+            .collect()
     }
 
     /// The same row in another number type.
@@ -69,6 +133,7 @@ impl<T: Number> Link<T> {
         Link {
             parent: link.parent,
             kind: link.kind,
+            terms: link.terms,
             orientation: link.orientation.map(|row| row.map(T::constant)),
             offset: link.offset.map(T::constant),
             theta: T::constant(link.theta),
@@ -76,11 +141,17 @@ impl<T: Number> Link<T> {
         }
     }
 
-    fn from_trigonometry(frame: &Frame, row: &Row<T>, (sg, cg): (T, T), (sa, ca): (T, T)) -> Link<T> {
+    fn from_trigonometry(
+        (frame, motion): (&Frame, &Motion),
+        row: &Row<T>,
+        (sg, cg): (T, T),
+        (sa, ca): (T, T),
+    ) -> Link<T> {
         let zero = T::constant(0.0);
         Link {
             parent: frame.parent,
-            kind: frame.kind,
+            kind: motion.kind,
+            terms: Terms::of(motion),
             orientation: [[cg, -(sg * ca), sg * sa], [sg, cg * ca, -(cg * sa)], [zero, sa, ca]],
             offset: [row.d * cg, row.d * sg, row.b],
             theta: row.theta,
@@ -88,9 +159,15 @@ impl<T: Number> Link<T> {
         }
     }
 
-    /// Rotation from this frame to its parent, and its origin in the parent, at joint position q.
+    /// Rotation from this frame to its parent, and its origin in the parent, at these joint positions.
     #[inline(always)]
-    pub(super) fn transform(&self, q: T) -> (Mat3<T>, Vec3<T>) {
+    pub(super) fn transform_at(&self, joints: &[T]) -> (Mat3<T>, Vec3<T>) {
+        self.transform(self.terms.combined(joints))
+    }
+
+    /// The same for the frame's own variable.
+    #[inline(always)]
+    fn transform(&self, q: T) -> (Mat3<T>, Vec3<T>) {
         let o = &self.orientation;
         let theta = if self.kind == JointKind::Revolute { self.theta + q } else { self.theta };
         let r = if self.kind == JointKind::Prismatic { self.r + q } else { self.r };
@@ -108,6 +185,10 @@ impl<T: Number> Link<T> {
     pub(super) fn kind(&self) -> JointKind {
         self.kind
     }
+
+    pub(super) fn terms(&self) -> &Terms {
+        &self.terms
+    }
 }
 
 /// Motion of one frame, in its own coordinates unless said otherwise.
@@ -115,8 +196,8 @@ impl<T: Number> Link<T> {
 pub(super) struct Body<T> {
     pub parent: Option<usize>,
     pub kind: JointKind,
-    /// Joint number of the frame; meaningless for a fixed frame.
-    pub joint: usize,
+    /// Joints that move the frame on its parent.
+    pub terms: Terms,
     /// Orientation in frame 0.
     pub rotation: Mat3<T>,
     /// Origin in frame 0.
@@ -146,7 +227,7 @@ pub(super) fn propagate<T: Number>(
     let base = Body {
         parent: None,
         kind: JointKind::Fixed,
-        joint: 0,
+        terms: Terms::default(),
         rotation: [[one, zero, zero], [zero, one, zero], [zero, zero, one]],
         origin: [zero; 3],
         w: [zero; 3],
@@ -155,10 +236,8 @@ pub(super) fn propagate<T: Number>(
         dv: [-gravity[0], -gravity[1], -gravity[2]],
     };
     let mut bodies = [base; MAX_FRAMES];
-    let mut joint = 0;
     for (k, link) in links.iter().enumerate() {
-        let moves = link.kind != JointKind::Fixed;
-        let (qj, dqj, ddqj) = if moves { (q[joint], dq[joint], ddq[joint]) } else { (zero, zero, zero) };
+        let [qj, dqj, ddqj] = [q, dq, ddq].map(|joints| link.terms.combined(joints));
         let (rotation, origin) = link.transform(qj);
         let a = link.parent.map_or(base, |p| bodies[p]);
         let mut w = apply_transposed(&rotation, a.w);
@@ -182,7 +261,7 @@ pub(super) fn propagate<T: Number>(
         bodies[k] = Body {
             parent: link.parent,
             kind: link.kind,
-            joint,
+            terms: link.terms,
             rotation: multiply(&a.rotation, &rotation),
             origin: add(a.origin, apply(&a.rotation, origin)),
             w,
@@ -190,13 +269,12 @@ pub(super) fn propagate<T: Number>(
             v,
             dv,
         };
-        joint += usize::from(moves);
     }
     bodies
 }
 
 impl<T: Number> Body<T> {
-    /// The unit twist of the joint of frame `joint_frame` at this frame's origin, in this frame's coordinates:
+    /// The unit twist of the motion of frame `joint_frame` at this frame's origin, in this frame's coordinates:
     /// angular part, and velocity of the origin.
     #[inline(always)]
     pub fn twist_of(&self, joint_frame: &Body<T>) -> (Vec3<T>, Vec3<T>) {

@@ -36,7 +36,7 @@ impl RecursiveModel {
     /// a zero on its diagonal, a base parameter that refers to nothing.
     pub fn new(robot: Robot) -> Result<RecursiveModel, RecursiveModelError> {
         check(&robot)?;
-        let links: Vec<Link<f64>> = robot.frames.iter().map(Link::constant).collect();
+        let links: Vec<Link<f64>> = Link::of(&robot);
         let n = robot.joints();
         let mut columns = vec![Wanted::new(); links.len()];
         for (column, base) in robot.base.iter().enumerate() {

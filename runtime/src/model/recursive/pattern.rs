@@ -4,6 +4,7 @@ use super::columns::standard_idm;
 use super::error::{MAX_FRAMES, RecursiveModelError};
 use super::kinematics::Link;
 use crate::model::Robot;
+use dynid_description::MAX_TERMS;
 
 /// Entries of one (joint, frame) block that are wanted: (place among the ten columns, entry of the pattern).
 pub(super) type Wanted = Vec<(usize, usize)>;
@@ -17,6 +18,12 @@ pub(super) fn check(robot: &Robot) -> Result<(), RecursiveModelError> {
     for (k, frame) in robot.frames.iter().enumerate() {
         if frame.parent.is_some_and(|p| p >= k) {
             return Err(RecursiveModelError::ParentOrder { frame: k + 1 });
+        }
+    }
+    for dependent in robot.dependent.iter() {
+        let fits = dependent.terms.iter().all(|&(joint, c)| joint < robot.joints() && c.is_finite());
+        if dependent.frame >= found || dependent.terms.len() > MAX_TERMS || !fits {
+            return Err(RecursiveModelError::Dependent { frame: dependent.frame.saturating_add(1) });
         }
     }
     for base in robot.base.iter() {

@@ -2,7 +2,7 @@
 
 use super::composite::Inertia;
 use super::error::MAX_FRAMES;
-use super::kinematics::{Link, propagate};
+use super::kinematics::{Link, is_independent, propagate};
 use super::vector::{Vec3, add, apply, cross, dot, sub};
 use crate::model::{JointKind, Number};
 
@@ -19,6 +19,9 @@ pub(super) fn rigid_torques<T: Number>(
     let motion = propagate(links, gravity, q, dq, ddq);
     let mut carried: [(Vec3<T>, Vec3<T>); MAX_FRAMES] =
         [([T::constant(0.0); 3], [T::constant(0.0); 3]); MAX_FRAMES];
+    let plain = is_independent(links);
+    // Several frames may move with one joint.
+    let mut torques = [T::constant(0.0); MAX_FRAMES];
     for k in (0..links.len()).rev() {
         let frame = &motion[k];
         let (force, moment) = bodies[k].wrench(frame.w, frame.dw, frame.dv);
@@ -26,15 +29,20 @@ pub(super) fn rigid_torques<T: Number>(
         let moment = add(apply(&frame.rotation, moment), cross(frame.origin, force));
         let (force, moment) = (add(carried[k].0, force), add(carried[k].1, moment));
         let axis = frame.rotation.map(|row| row[2]);
-        match frame.kind {
-            JointKind::Revolute => {
-                emit(frame.joint, dot(axis, sub(moment, cross(frame.origin, force))));
-            }
-            JointKind::Prismatic => emit(frame.joint, dot(axis, force)),
-            JointKind::Fixed => {}
+        let on_axis = match frame.kind {
+            JointKind::Revolute => dot(axis, sub(moment, cross(frame.origin, force))),
+            JointKind::Prismatic => dot(axis, force),
+            JointKind::Fixed => T::constant(0.0),
+        };
+        match frame.terms.each() {
+            [(joint, _)] if plain => emit(*joint, on_axis),
+            terms => terms.iter().for_each(|&(joint, c)| torques[joint] += T::constant(c) * on_axis),
         }
         if let Some(p) = frame.parent {
             carried[p] = (add(carried[p].0, force), add(carried[p].1, moment));
         }
+    }
+    if !plain {
+        torques.iter().take(q.len()).enumerate().for_each(|(joint, torque)| emit(joint, *torque));
     }
 }

@@ -229,12 +229,13 @@ impl Criterion {
     }
 }
 
-/// The joint that carries each frame: itself, or the nearest ancestor that moves.
+/// The joint that carries each frame: its own, the last that moves it, or that of the nearest ancestor that moves.
 fn carriers(robot: &Robot) -> Vec<Option<usize>> {
-    let joints = robot.joint_of_frame();
+    let (joints, motions) = (robot.joint_of_frame(), robot.motions());
     let mut carriers: Vec<Option<usize>> = Vec::with_capacity(joints.len());
     for (frame, row) in robot.frames.iter().enumerate() {
-        let carrier = joints[frame].or_else(|| row.parent.and_then(|p| carriers[p]));
+        let moved = motions[frame].terms.last().map(|term| term.0);
+        let carrier = joints[frame].or(moved).or_else(|| row.parent.and_then(|p| carriers[p]));
         carriers.push(carrier);
     }
     carriers
