@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
+use super::formats::Format;
 use super::{Column, Reason, RecordingError, Rows};
 use crate::regular_file;
 
@@ -71,10 +72,6 @@ impl<R: Read + Seek> NpyReader<R> {
         Ok(Self { file: file.into(), source, start, shape, wanted, row: 0, bytes: Vec::new() })
     }
 
-    pub fn file(&self) -> &str {
-        &self.file
-    }
-
     pub fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
         let row = if self.shape.by_column { 1 } else { self.shape.columns };
         let at_once = (AT_ONCE / (row * self.shape.width)).max(1);
@@ -107,6 +104,16 @@ impl<R: Read + Seek> NpyReader<R> {
         }
         self.row += count;
         Ok(count)
+    }
+}
+
+impl<R: Read + Seek> Format for NpyReader<R> {
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
+        NpyReader::read(self, rows, most)
     }
 }
 

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::fields::{blanks_at, find, is_passed_over, no_text, split};
+use super::formats::Format;
 use super::number::{Field, parse_field, plain_decimal};
 use super::{Column, Layout, Reason, RecordingError, Rows};
 use crate::regular_file;
@@ -282,6 +283,16 @@ impl<R: Read> TableReader<R> {
             seen = self.end;
         }
         Ok(self.whole > 0)
+    }
+}
+
+impl<R: Read> Format for TableReader<R> {
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
+        TableReader::read(self, rows, most)
     }
 }
 
