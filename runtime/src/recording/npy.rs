@@ -72,6 +72,11 @@ impl<R: Read + Seek> NpyReader<R> {
         Ok(Self { file: file.into(), source, start, shape, wanted, row: 0, bytes: Vec::new() })
     }
 
+    /// Columns of the array.
+    pub fn columns(&self) -> usize {
+        self.shape.columns
+    }
+
     pub fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
         let row = if self.shape.by_column { 1 } else { self.shape.columns };
         let at_once = (AT_ONCE / (row * self.shape.width)).max(1);

@@ -256,6 +256,14 @@ impl Open {
                 Reason::TimeOrder => "Is the time column right, and is it one recording?",
                 _ => "Are the delimiter, the header and the columns right?",
             };
+            let remedy = match reason {
+                Reason::NotANumber | Reason::WrongFieldCount | Reason::TooFewFields => {
+                    self.sources.iter().find_map(|(source, _)| source.remedy())
+                }
+                _ => None,
+            };
+            let advice =
+                remedy.map_or_else(|| advice.to_owned(), |remedy| format!("{advice} In the file, {remedy}"));
             return Err(RecordingError::TooManyLeftOut {
                 name,
                 left_out: own.left_out,
@@ -263,7 +271,7 @@ impl Open {
                 limit: MOST_LEFT_OUT,
                 reason: reason.to_string(),
                 example: example.map(ToString::to_string).unwrap_or_default(),
-                advice: advice.into(),
+                advice,
             });
         }
         report.merge(own);

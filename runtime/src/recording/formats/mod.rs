@@ -5,8 +5,13 @@ mod mcap;
 #[cfg(feature = "parquet")]
 mod parquet;
 
+#[cfg(not(all(feature = "mcap", feature = "parquet")))]
+use std::io::{self, Write};
 use std::path::Path;
 
+#[cfg(not(all(feature = "mcap", feature = "parquet")))]
+use super::Trajectory;
+use super::look::Topic;
 use super::npy::NpyReader;
 use super::table::TableReader;
 use super::{Column, Layout, RecordingError, Rows};
@@ -18,6 +23,11 @@ pub(super) trait Format {
 
     /// Appends up to `most` rows to `rows`, which has one column per wanted column. Returns how many; 0 at the end.
     fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError>;
+
+    /// How a file of which many rows cannot be read is perhaps laid out.
+    fn remedy(&self) -> Option<String> {
+        None
+    }
 
     /// What of the file was passed over, for a person; complete at the end of the file.
     fn notes(&self) -> Vec<String> {
@@ -32,7 +42,20 @@ pub(super) struct Wanted<'a> {
     /// How a text file is laid out.
     pub layout: &'a Layout,
     /// The topic of a log.
+    #[cfg_attr(not(feature = "mcap"), allow(dead_code, reason = "logs alone have topics"))]
     pub topic: Option<&'a str>,
+}
+
+/// What a log holds, by its first messages.
+pub(super) struct Survey {
+    pub topics: Vec<Topic>,
+    /// The topic that is looked at, where there is one that tells of joints.
+    pub topic: Option<String>,
+    /// Its signals, `joint.position` and so on.
+    pub signals: Vec<String>,
+    /// Whether its messages have header stamps.
+    pub stamped: bool,
+    pub notes: Vec<String>,
 }
 
 /// Opens a file; `.npy`, `.parquet`, `.mcap` and folders are read as such, everything else as text.
@@ -53,8 +76,26 @@ pub fn is_log(path: &Path) -> bool {
     matches!(extension(path).as_str(), "mcap" | "db3" | "bag") || path.is_dir()
 }
 
-fn extension(path: &Path) -> String {
+pub(super) fn extension(path: &Path) -> String {
     path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_ascii_lowercase())
+}
+
+/// As [`open`], but a row that lacks some signals of a log, or some columns of a Parquet file, is handed out with NaN in
+/// their places.
+pub(super) fn open_partial(
+    path: &Path,
+    file: &str,
+    wanted: &Wanted<'_>,
+) -> Result<Box<dyn Format>, RecordingError> {
+    #[cfg(feature = "mcap")]
+    if is_log(path) {
+        return Ok(Box::new(mcap::McapReader::open(path, file, wanted)?.partial()));
+    }
+    #[cfg(feature = "parquet")]
+    if extension(path) == "parquet" {
+        return Ok(Box::new(parquet::ParquetReader::open(path, file, wanted.columns)?.partial()));
+    }
+    open(path, file, wanted)
 }
 
 #[cfg(feature = "mcap")]
@@ -62,8 +103,21 @@ fn open_log(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Box<dyn Form
     Ok(Box::new(mcap::McapReader::open(path, file, wanted)?))
 }
 
+#[cfg(feature = "mcap")]
+pub(super) use mcap::{survey, write as write_mcap};
+
 #[cfg(not(feature = "mcap"))]
 fn open_log(_: &Path, file: &str, _: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
+    Err(left_out(file, "mcap"))
+}
+
+#[cfg(not(feature = "mcap"))]
+pub(super) fn write_mcap(_: &Trajectory, _: &[String], _: &mut dyn Write) -> io::Result<()> {
+    Err(io::Error::other(left_out("an MCAP file", "mcap").to_string()))
+}
+
+#[cfg(not(feature = "mcap"))]
+pub(super) fn survey(_: &Path, file: &str, _: Option<&str>) -> Result<Survey, RecordingError> {
     Err(left_out(file, "mcap"))
 }
 
@@ -72,8 +126,21 @@ fn open_parquet(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Box<dyn 
     Ok(Box::new(parquet::ParquetReader::open(path, file, wanted.columns)?))
 }
 
+#[cfg(feature = "parquet")]
+pub(super) use parquet::{parquet_columns, write as write_parquet};
+
 #[cfg(not(feature = "parquet"))]
 fn open_parquet(_: &Path, file: &str, _: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
+    Err(left_out(file, "parquet"))
+}
+
+#[cfg(not(feature = "parquet"))]
+pub(super) fn write_parquet(_: &Trajectory, _: &mut dyn Write) -> io::Result<()> {
+    Err(io::Error::other(left_out("a Parquet file", "parquet").to_string()))
+}
+
+#[cfg(not(feature = "parquet"))]
+pub(super) fn parquet_columns(_: &Path, file: &str) -> Result<(Vec<String>, Option<f64>), RecordingError> {
     Err(left_out(file, "parquet"))
 }
 

@@ -18,6 +18,8 @@ pub(super) struct Merge {
     /// Rows that were complete, and rows that never were.
     pub complete: u64,
     pub incomplete: u64,
+    /// Whether rows that lack signals are rows too.
+    pub partial: bool,
 }
 
 impl Merge {
@@ -28,6 +30,7 @@ impl Merge {
             seen: vec![0; columns],
             complete: 0,
             incomplete: 0,
+            partial: false,
         }
     }
 
@@ -56,7 +59,7 @@ impl Merge {
             self.row[slot] = value;
             self.seen[slot] += 1;
         }
-        if self.row.iter().all(|value| !value.is_nan()) {
+        if self.partial || self.row.iter().all(|value| !value.is_nan()) {
             push(rows, &self.row, line);
             self.complete += 1;
             return;

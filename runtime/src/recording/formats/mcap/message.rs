@@ -131,6 +131,44 @@ impl Decoder {
     }
 }
 
+/// The header stamp of a message; signals in it that are numbers and not yet in `all` are added, `joint.position` and so
+/// on.
+pub(super) fn signals(kind: Kind, data: &[u8], all: &mut Vec<String>) -> Result<i64, Fault> {
+    let mut cdr = Cdr::new(data)?;
+    let (seconds, nanoseconds) = (cdr.u32()? as i32, cdr.u32()?);
+    cdr.text()?;
+    let mut joints = Vec::new();
+    for _ in 0..cdr.count(4)? {
+        joints.push(String::from_utf8_lossy(cdr.text()?).into_owned());
+    }
+    let mut add = |joint: &str, field: &str, value: Option<f64>| {
+        let name = format!("{joint}.{field}");
+        if all.len() < 3 * MOST_SEEN && value.is_some_and(f64::is_finite) && !all.contains(&name) {
+            all.push(name);
+        }
+    };
+    match kind {
+        Kind::JointState => {
+            for field in FIELDS {
+                let list = cdr.doubles()?;
+                joints.iter().enumerate().for_each(|(k, joint)| add(joint, field, list.get(k)));
+            }
+        }
+        Kind::DynamicJointState => {
+            for index in 0..cdr.count(8)? {
+                let mut fields = Vec::new();
+                for _ in 0..cdr.count(4)? {
+                    fields.push(String::from_utf8_lossy(cdr.text()?).into_owned());
+                }
+                let values = cdr.doubles()?;
+                let Some(joint) = joints.get(index) else { continue };
+                fields.iter().enumerate().for_each(|(k, field)| add(joint, field, values.get(k)));
+            }
+        }
+    }
+    Ok(i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds))
+}
+
 /// Notes the name of a joint.
 fn see(seen: &mut Vec<String>, name: &[u8]) {
     if seen.len() < MOST_SEEN && !seen.iter().any(|known| known.as_bytes() == name) {

@@ -11,19 +11,21 @@ mod container;
 mod merge;
 mod message;
 mod topics;
+mod write;
 
 use std::collections::{HashMap, VecDeque};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::{Format, Wanted};
+use super::{Format, Survey, Wanted};
+use crate::recording::look::Topic;
 use crate::recording::names::{listed, meant};
 use crate::recording::{Column, RecordingError, Rows};
 use container::{Fields, Found, Records, op};
 use merge::Merge;
 use message::{Decoder, FIELDS, Kind, Signal};
-pub use topics::Topic;
 use topics::{Channel, schema};
+pub(in crate::recording) use write::write;
 
 /// Messages after which a signal that no message had is given up, if no row is complete yet.
 const GIVEN_UP: u64 = 5000;
@@ -93,6 +95,12 @@ impl McapReader {
         })
     }
 
+    /// Hands out rows that lack signals too.
+    pub fn partial(mut self) -> Self {
+        self.merge.partial = true;
+        self
+    }
+
     fn io(&self, error: &io::Error) -> RecordingError {
         RecordingError::File { file: self.file.clone(), message: error.to_string() }
     }
@@ -103,18 +111,23 @@ impl McapReader {
             return self.next_file();
         };
         match found.op {
-            op::SCHEMA => self.schemas.extend(schema(self.records.body(&found))),
-            op::CHANNEL => {
-                if let Some(channel) = Channel::read(self.records.body(&found))
-                    && channel.topic == self.topic.name
-                    && let Some(kind) = self.schemas.get(&channel.schema).and_then(|name| Kind::of(name))
-                {
-                    self.channels.insert(channel.id, kind);
-                }
-            }
-            _ => self.message(&found, rows)?,
+            op::MESSAGE => self.message(&found, rows)?,
+            _ => self.describe(&found),
         }
         Ok(true)
+    }
+
+    /// Takes a schema or a channel.
+    fn describe(&mut self, found: &Found) {
+        let body = self.records.body(found);
+        if found.op == op::SCHEMA {
+            self.schemas.extend(schema(body));
+        } else if let Some(channel) = Channel::read(body)
+            && channel.topic == self.topic.name
+            && let Some(kind) = self.schemas.get(&channel.schema).and_then(|name| Kind::of(name))
+        {
+            self.channels.insert(channel.id, kind);
+        }
     }
 
     /// Goes on with the next file. False where there is none.
@@ -163,7 +176,10 @@ impl McapReader {
 
     /// A driver that does not fill in the stamp is told with what helps.
     fn no_stamps(&self, stamp: i64) -> Result<(), RecordingError> {
-        if stamp != 0 || self.merge.complete != 2 || !self.times.iter().any(|(time, _)| *time == Time::Stamp)
+        if stamp != 0
+            || self.merge.partial
+            || self.merge.complete != 2
+            || !self.times.iter().any(|(time, _)| *time == Time::Stamp)
         {
             return Ok(());
         }
@@ -273,6 +289,82 @@ fn topics_of(paths: &[PathBuf]) -> Result<Vec<Topic>, RecordingError> {
         Some(path) => RecordingError::io(path, &e),
         None => error("", e.to_string()),
     })
+}
+
+/// Messages of a log by which its joints are told.
+const SURVEYED: u64 = 2000;
+
+/// The topics of a log, and the joints of the one that is named, else of the one with most messages of those that tell of
+/// joints.
+pub(in crate::recording) fn survey(
+    path: &Path,
+    file: &str,
+    topic: Option<&str>,
+) -> Result<Survey, RecordingError> {
+    let paths = bag::files_of(path, file)?;
+    let topics = topics_of(&paths)?;
+    let fits = |t: &&Topic| Kind::of(&t.kind).is_some() && t.encoding == "cdr" && t.count > 0;
+    let found: Vec<&Topic> = topics.iter().filter(fits).collect();
+    let mut survey =
+        Survey { topics: topics.clone(), topic: None, signals: vec![], stamped: false, notes: vec![] };
+    let topic = match (topic, &found[..]) {
+        (None, []) => {
+            survey.notes.push("no topic holds JointState in CDR".into());
+            return Ok(survey);
+        }
+        (None, several) => {
+            let one_kind = |kind| several.iter().filter(move |t| Kind::of(&t.kind) == Some(kind));
+            let most = one_kind(Kind::JointState).chain(one_kind(Kind::DynamicJointState)).copied();
+            // The first of equals: a JointState goes before a DynamicJointState.
+            let best = most.reduce(|a, b| if b.count > a.count { b } else { a });
+            if several.len() > 1 {
+                let names: Vec<&str> = several.iter().map(|t| t.name.as_str()).collect();
+                survey
+                    .notes
+                    .push(format!("several topics tell of joints: {}; see --topic", names.join(", ")));
+            }
+            best.ok_or_else(|| error(file, "no topic tells of joints".into()))?
+        }
+        (name, _) => chosen(file, &topics, name)?,
+    };
+    survey.topic = Some(topic.name.clone());
+    let wanted = Wanted { columns: &[], layout: &Default::default(), topic: Some(&topic.name) };
+    let mut reader = McapReader::open(path, file, &wanted)?;
+    let mut signals = Vec::new();
+    while reader.messages < SURVEYED
+        && let Some(stamp) = reader.next_signals(&mut signals)?
+    {
+        survey.stamped |= stamp != 0;
+    }
+    survey.signals = signals;
+    Ok(survey)
+}
+
+impl McapReader {
+    /// The stamp of the next message that can be decoded; signals that are new in it are added to `signals`.
+    fn next_signals(&mut self, signals: &mut Vec<String>) -> Result<Option<i64>, RecordingError> {
+        loop {
+            let before = self.messages;
+            let Some(found) = self.records.next().map_err(|e| self.io(&e))? else {
+                if self.next_file()? {
+                    continue;
+                }
+                return Ok(None);
+            };
+            if found.op != op::MESSAGE {
+                self.describe(&found);
+                continue;
+            }
+            let mut fields = Fields(self.records.body(&found));
+            let kind = fields.u16().and_then(|id| self.channels.get(&id)).copied();
+            if let (Some(kind), Some(_)) = (kind, fields.take(4 + 8 + 8)) {
+                self.messages = before + 1;
+                if let Ok(stamp) = message::signals(kind, fields.0, signals) {
+                    return Ok(Some(stamp));
+                }
+            }
+        }
+    }
 }
 
 /// The topic that is meant: the one that is named, or the only one that tells of joints.

@@ -5,19 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use super::container::{Fields, Found, Records, op};
-
-/// What was published under one name.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Topic {
-    /// Its name.
-    pub name: String,
-    /// Type of its messages.
-    pub kind: String,
-    /// How they are encoded; `cdr` in ROS 2.
-    pub encoding: String,
-    /// How many there are.
-    pub count: u64,
-}
+use crate::recording::look::Topic;
 
 /// A channel as its record says it.
 #[derive(Debug, Clone)]

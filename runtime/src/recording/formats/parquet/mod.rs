@@ -6,6 +6,7 @@
 mod column;
 mod pages;
 mod thrift;
+mod write;
 
 use std::path::{Path, PathBuf};
 
@@ -16,11 +17,15 @@ use crate::recording::names::{listed, meant};
 use crate::recording::{self, Reason, RecordingError, Rows};
 use crate::regular_file;
 use column::{Column, Leaf};
+pub(in crate::recording) use write::write;
 
 /// Rows read at a time.
 const AT_ONCE: usize = 4096;
 /// Most numbers of a list that are named.
 const LONGEST_LIST: usize = 1 << 16;
+
+/// Numbers of a list that a look names.
+const MOST_NAMED: usize = 64;
 
 /// Reads the wanted columns of a file.
 pub(super) struct ParquetReader {
@@ -32,6 +37,8 @@ pub(super) struct ParquetReader {
     group: usize,
     left: usize,
     row: u64,
+    /// Whether rows that lack numbers are rows too.
+    partial: bool,
 }
 
 impl ParquetReader {
@@ -57,9 +64,16 @@ impl ParquetReader {
             columns[at].elements.push((element, slot));
         }
         let path = path.to_path_buf();
-        let mut reader = Self { file: file.into(), path, metadata, columns, group: 0, left: 0, row: 0 };
+        let mut reader =
+            Self { file: file.into(), path, metadata, columns, group: 0, left: 0, row: 0, partial: false };
         reader.check_lists()?;
         Ok(reader)
+    }
+
+    /// Hands out rows that lack numbers too.
+    pub fn partial(mut self) -> Self {
+        self.partial = true;
+        self
     }
 
     fn error(&self, leaf: &Leaf, message: &str) -> RecordingError {
@@ -125,7 +139,7 @@ impl Format for ParquetReader {
                 read.map_err(|message| self.error(&self.columns[k].leaf, &message))?;
             }
             rows.lines.extend((self.row + 1)..=(self.row + count as u64));
-            for k in first..first + count {
+            for k in (first..first + count).filter(|_| !self.partial) {
                 if rows.columns.iter().any(|column| !column[k].is_finite()) {
                     rows.columns.iter_mut().for_each(|column| column[k] = f64::NAN);
                     rows.faults.push((k, Reason::NotFinite, None));
@@ -145,6 +159,30 @@ fn metadata(path: &Path, file: &str) -> Result<ParquetMetaData, RecordingError> 
         let message = format!("this is no Parquet file, or its index is damaged: {e}");
         RecordingError::File { file: file.into(), message }
     })
+}
+
+/// Names of the columns that hold numbers, the numbers of lists among them, and the seconds per unit of a column of
+/// stamps.
+pub(in crate::recording) fn parquet_columns(
+    path: &Path,
+    file: &str,
+) -> Result<(Vec<String>, Option<f64>), RecordingError> {
+    let leaves = leaves(&metadata(path, file)?);
+    let (mut names, mut unit) = (Vec::new(), None);
+    for leaf in leaves.iter().filter(|leaf| leaf.refused.is_none()) {
+        unit = unit.or(leaf.unit.and_then(recording::Unit::named).map(|unit| unit.factor));
+        if !leaf.list {
+            names.push(leaf.name.clone());
+            continue;
+        }
+        let first = [recording::Column::Name(format!("{}[0]", leaf.name))];
+        // A list without numbers has none to name.
+        let Ok(mut reader) = ParquetReader::open(path, file, &first) else { continue };
+        reader.read(&mut Rows::new(1), AT_ONCE)?;
+        let longest = reader.columns.first().map_or(0, Column::longest_list);
+        names.extend((0..longest.min(MOST_NAMED)).map(|k| format!("{}[{k}]", leaf.name)));
+    }
+    Ok((names, unit))
 }
 
 fn leaves(metadata: &ParquetMetaData) -> Vec<Leaf> {
