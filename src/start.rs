@@ -134,9 +134,13 @@ fn quoted(text: &str) -> String {
     }
 }
 
+/// A column as a recording YAML names it.
+fn column(name: &str) -> String {
+    if name.parse::<usize>().is_ok() { name.to_owned() } else { quoted(name) }
+}
+
 fn columns(names: &[String]) -> String {
-    let index = |name: &String| if name.parse::<usize>().is_ok() { name.clone() } else { quoted(name) };
-    format!("columns: [{}]", names.iter().map(index).collect::<Vec<_>>().join(", "))
+    format!("columns: [{}]", names.iter().map(|name| column(name)).collect::<Vec<_>>().join(", "))
 }
 
 /// Lines about the joints of a log.
@@ -187,10 +191,7 @@ fn of_table(contents: &Contents, known: &Known, found: &Channels, start: &mut St
                 .into_iter()
                 .find(|(_, factor)| *factor == contents.time_unit)
                 .map_or("s", |(name, _)| name);
-            format!(
-                "time: {{{}, unit: {unit}, from_first_row: true}}",
-                columns(&[time.clone()]).replace("columns: [", "column: ").replace(']', "")
-            )
+            format!("time: {{column: {}, unit: {unit}, from_first_row: true}}", column(time))
         }
         None => {
             start.open.push("`time` is to be said, as {rate: 1000} or a column".into());

@@ -19,6 +19,29 @@ fn done(folder: &Folder, words: &str) -> Output {
     output
 }
 
+/// Sines of the joints of the URDF, as a motion to follow.
+fn motion() -> String {
+    let mut text = String::from("t,q1,q2,q3,q4,q5,dq1,dq2,dq3,dq4,dq5,ddq1,ddq2,ddq3,ddq4,ddq5\n");
+    for k in 0..4000 {
+        let t = f64::from(k) * 0.005;
+        let mut state = [[0.0; 5]; 3];
+        for j in 0..5 {
+            let scale = if j == 3 { 0.08 } else { 0.9 };
+            state[0][j] = if j == 3 { 0.15 } else { 0.0 };
+            for (rate, amplitude) in [(1.0, 0.5), (2.3, 0.3), (3.7, 0.2)] {
+                let (w, phase) = (rate * (0.9 + 0.23 * j as f64), 0.7 * j as f64 + rate);
+                let a = scale * amplitude;
+                state[0][j] += a * (w * t + phase).sin();
+                state[1][j] += a * w * (w * t + phase).cos();
+                state[2][j] -= a * w * w * (w * t + phase).sin();
+            }
+        }
+        let numbers: Vec<String> = state.iter().flatten().map(|x| format!("{x:.9}")).collect();
+        text.push_str(&format!("{t},{}\n", numbers.join(",")));
+    }
+    text
+}
+
 /// A folder with a URDF.
 fn with_urdf(name: &str) -> Folder {
     let folder = Folder::new(name);
@@ -33,9 +56,10 @@ fn data(file: &str) -> PathBuf {
 #[test]
 fn a_bag_and_a_urdf_come_to_a_diagnosis_in_three_commands() {
     let folder = with_urdf("three");
+    folder.write("motion.csv", &motion());
     done(
         &folder,
-        "simulate arm.urdf --format mcap --out sim --motions 2 --period 5 --rate 1000 --record-every 4",
+        "simulate arm.urdf --follow motion.csv --format mcap --out sim --rate 1000 --record-every 4",
     );
     let bag = std::fs::read_dir(folder.path("sim")).unwrap().map(|entry| entry.unwrap().path());
     let bag = bag.filter(|path| path.extension().is_some_and(|e| e == "mcap")).min().unwrap();
@@ -54,7 +78,7 @@ fn a_bag_and_a_urdf_come_to_a_diagnosis_in_three_commands() {
         "{yaml}"
     );
     let diagnosis = json_of(&done(&folder, "diagnose recording.yaml --json -"));
-    assert_eq!(diagnosis["robot"], "leaning");
+    assert!(diagnosis["before"]["relative_error"].as_f64().unwrap() < 0.2, "{diagnosis}");
 }
 
 #[test]
@@ -110,7 +134,7 @@ fn a_look_tells_what_is_in_a_file_and_what_only_a_person_knows() {
         "german.csv",
         &(0..50)
             .map(|k| format!("{},{};0,5;1,{k}\n", k / 10, k % 10))
-            .fold("t;q1;u1\n".into(), |a, b| a + &b),
+            .fold(String::from("t;q1;u1\n"), |a, b| a + &b),
     );
     let text = json_of(&folder.run(&["look", "german.csv", "--json", "-"]));
     assert!(text["recording"].as_str().unwrap().contains("delimiter: \";\", decimal: \",\""), "{text}");

@@ -70,6 +70,7 @@ enum Command {
 
 /// Runs the command line of this process and says how it went.
 pub fn run() -> ExitCode {
+    quiet_about_damaged_pages();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(said) => return told_by_the_parser(&said),
@@ -82,6 +83,17 @@ pub fn run() -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// The decoders of the `parquet` crate panic on some pages that are damaged, which the reader tells as a mistake of the
+/// file; nobody needs to be told twice.
+fn quiet_about_damaged_pages() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panic.location().is_some_and(|place| place.file().contains("/parquet-")) {
+            usual(panic);
+        }
+    }));
 }
 
 /// Help and version go to standard output, what is wrong with the words of a command to standard error.

@@ -106,8 +106,13 @@ fn beside(file: &std::path::Path) -> String {
     let names = entries.into_iter().flatten().flatten().take(MOST_BESIDE);
     let mut names: Vec<String> = names.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     names.sort_unstable();
+    // Endings are alike anyway.
+    let stem = |name: &str| name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned();
+    let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
     let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    super::names::meant(&name, names.iter().map(String::as_str))
+    let meant = super::nearest(&stem(&name), stems.iter().map(String::as_str));
+    let place = stems.iter().position(|stem| Some(stem.as_str()) == meant);
+    place.map_or_else(String::new, |k| format!(" (did you mean `{}`?)", names[k]))
 }
 
 /// Files of a folder that are looked at for a name that was meant.

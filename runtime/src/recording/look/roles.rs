@@ -146,12 +146,19 @@ pub(super) fn time_of(names: &[String], rows: &Rows) -> Option<usize> {
         column.len() > 2
             && column.windows(2).filter(|pair| pair[1] > pair[0]).count() * 100 >= 95 * (column.len() - 1)
     };
-    let called = |name: &String| words(name).first().is_some_and(|word| TIME.contains(&word.as_str()));
-    let stamped = |name: &String| matches!(name.as_str(), "header.stamp" | "log_time");
-    let mut named = (0..names.len()).filter(|&k| stamped(&names[k]) || called(&names[k]));
-    named
+    // Of a log with several publishers stamps may stand still.
+    if let Some(stamped) = names.iter().position(|name| matches!(name.as_str(), "header.stamp" | "log_time"))
+    {
+        return Some(stamped);
+    }
+    let called = |k: &usize| words(&names[*k]).first().is_some_and(|word| TIME.contains(&word.as_str()));
+    let numbered = |k: &usize| names[*k].parse::<usize>().is_ok();
+    let columns = 0..names.len();
+    columns
+        .clone()
+        .filter(called)
         .find(|&k| grows(k))
-        .or_else(|| (0..names.len()).find(|&k| names[k].parse::<usize>().is_ok() && grows(k)))
+        .or_else(|| columns.filter(numbered).find(|&k| grows(k)))
 }
 
 /// Seconds per unit of a column of time: by its name, else by its steps, as recordings have 2 to 50,000 rows a second.
@@ -201,8 +208,10 @@ pub(super) fn doubts(contents: &mut Contents) {
     }
     let time = contents.signals.iter().find(|signal| Some(&signal.name) == contents.time.as_ref());
     if let Some(time) = time {
-        if time.backwards > 0 {
-            wrong.push(format!("time does not go forward in {} rows", time.backwards));
+        // Publishers of one topic may tell of the same instant.
+        let still = if contents.format == "MCAP" { 0 } else { time.repeated };
+        if time.backwards + still > 0 {
+            wrong.push(format!("time does not go forward in {} rows", time.backwards + still));
         }
         if let (true, Some([gap, after])) = (time.gaps > 0, time.largest_gap) {
             wrong.push(format!("{} gaps, the largest of {gap:.3} s after {after:.3} s", time.gaps));

@@ -23,7 +23,9 @@ pub struct Series {
     pub gaps: u64,
     /// The largest step, s, and the time before it.
     pub largest_gap: Option<[f64; 2]>,
-    /// Values that are not after the one before them.
+    /// Values at the time of the one before them, and before it.
+    pub repeated: u64,
+    /// Values whose time is before that of the one before them.
     pub backwards: u64,
     /// Share of the time in which it moves with less than 2 % of its fastest speed.
     pub standstill: Option<f64>,
@@ -62,6 +64,7 @@ impl Watched {
             rate: None,
             gaps: 0,
             largest_gap: None,
+            repeated: 0,
             backwards: 0,
             standstill: None,
         };
@@ -96,7 +99,7 @@ impl Watched {
 
     fn step(&mut self, step: f64) {
         if step <= 0.0 {
-            self.series.backwards += 1;
+            *(if step == 0.0 { &mut self.series.repeated } else { &mut self.series.backwards }) += 1;
             return;
         }
         if self.series.largest_gap.is_none_or(|[largest, _]| step > largest) {

@@ -9,6 +9,7 @@ use parquet::data_type::DataType;
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::schema::types::{ColumnDescPtr, ColumnDescriptor};
 
+use super::guard::guarded;
 use super::pages::Pages;
 
 /// Which numbers a column holds.
@@ -107,24 +108,11 @@ impl Column {
     /// Reads `count` rows; row r of the wanted column goes to `put(slot, r, value)`. Nothing is put where there is no
     /// number.
     pub fn read(&mut self, count: usize, mut put: impl FnMut(usize, usize, f64)) -> Result<(), String> {
-        let Some(reader) = &mut self.reader else { return Ok(()) };
-        let values = &mut self.values;
-        let origin = &mut self.origin;
-        let read = match reader {
-            ColumnReader::Int32ColumnReader(reader) => {
-                numbers(reader, count, values, |x: &i32| f64::from(*x))
-            }
-            ColumnReader::Int64ColumnReader(reader) => numbers(reader, count, values, |x: &i64| {
-                let first = *origin.get_or_insert(if x.unsigned_abs() > EXACT { *x } else { 0 });
-                x.wrapping_sub(first) as f64
-            }),
-            ColumnReader::FloatColumnReader(reader) => {
-                numbers(reader, count, values, |x: &f32| f64::from(*x))
-            }
-            ColumnReader::DoubleColumnReader(reader) => numbers(reader, count, values, |x: &f64| *x),
-            _ => return Err("it holds no numbers".into()),
-        };
-        let rows = read.map_err(|error| error.to_string())?;
+        // A reader that failed is gone.
+        let Some(mut reader) = self.reader.take() else { return Err("a page of it is damaged".into()) };
+        let (values, origin) = (&mut self.values, &mut self.origin);
+        let rows = guarded(|| records(&mut reader, count, values, origin))?;
+        self.reader = Some(reader);
         if rows != count {
             return Err(format!("its pages hold {rows} rows where its index says {count}"));
         }
@@ -170,6 +158,26 @@ impl Column {
         }
         longest
     }
+}
+
+/// Reads rows of any type of numbers; returns how many.
+fn records(
+    reader: &mut ColumnReader,
+    count: usize,
+    values: &mut Values,
+    origin: &mut Option<i64>,
+) -> Result<usize, String> {
+    let read = match reader {
+        ColumnReader::Int32ColumnReader(reader) => numbers(reader, count, values, |x: &i32| f64::from(*x)),
+        ColumnReader::Int64ColumnReader(reader) => numbers(reader, count, values, |x: &i64| {
+            let first = *origin.get_or_insert(if x.unsigned_abs() > EXACT { *x } else { 0 });
+            x.wrapping_sub(first) as f64
+        }),
+        ColumnReader::FloatColumnReader(reader) => numbers(reader, count, values, |x: &f32| f64::from(*x)),
+        ColumnReader::DoubleColumnReader(reader) => numbers(reader, count, values, |x: &f64| *x),
+        _ => return Err("it holds no numbers".into()),
+    };
+    read.map_err(|error| error.to_string())
 }
 
 /// Reads rows as doubles; returns how many.

@@ -4,6 +4,7 @@
 //! (stamps in nanoseconds) are counted from the first of them.
 
 mod column;
+mod guard;
 mod pages;
 mod thrift;
 mod write;
@@ -17,6 +18,7 @@ use crate::recording::names::{listed, meant};
 use crate::recording::{self, Reason, RecordingError, Rows};
 use crate::regular_file;
 use column::{Column, Leaf};
+use guard::guarded;
 pub(in crate::recording) use write::write;
 
 /// Rows read at a time.
@@ -155,7 +157,8 @@ impl Format for ParquetReader {
 
 fn metadata(path: &Path, file: &str) -> Result<ParquetMetaData, RecordingError> {
     let source = regular_file::open(path).map_err(|e| RecordingError::io(path, &e))?;
-    ParquetMetaDataReader::new().parse_and_finish(&source).map_err(|e| {
+    let read = || ParquetMetaDataReader::new().parse_and_finish(&source).map_err(|e| e.to_string());
+    guarded(read).map_err(|e| {
         let message = format!("this is no Parquet file, or its index is damaged: {e}");
         RecordingError::File { file: file.into(), message }
     })

@@ -22,6 +22,8 @@ pub(super) struct Pages {
     /// The header of the next page, where it was looked at.
     next: Option<PageHeader>,
     packed: Vec<u8>,
+    /// Whether the dictionary came, without which its indices say nothing.
+    dictionary: bool,
 }
 
 impl Pages {
@@ -52,7 +54,7 @@ impl Pages {
             Ok::<_, io::Error>(BufReader::with_capacity(1 << 16, file).take(length))
         };
         let source = open().map_err(|e| e.to_string())?;
-        Ok(Self { source, codec, next: None, packed: Vec::new() })
+        Ok(Self { source, codec, next: None, packed: Vec::new(), dictionary: false })
     }
 
     /// The header of the next page that holds values; `None` at the end.
@@ -143,9 +145,16 @@ impl PageReader for Pages {
         let number =
             |field| header.number(field).ok_or_else(|| damaged("the header of a page lacks a number"));
         let num_values = number(1)?;
+        // Where a header says the encoding of its values.
+        let of_values = encoding(header.number(if header.kind == 3 { 4 } else { 2 }))?;
+        let indices = matches!(of_values, Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY);
+        if header.kind != 2 && indices && !self.dictionary {
+            return Err(damaged("a page lacks its dictionary"));
+        }
+        self.dictionary |= header.kind == 2;
         Ok(Some(match header.kind {
             0 => Page::DataPage {
-                encoding: encoding(header.number(2))?,
+                encoding: of_values,
                 def_level_encoding: encoding(header.number(3))?,
                 rep_level_encoding: encoding(header.number(4))?,
                 buf: self.unpacked(&header, 0, true)?,
@@ -153,7 +162,7 @@ impl PageReader for Pages {
                 statistics: None,
             },
             2 => Page::DictionaryPage {
-                encoding: encoding(header.number(2))?,
+                encoding: of_values,
                 is_sorted: header.number(3) == Some(1),
                 buf: self.unpacked(&header, 0, true)?,
                 num_values,
@@ -169,7 +178,7 @@ impl PageReader for Pages {
                 Page::DataPageV2 {
                     buf,
                     num_values,
-                    encoding: encoding(header.number(4))?,
+                    encoding: of_values,
                     num_nulls: number(2)?,
                     num_rows: number(3)?,
                     def_levels_byte_len,
