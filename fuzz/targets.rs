@@ -13,7 +13,7 @@ use dynid_runtime::estimation::{
 };
 use dynid_runtime::model::{RecursiveModel, Robot};
 use dynid_runtime::model_file;
-use dynid_runtime::recording::{Column, Layout, Manifest, Rows, TableReader, load};
+use dynid_runtime::recording::{Column, Layout, Manifest, Rows, TableReader, load, look};
 use dynid_urdf::{ImportOptions, Skeleton, Template, write_mjcf, write_urdf};
 
 /// An arm of two joints.
@@ -109,6 +109,35 @@ pub fn array(bytes: &[u8]) {
         .replace("[q1, q2]", "[1, 2]")
         .replace("[u1, u2]", "[3, 4]");
     loaded("rows.npy", bytes, &by_index);
+}
+
+/// An MCAP file with joints of the names that the corpus has, and a look at whatever is in it.
+pub fn mcap(bytes: &[u8]) {
+    let log =
+        "robot: arm\njoints: [elbow, shoulder]\ntorque: {unit: N.m}\ntrajectories: [{file: rows.mcap}]\n";
+    loaded("rows.mcap", bytes, log);
+    looked_at("rows.mcap", bytes);
+}
+
+/// A Parquet file: columns, and numbers of lists.
+pub fn parquet(bytes: &[u8]) {
+    let columns = RECORDING.replace("rows.csv", "rows.parquet");
+    loaded("rows.parquet", bytes, &columns);
+    let lists = columns
+        .replace("column: t", "column: timestamp")
+        .replace("[q1, q2]", "['observation.state[0]', 'action[1]']")
+        .replace("[u1, u2]", "['observation.state[2]', 'action[3]']");
+    loaded("rows.parquet", bytes, &lists);
+    looked_at("rows.parquet", bytes);
+}
+
+/// A data file as `look` reads it.
+fn looked_at(file: &str, bytes: &[u8]) {
+    let Ok(folder) = tempfile::tempdir() else { return };
+    let path = folder.path().join(file);
+    if std::fs::write(&path, bytes).is_ok() {
+        let _ = look(&path, file, None);
+    }
 }
 
 /// A saved model.

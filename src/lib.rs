@@ -20,6 +20,7 @@ pub mod recording_files;
 pub mod robots;
 pub mod saved;
 pub mod speeds;
+pub mod start;
 pub mod truth;
 pub mod urdf_files;
 pub mod verdict;

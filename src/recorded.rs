@@ -258,6 +258,7 @@ pub fn left_out_words(left_out: &LeftOut) -> Vec<String> {
     words.extend(rows.cuts.iter().map(|cut| {
         format!("{}: cut between {:.3} s and {:.3} s: {}", cut.trajectory, cut.after, cut.until, cut.what)
     }));
+    words.extend(rows.notes.iter().cloned());
     words.extend(left_out.too_short.iter().map(|what| format!("left out: {what}")));
     words
 }

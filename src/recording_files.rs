@@ -1,9 +1,9 @@
-//! Recordings that commands write: a CSV a motion, and the manifest that reads them back.
+//! Recordings that commands write: a file a motion, and the manifest that reads them back.
 
 use std::path::{Path, PathBuf};
 
 use dynid_runtime::model::Robot;
-use dynid_runtime::recording::{Trajectory, manifest_text, write_rows};
+use dynid_runtime::recording::{DataFormat, Trajectory, manifest_text_as};
 
 use crate::failure::Failure;
 use crate::output::Together;
@@ -17,6 +17,9 @@ pub enum RobotReference<'a> {
     Yaml(&'a [u8]),
 }
 
+/// In which format motions are written, and the names of their joints in a log.
+pub type Form<'a> = (DataFormat, &'a [String]);
+
 /// Writes the motions of a robot to a folder with the manifest `manifest` (`recording.yaml`), which comes last; returns
 /// its path. `stem` begins the names of the data, which are theirs alone in the folder.
 ///
@@ -26,13 +29,15 @@ pub fn write_recording(
     (folder, manifest, stem): (&Path, &str, &str),
     robot: &Robot,
     reference: RobotReference<'_>,
-    title: &str,
+    (title, form): (&str, Form<'_>),
     motions: &[Trajectory],
 ) -> Result<PathBuf, Failure> {
     let mut files = Together::in_folder(folder)?;
     let mut named = Vec::new();
     for (k, motion) in motions.iter().enumerate() {
-        let name = files.add(&format!("{stem}{}", k + 1), "csv", &mut |out| write_rows(motion, out))?;
+        let name = files.add(&format!("{stem}{}", k + 1), form.0.extension(), &mut |out| {
+            form.0.write(motion, form.1, out)
+        })?;
         named.push((name, motion));
     }
     let reference = match reference {
@@ -45,7 +50,7 @@ pub fn write_recording(
     let motions: Vec<(&str, &Trajectory)> = named.iter().map(|(name, t)| (name.as_str(), *t)).collect();
     files.commit(
         manifest,
-        &manifest_text(robot, &reference, title, &motions),
+        &manifest_text_as(form, robot, &reference, title, &motions),
         &[stem, &format!("{stem}-robot")],
     )
 }

@@ -10,12 +10,14 @@ mod targets;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 7] = [
+const TARGETS: [(&str, Target); 9] = [
     ("robot", targets::robot),
     ("urdf", targets::urdf),
     ("manifest", targets::manifest),
     ("table", targets::table),
     ("array", targets::array),
+    ("mcap", targets::mcap),
+    ("parquet", targets::parquet),
     ("model", targets::model),
     ("estimate", targets::estimate),
 ];

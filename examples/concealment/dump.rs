@@ -6,7 +6,7 @@ use std::path::Path;
 use dynid::output;
 use dynid::recording_files::{RobotReference, write_recording};
 use dynid_runtime::model::Robot;
-use dynid_runtime::recording::Trajectory;
+use dynid_runtime::recording::{DataFormat, Trajectory};
 
 use crate::case::Case;
 use crate::failure::Failure;
@@ -19,7 +19,7 @@ pub fn write(folder: &Path, robot: &Robot, case: &Case, recordings: &Recordings)
     let title = "closed-loop motion, 500 Hz";
     let write = |manifest: &str, stem: &str, motions: &[Trajectory]| {
         let reference = RobotReference::Name(&case.robot);
-        write_recording((&folder, manifest, stem), robot, reference, title, motions)
+        write_recording((&folder, manifest, stem), robot, reference, (title, (DataFormat::Csv, &[])), motions)
     };
     write("recording.yaml", "traj", &recordings.motions)?;
     write("test.yaml", "test", &recordings.test)?;

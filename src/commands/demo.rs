@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::effects::{EffectKind, EffectTerm, Place, TermScale};
 use dynid_runtime::model::{JointIndex, Model, ParameterKind, Robot};
-use dynid_runtime::recording::Trajectory;
+use dynid_runtime::recording::{DataFormat, Trajectory};
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, MotionKind, excite};
 use dynid_runtime::simulation::{LoopSettings, SimulationError, World, simulate};
@@ -142,5 +142,12 @@ fn simulated(
 
 fn save(folder: &Path, robot: &Robot, title: &str, motions: &[Trajectory]) -> Result<(), Failure> {
     let reference = RobotReference::Name(&robot.name);
-    write_recording((folder, "recording.yaml", "traj"), robot, reference, title, motions).map(|_| ())
+    write_recording(
+        (folder, "recording.yaml", "traj"),
+        robot,
+        reference,
+        (title, (DataFormat::Csv, &[])),
+        motions,
+    )
+    .map(|_| ())
 }

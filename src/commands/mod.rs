@@ -7,8 +7,11 @@ mod excite;
 mod export;
 mod identify;
 mod import;
+mod init;
+mod look;
 mod paper;
 mod robots;
+mod shell;
 mod show;
 mod simulate;
 mod validate;
@@ -43,6 +46,10 @@ enum Command {
     Identify(identify::Arguments),
     /// Write the table of a URDF as a robot YAML
     Import(import::Arguments),
+    /// Write a robot YAML and a recording YAML to fill in
+    Init(init::Arguments),
+    /// Say what is in a recording, and write a recording YAML to start from
+    Look(look::Arguments),
     /// Predict the torques of a recording with an identified model
     Validate(validate::Arguments),
     /// Find out which physics is missing, where, and whether adding it helps on held-out motion
@@ -55,10 +62,15 @@ enum Command {
     Simulate(simulate::Arguments),
     /// Show a robot: its table, its base parameters, its operation counts
     Show(show::Arguments),
+    /// Print the completions of a shell: `dynid completions bash > /etc/bash_completion.d/dynid`
+    Completions(shell::Arguments),
+    /// Print the manual: `dynid man > dynid.1`
+    Man,
 }
 
 /// Runs the command line of this process and says how it went.
 pub fn run() -> ExitCode {
+    quiet_about_damaged_pages();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(said) => return told_by_the_parser(&said),
@@ -71,6 +83,17 @@ pub fn run() -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// The decoders of the `parquet` crate panic on some pages that are damaged, which the reader tells as a mistake of the
+/// file; nobody needs to be told twice.
+fn quiet_about_damaged_pages() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panic.location().is_some_and(|place| place.file().contains("/parquet-")) {
+            usual(panic);
+        }
+    }));
 }
 
 /// Help and version go to standard output, what is wrong with the words of a command to standard error.
@@ -96,6 +119,10 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Import(arguments) => import::run(&arguments),
+        Command::Init(arguments) => init::run(&arguments),
+        Command::Look(arguments) => look::run(&arguments),
+        Command::Completions(arguments) => shell::completions(&arguments),
+        Command::Man => shell::manual(),
         Command::Show(arguments) => show::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
     }

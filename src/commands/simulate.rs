@@ -9,6 +9,7 @@ use clap::Args;
 use dynid_runtime::effects::UserLaw;
 use dynid_runtime::model::Model;
 use dynid_runtime::model_file::to_yaml;
+use dynid_runtime::recording::DataFormat;
 use dynid_runtime::report::significant;
 use dynid_runtime::simulation::excitation::{ExcitationSettings, excite};
 use dynid_runtime::simulation::{LoopSettings, Reference, Simulation, SimulationError, World, simulate};
@@ -20,6 +21,7 @@ use crate::ranges;
 use crate::recording_files::{RobotReference, write_recording};
 use crate::robots::{Dynamics, read_yaml, resolve};
 use crate::saved::own_dynamics;
+use crate::start::{joint_names, numbered};
 use robot::{Parameters, missing, parameters, plant, saved_model};
 
 /// What to simulate, and where to put it.
@@ -105,9 +107,30 @@ pub(super) struct Arguments {
     /// repeated
     #[arg(long)]
     elastic: Vec<String>,
+    /// Format of the motions; MCAP is a log of JointState messages
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    format: Format,
     /// Feed nothing forward: the controller works from the errors alone
     #[arg(long)]
     no_feed_forward: bool,
+}
+
+/// Formats of motions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    Csv,
+    Parquet,
+    Mcap,
+}
+
+impl From<Format> for DataFormat {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Csv => Self::Csv,
+            Format::Parquet => Self::Parquet,
+            Format::Mcap => Self::Mcap,
+        }
+    }
 }
 
 /// Simulates and writes.
@@ -159,7 +182,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let reference = own_table.as_deref().map_or(RobotReference::Name(&robot.name), RobotReference::Yaml);
     let place = (arguments.out.as_path(), "recording.yaml", "traj");
-    let path = write_recording(place, robot, reference, &title, &trajectories)?;
+    let joints = joint_names(&arguments.robot)?.unwrap_or_else(|| numbered(robot));
+    let form = (arguments.format.into(), joints.as_slice());
+    let path = write_recording(place, robot, reference, (&title, form), &trajectories)?;
     print(&summary(&path, &runs));
     Ok(())
 }

@@ -31,6 +31,11 @@ pub fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     table.to_string().lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
 
+/// Prints a text that this program made to standard output as it stands.
+pub fn print_bytes(text: &[u8]) {
+    terminal::to_standard_output(&String::from_utf8_lossy(text));
+}
+
 /// Replaces a file as a whole, or writes to standard output for `-`.
 ///
 /// # Errors

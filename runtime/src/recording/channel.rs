@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
+use super::RecordingError;
+use super::files::Source;
 use super::manifest::{Channel, Manifest, Side};
-use super::source::Source;
 use super::unit::{Quantity, Unit};
-use super::{RecordingError, Rows};
 use crate::model::{JointIndex, JointKind, JointNumber, Robot};
 
 /// What is the same for all windows.
@@ -29,6 +29,10 @@ impl Conversions {
     /// Checks the channels of a manifest against the robot.
     pub(super) fn new(manifest: &Manifest, robot: &Robot) -> Result<Self, RecordingError> {
         let joints = robot.joints();
+        if !manifest.joints.is_empty() && manifest.joints.len() != joints {
+            let message = format!("{} named, but {} has {joints} joints", manifest.joints.len(), robot.name);
+            return Err(manifest.error(&["joints"], &message));
+        }
         let motor = match manifest.side {
             Side::Joint => None,
             Side::Motor => {
@@ -68,7 +72,7 @@ fn conversion(
         let message = format!("{found} given, but {} has {joints} joints", robot.name);
         Err(manifest.error(&[quantity, key], &message))
     };
-    if channel.columns.is_empty() {
+    if channel.columns.is_empty() && manifest.joints.is_empty() {
         return Err(manifest.error(&[quantity, "columns"], "no column is named"));
     }
     per_joint("columns", channel.columns.len(), false)?;
@@ -132,7 +136,7 @@ fn check_unit(
 
 /// Appends rows `run` of a channel, in SI and on the joint side.
 pub(super) fn convert(
-    sources: &[(Source, Rows)],
+    sources: &[Source],
     places: &[(usize, usize)],
     conversion: &Conversion,
     matrix: Option<&DMatrix<f64>>,

@@ -90,7 +90,7 @@ impl RecordingError {
 
     pub(super) fn io(file: &std::path::Path, error: &std::io::Error) -> Self {
         let message = match error.kind() {
-            std::io::ErrorKind::NotFound => "there is no such file".into(),
+            std::io::ErrorKind::NotFound => format!("there is no such file{}", beside(file)),
             std::io::ErrorKind::PermissionDenied => "it may not be read".into(),
             std::io::ErrorKind::IsADirectory => "it is a folder, a file was expected".into(),
             _ => error.get_ref().map_or_else(|| error.to_string(), ToString::to_string),
@@ -98,3 +98,22 @@ impl RecordingError {
         Self::File { file: file.display().to_string(), message }
     }
 }
+
+/// " (did you mean `...`?)" with the file of the same folder whose name is nearest.
+fn beside(file: &std::path::Path) -> String {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let entries = std::fs::read_dir(folder.unwrap_or(std::path::Path::new(".")));
+    let names = entries.into_iter().flatten().flatten().take(MOST_BESIDE);
+    let mut names: Vec<String> = names.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    names.sort_unstable();
+    // Endings are alike anyway.
+    let stem = |name: &str| name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned();
+    let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
+    let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let meant = super::nearest(&stem(&name), stems.iter().map(String::as_str));
+    let place = stems.iter().position(|stem| Some(stem.as_str()) == meant);
+    place.map_or_else(String::new, |k| format!(" (did you mean `{}`?)", names[k]))
+}
+
+/// Files of a folder that are looked at for a name that was meant.
+const MOST_BESIDE: usize = 1000;

@@ -1,6 +1,7 @@
 //! One line of a text table: its fields, and the columns that the first one names.
 
 use super::column::Column;
+use super::names::{listed, meant};
 
 /// Blanks at the start of a text.
 pub(super) fn blanks_at(text: &[u8]) -> usize {
@@ -56,17 +57,8 @@ pub(super) fn no_text(line: &[u8]) -> Option<&'static str> {
 
 /// Index of a wanted column among the fields of the first line; otherwise why there is none.
 pub(super) fn find(column: &Column, names: &[&[u8]], header: bool) -> Result<usize, String> {
-    let shown = |n: &&[u8]| {
-        let text = String::from_utf8_lossy(trim_quotes(n));
-        text.chars().filter(|c| !c.is_control()).take(40).collect::<String>()
-    };
-    let listed = || {
-        let mut all = names.iter().take(40).map(shown).collect::<Vec<_>>().join(", ");
-        if names.len() > 40 {
-            all.push_str(", ...");
-        }
-        all
-    };
+    let texts: Vec<_> = names.iter().map(|n| String::from_utf8_lossy(trim_quotes(n))).collect();
+    let listed = || listed(texts.iter().map(AsRef::as_ref));
     match column {
         Column::Index(index) if *index < names.len() => Ok(*index),
         Column::Index(index) => {
@@ -83,7 +75,10 @@ pub(super) fn find(column: &Column, names: &[&[u8]], header: bool) -> Result<usi
             match (found.next(), found.next()) {
                 (Some((index, _)), None) => Ok(index),
                 (Some(_), Some(_)) => Err(format!("two columns are called `{name}`; name them by index")),
-                (None, _) => Err(format!("there is no column `{name}`; there are: {}", listed())),
+                (None, _) => {
+                    let meant = meant(name, texts.iter().map(AsRef::as_ref));
+                    Err(format!("there is no column `{name}`{meant}; there are: {}", listed()))
+                }
             }
         }
     }

@@ -28,6 +28,8 @@ pub struct Manifest {
     pub title: String,
     /// Side of the gear that was recorded.
     pub side: Side,
+    /// Names that the joints have in logs that name them (MCAP), in the order of the robot's table; may be empty.
+    pub joints: Vec<String>,
     /// How the text files are laid out.
     pub layout: Layout,
     /// Where time comes from.
@@ -96,13 +98,14 @@ pub enum Time {
 }
 
 /// Columns of one quantity, one per joint.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Channel {
     /// The file, where it is not the trajectory's.
     #[serde(default)]
     pub file: Option<String>,
-    /// One per joint.
+    /// One per joint; empty where only logs that name their joints are read.
+    #[serde(default)]
     pub columns: Vec<Column>,
     /// One for all or one per joint; empty: SI.
     #[serde(default, deserialize_with = "one_or_many")]
@@ -122,6 +125,9 @@ pub struct Window {
     /// The file of the channels that name none.
     #[serde(default)]
     pub file: Option<String>,
+    /// The topic of a log with several.
+    #[serde(default)]
+    pub topic: Option<String>,
     /// First time, s.
     #[serde(default, deserialize_with = "number")]
     pub from: Option<f64>,

@@ -16,6 +16,13 @@ use super::yaml::{MAX_BYTES, Mistake, Node, Place, read_positions};
 /// Keys without which there is no recording.
 const NEEDED: [&str; 4] = ["robot", "time", "position", "torque"];
 
+/// Where a log does not say what its torques are.
+const SAY_THE_UNIT: &str = "`effort` is N.m with some drivers and the motor's current with others, so it must be said \
+    which: `torque: {unit: N.m}`, or `torque: {unit: A, gain: [...]}` with N.m per ampere";
+
+/// The column of a log that holds the stamps of its messages, in s since the first.
+pub(super) const STAMP: &str = "header.stamp";
+
 /// Most trajectories of a recording: each of them reads its file from the beginning.
 const MOST_TRAJECTORIES: usize = 2000;
 
@@ -28,12 +35,14 @@ struct Raw {
     #[serde(default)]
     side: Side,
     #[serde(default)]
+    joints: Vec<String>,
+    #[serde(default)]
     layout: Layout,
-    time: RawTime,
-    position: Channel,
+    time: Option<RawTime>,
+    position: Option<Channel>,
     #[serde(default)]
     velocity: Option<Channel>,
-    torque: Channel,
+    torque: Option<Channel>,
     #[serde(default)]
     trajectories: Vec<Window>,
 }
@@ -80,21 +89,39 @@ impl Manifest {
     }
 
     fn build(path: String, folder: PathBuf, places: Node, raw: Raw) -> Result<Self, RecordingError> {
+        let named = !raw.joints.is_empty();
+        let missing = |key: &&str| !places.has(key) && (!named || *key == "torque");
+        if let Some(key) = NEEDED.into_iter().find(missing) {
+            let why = if named { format!(": {SAY_THE_UNIT}") } else { String::new() };
+            let Place { line, column } = places.place;
+            let message = format!("a recording has no '{key}'{why}");
+            return Err(RecordingError::Manifest { file: path, line, column, message });
+        }
         let mut manifest = Self {
             path,
             folder,
             robot: raw.robot,
             title: raw.title,
             side: raw.side,
+            joints: raw.joints,
             layout: raw.layout,
             time: Time::Rate(0.0),
-            position: raw.position,
+            position: raw.position.unwrap_or_default(),
             velocity: raw.velocity,
-            torque: raw.torque,
+            torque: raw.torque.unwrap_or_default(),
             trajectories: raw.trajectories,
             places,
         };
-        manifest.time = manifest.check_time(raw.time)?;
+        manifest.time = match raw.time {
+            Some(time) => manifest.check_time(time)?,
+            None => Time::Column {
+                column: Column::Name(STAMP.into()),
+                unit: Unit::second(),
+                from_first_row: false,
+                file: None,
+            },
+        };
+        manifest.check_channels()?;
         manifest.check()?;
         Ok(manifest)
     }
@@ -128,12 +155,35 @@ impl Manifest {
                         return Err(self.error(&["time", "unit"], &message));
                     }
                     Some(unit) => unit,
-                    None => Unit { name: "s".into(), quantity: Quantity::Time, factor: 1.0 },
+                    None => Unit::second(),
                 };
                 let from_first_row = raw.from_first_row.unwrap_or(false);
                 Ok(Time::Column { column, unit, from_first_row, file: raw.file })
             }
         }
+    }
+
+    /// Columns where no joints are named, and joints as they must be.
+    fn check_channels(&self) -> Result<(), RecordingError> {
+        if self.joints.is_empty() {
+            let channels = ["position", "velocity", "torque"];
+            let without =
+                |key: &&str| self.places.value_of(key).is_some_and(|channel| !channel.has("columns"));
+            return match channels.into_iter().find(without) {
+                Some(key) => Err(self.error(&[key], "missing field `columns`")),
+                None => Ok(()),
+            };
+        }
+        for (k, joint) in self.joints.iter().enumerate() {
+            if joint.trim().is_empty() || self.joints[..k].contains(joint) {
+                let message = format!("`{joint}`: every joint has a name of its own");
+                return Err(self.error(&["joints", &k.to_string()], &message));
+            }
+        }
+        if self.torque.unit.is_empty() {
+            return Err(self.error(&["torque"], SAY_THE_UNIT));
+        }
+        Ok(())
     }
 
     fn check(&mut self) -> Result<(), RecordingError> {

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
+use super::formats::Format;
 use super::{Column, Reason, RecordingError, Rows};
 use crate::regular_file;
 
@@ -71,8 +72,9 @@ impl<R: Read + Seek> NpyReader<R> {
         Ok(Self { file: file.into(), source, start, shape, wanted, row: 0, bytes: Vec::new() })
     }
 
-    pub fn file(&self) -> &str {
-        &self.file
+    /// Columns of the array.
+    pub fn columns(&self) -> usize {
+        self.shape.columns
     }
 
     pub fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
@@ -107,6 +109,16 @@ impl<R: Read + Seek> NpyReader<R> {
         }
         self.row += count;
         Ok(count)
+    }
+}
+
+impl<R: Read + Seek> Format for NpyReader<R> {
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
+        NpyReader::read(self, rows, most)
     }
 }
 

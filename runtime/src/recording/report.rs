@@ -93,6 +93,9 @@ pub struct RowReport {
     pub examples: Vec<LeftOutRow>,
     /// Where motions were cut.
     pub cuts: Vec<Cut>,
+    /// What else of the files was not used: parts that are damaged, messages that lack a signal.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
 }
 
 /// Rows of one reason that are kept as examples.
@@ -141,5 +144,11 @@ impl RowReport {
             }
         }
         other.cuts.into_iter().for_each(|c| self.cut(c));
+        for note in other.notes {
+            // Windows of one file tell the same.
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
     }
 }

@@ -5,6 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use super::fields::{blanks_at, find, is_passed_over, no_text, split};
+use super::formats::Format;
+use super::layout_guess::remedy;
 use super::number::{Field, parse_field, plain_decimal};
 use super::{Column, Layout, Reason, RecordingError, Rows};
 use crate::regular_file;
@@ -33,6 +35,8 @@ pub struct TableReader<R = File> {
     plan: Vec<Option<usize>>,
     /// Fields of a right row.
     fields: usize,
+    /// How it is perhaps laid out, where it does not look as it should.
+    remedy: Option<String>,
 }
 
 /// Bytes read at a time.
@@ -71,6 +75,7 @@ impl<R: Read> TableReader<R> {
             line: 0,
             plan: Vec::new(),
             fields: 0,
+            remedy: None,
         };
         reader.fill()?;
         if reader.buffer[..reader.end].starts_with(&[0xef, 0xbb, 0xbf]) {
@@ -84,8 +89,12 @@ impl<R: Read> TableReader<R> {
         let first = reader.first_line()?;
         let names = split(&reader.buffer[first.0..first.1], layout.delimiter);
         reader.fields = names.len();
-        reader.plan =
-            plan(&names, wanted, layout.header).map_err(|message| reader.error(reader.line, message))?;
+        let remedy = remedy(&reader.buffer[first.0..reader.whole], layout);
+        reader.plan = plan(&names, wanted, layout.header).map_err(|message| {
+            let remedy = remedy.as_ref().map_or_else(String::new, |remedy| format!("; {remedy}"));
+            reader.error(reader.line, format!("{message}{remedy}"))
+        })?;
+        reader.remedy = remedy;
         if !layout.header {
             // The first line is a row.
             reader.start = first.0;
@@ -282,6 +291,20 @@ impl<R: Read> TableReader<R> {
             seen = self.end;
         }
         Ok(self.whole > 0)
+    }
+}
+
+impl<R: Read> Format for TableReader<R> {
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
+        TableReader::read(self, rows, most)
+    }
+
+    fn remedy(&self) -> Option<String> {
+        self.remedy.clone()
     }
 }
 

@@ -68,6 +68,11 @@ const UNITS: &[(&[&str], Quantity, f64)] = &[
 ];
 
 impl Unit {
+    /// The second.
+    pub(super) fn second() -> Self {
+        Self { name: "s".into(), quantity: Quantity::Time, factor: 1.0 }
+    }
+
     /// The unit of that name.
     pub fn named(name: &str) -> Option<Self> {
         let (_, quantity, factor) = UNITS.iter().find(|(names, ..)| names.contains(&name))?;

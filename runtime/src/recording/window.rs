@@ -3,12 +3,11 @@
 use std::ops::Range;
 
 use super::channel::{Conversions, convert};
-use super::files::{Clock, Files, Slot};
+use super::files::{Clock, Files, Slot, Source};
 use super::manifest::{Manifest, Window};
 use super::reach::Reach;
 use super::screen::{Fault, Piece, screen};
-use super::source::Source;
-use super::{Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RecordingError, RowReport, Rows, Trajectory};
+use super::{Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RecordingError, RowReport, Trajectory};
 use crate::model::{JointNumber, Robot};
 
 /// Rows taken from every file at a time.
@@ -17,7 +16,7 @@ pub(super) const BLOCK: usize = 4096;
 /// The files of one window.
 pub(super) struct Open {
     name: String,
-    sources: Vec<(Source, Rows)>,
+    sources: Vec<Source>,
     clock: Clock,
     position: Vec<Slot>,
     velocity: Vec<Slot>,
@@ -36,12 +35,12 @@ pub(super) struct Open {
 impl Open {
     pub(super) fn new(manifest: &Manifest, robot: &Robot, window: &Window) -> Result<Self, RecordingError> {
         let mut files = Files::new(manifest, window);
-        let position = files.channel(&manifest.position)?;
+        let position = files.channel(&manifest.position, "position", "position")?;
         let velocity = match &manifest.velocity {
-            Some(channel) => files.channel(channel)?,
+            Some(channel) => files.channel(channel, "velocity", "velocity")?,
             None => Vec::new(),
         };
-        let torque = files.channel(&manifest.torque)?;
+        let torque = files.channel(&manifest.torque, "torque", "effort")?;
         let clock = files.clock()?;
         let sources = files.open()?;
         Ok(Self {
@@ -238,7 +237,8 @@ impl Open {
     }
 
     pub(super) fn finish(self, report: &mut RowReport) -> Result<(), RecordingError> {
-        let Self { name, report: own, .. } = self;
+        let Self { name, report: mut own, .. } = self;
+        own.notes.extend(self.sources.iter().flat_map(|(source, _)| source.notes()));
         if own.rows == 0 {
             let why = match (self.from.is_finite(), self.to.is_finite()) {
                 (false, false) => "in the file".to_string(),
@@ -256,6 +256,14 @@ impl Open {
                 Reason::TimeOrder => "Is the time column right, and is it one recording?",
                 _ => "Are the delimiter, the header and the columns right?",
             };
+            let remedy = match reason {
+                Reason::NotANumber | Reason::WrongFieldCount | Reason::TooFewFields => {
+                    self.sources.iter().find_map(|(source, _)| source.remedy())
+                }
+                _ => None,
+            };
+            let advice =
+                remedy.map_or_else(|| advice.to_owned(), |remedy| format!("{advice} In the file, {remedy}"));
             return Err(RecordingError::TooManyLeftOut {
                 name,
                 left_out: own.left_out,
@@ -263,7 +271,7 @@ impl Open {
                 limit: MOST_LEFT_OUT,
                 reason: reason.to_string(),
                 example: example.map(ToString::to_string).unwrap_or_default(),
-                advice: advice.into(),
+                advice,
             });
         }
         report.merge(own);

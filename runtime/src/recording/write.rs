@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::Trajectory;
+use super::{Trajectory, formats};
 use crate::model::{JointIndex, JointKind, Robot};
 
 /// Writes the rows of a motion as CSV with the columns that [`manifest_text`] names. Numbers are written so that they
@@ -31,6 +31,72 @@ pub fn write_rows(trajectory: &Trajectory, out: &mut dyn Write) -> io::Result<()
         writeln!(out, "{line}")?;
     }
     Ok(())
+}
+
+/// A format in which motions are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DataFormat {
+    /// Text, read back exactly.
+    #[default]
+    Csv,
+    /// Doubles; the columns of the text.
+    Parquet,
+    /// `sensor_msgs/msg/JointState` on `/joint_states`; stamps are rounded to nanoseconds.
+    Mcap,
+}
+
+impl DataFormat {
+    /// How its files end.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+            Self::Mcap => "mcap",
+        }
+    }
+
+    /// Writes the rows of a motion; `joints` are the names of its joints in a log.
+    ///
+    /// # Errors
+    /// What `out` says; a format that this build does not have.
+    pub fn write(self, motion: &Trajectory, joints: &[String], out: &mut dyn Write) -> io::Result<()> {
+        match self {
+            Self::Csv => write_rows(motion, out),
+            Self::Parquet => formats::write_parquet(motion, out),
+            Self::Mcap => formats::write_mcap(motion, joints, out),
+        }
+    }
+}
+
+/// [`manifest_text`] of motions that [`DataFormat::write`] wrote.
+pub fn manifest_text_as(
+    (format, joints): (DataFormat, &[String]),
+    robot: &Robot,
+    robot_reference: &str,
+    title: &str,
+    motions: &[(&str, &Trajectory)],
+) -> String {
+    let text = manifest_text(robot, robot_reference, title, motions);
+    let keep = |line: &&str| !line.starts_with("layout:");
+    match format {
+        DataFormat::Csv => text,
+        DataFormat::Parquet => text.lines().filter(keep).map(|line| format!("{line}\n")).collect(),
+        DataFormat::Mcap => {
+            let quoted: Vec<String> =
+                joints.iter().map(|j| serde_json::Value::from(j.as_str()).to_string()).collect();
+            let line = |line: &str| match line.split_once(':') {
+                Some(("layout" | "position", _)) => String::new(),
+                Some(("time", _)) => format!("joints: [{}]\n", quoted.join(", ")),
+                // What stands before the unit are columns.
+                Some((key @ ("velocity" | "torque"), rest)) => {
+                    let unit = rest.find("unit:").map_or("", |at| &rest[at..]);
+                    format!("{key}: {{{unit}\n")
+                }
+                _ => format!("{line}\n"),
+            };
+            text.lines().map(line).collect()
+        }
+    }
 }
 
 /// The manifest of motions that [`write_rows`] wrote, each given with the name of its file beside the manifest.

@@ -1,0 +1,4 @@
+//! An MCAP file.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dynid_fuzz::mcap(bytes));

@@ -1,0 +1,152 @@
+//! Formats of data files: one file a format. `.npy` arrays and text tables are beside this folder.
+
+#[cfg(feature = "mcap")]
+mod mcap;
+#[cfg(feature = "parquet")]
+mod parquet;
+
+#[cfg(not(all(feature = "mcap", feature = "parquet")))]
+use std::io::{self, Write};
+use std::path::Path;
+
+#[cfg(not(all(feature = "mcap", feature = "parquet")))]
+use super::Trajectory;
+use super::look::Topic;
+use super::npy::NpyReader;
+use super::table::TableReader;
+use super::{Column, Layout, RecordingError, Rows};
+
+/// A data file that hands out its wanted columns block by block.
+pub(super) trait Format {
+    /// What messages call the file.
+    fn file(&self) -> &str;
+
+    /// Appends up to `most` rows to `rows`, which has one column per wanted column. Returns how many; 0 at the end.
+    fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError>;
+
+    /// How a file of which many rows cannot be read is perhaps laid out.
+    fn remedy(&self) -> Option<String> {
+        None
+    }
+
+    /// What of the file was passed over, for a person; complete at the end of the file.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// What is wanted of a file.
+pub(super) struct Wanted<'a> {
+    /// The columns, each of them once.
+    pub columns: &'a [Column],
+    /// How a text file is laid out.
+    pub layout: &'a Layout,
+    /// The topic of a log.
+    #[cfg_attr(not(feature = "mcap"), allow(dead_code, reason = "logs alone have topics"))]
+    pub topic: Option<&'a str>,
+}
+
+/// What a log holds, by its first messages.
+pub(super) struct Survey {
+    pub topics: Vec<Topic>,
+    /// The topic that is looked at, where there is one that tells of joints.
+    pub topic: Option<String>,
+    /// Its signals, `joint.position` and so on.
+    pub signals: Vec<String>,
+    /// Whether its messages have header stamps.
+    pub stamped: bool,
+    pub notes: Vec<String>,
+}
+
+/// Opens a file; `.npy`, `.parquet`, `.mcap` and folders are read as such, everything else as text.
+pub(super) fn open(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
+    if is_log(path) {
+        return open_log(path, file, wanted);
+    }
+    Ok(match extension(path).as_str() {
+        "npy" => Box::new(NpyReader::open(path, file, wanted.columns)?),
+        "parquet" => open_parquet(path, file, wanted)?,
+        _ => Box::new(TableReader::open(path, file, wanted.layout, wanted.columns)?),
+    })
+}
+
+/// Whether a path is that of a log that names its joints: an MCAP file, a folder of them, or what only can be converted
+/// to one.
+pub fn is_log(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "mcap" | "db3" | "bag") || path.is_dir()
+}
+
+pub(super) fn extension(path: &Path) -> String {
+    path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_ascii_lowercase())
+}
+
+/// As [`open`], but a row that lacks some signals of a log, or some columns of a Parquet file, is handed out with NaN in
+/// their places.
+pub(super) fn open_partial(
+    path: &Path,
+    file: &str,
+    wanted: &Wanted<'_>,
+) -> Result<Box<dyn Format>, RecordingError> {
+    #[cfg(feature = "mcap")]
+    if is_log(path) {
+        return Ok(Box::new(mcap::McapReader::open(path, file, wanted)?.partial()));
+    }
+    #[cfg(feature = "parquet")]
+    if extension(path) == "parquet" {
+        return Ok(Box::new(parquet::ParquetReader::open(path, file, wanted.columns)?.partial()));
+    }
+    open(path, file, wanted)
+}
+
+#[cfg(feature = "mcap")]
+fn open_log(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
+    Ok(Box::new(mcap::McapReader::open(path, file, wanted)?))
+}
+
+#[cfg(feature = "mcap")]
+pub(super) use mcap::{survey, write as write_mcap};
+
+#[cfg(not(feature = "mcap"))]
+fn open_log(_: &Path, file: &str, _: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
+    Err(left_out(file, "mcap"))
+}
+
+#[cfg(not(feature = "mcap"))]
+pub(super) fn write_mcap(_: &Trajectory, _: &[String], _: &mut dyn Write) -> io::Result<()> {
+    Err(io::Error::other(left_out("an MCAP file", "mcap").to_string()))
+}
+
+#[cfg(not(feature = "mcap"))]
+pub(super) fn survey(_: &Path, file: &str, _: Option<&str>) -> Result<Survey, RecordingError> {
+    Err(left_out(file, "mcap"))
+}
+
+#[cfg(feature = "parquet")]
+fn open_parquet(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
+    Ok(Box::new(parquet::ParquetReader::open(path, file, wanted.columns)?))
+}
+
+#[cfg(feature = "parquet")]
+pub(super) use parquet::{parquet_columns, write as write_parquet};
+
+#[cfg(not(feature = "parquet"))]
+fn open_parquet(_: &Path, file: &str, _: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
+    Err(left_out(file, "parquet"))
+}
+
+#[cfg(not(feature = "parquet"))]
+pub(super) fn write_parquet(_: &Trajectory, _: &mut dyn Write) -> io::Result<()> {
+    Err(io::Error::other(left_out("a Parquet file", "parquet").to_string()))
+}
+
+#[cfg(not(feature = "parquet"))]
+pub(super) fn parquet_columns(_: &Path, file: &str) -> Result<(Vec<String>, Option<f64>), RecordingError> {
+    Err(left_out(file, "parquet"))
+}
+
+#[cfg(not(all(feature = "mcap", feature = "parquet")))]
+fn left_out(file: &str, feature: &str) -> RecordingError {
+    let message =
+        format!("this program was built without the feature `{feature}` of dynid-runtime, which reads it");
+    RecordingError::File { file: file.into(), message }
+}
