@@ -65,8 +65,12 @@ fn a_bag_and_a_urdf_come_to_a_diagnosis_in_three_commands() {
     let bag = bag.filter(|path| path.extension().is_some_and(|e| e == "mcap")).min().unwrap();
     std::fs::copy(bag, folder.path("bag.mcap")).unwrap();
 
-    done(&folder, "import arm.urdf --out arm.yaml");
-    let looked = done(&folder, "look bag.mcap --robot arm.urdf --unit N.m --out recording.yaml");
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let block = readme.split("```").find(|block| block.contains("dynid look bag.mcap")).unwrap();
+    let lines: Vec<&str> =
+        block.trim().lines().map(|line| line.trim().strip_prefix("dynid ").unwrap()).collect();
+    let [look, identify, diagnose] = lines.as_slice() else { panic!("{block}") };
+    let looked = done(&folder, look);
     assert_eq!(error_of(&looked), "");
     let said = words_of(&looked);
     for words in ["/joint_states", "sensor_msgs/msg/JointState", "shoulder.effort", "250"] {
@@ -77,7 +81,9 @@ fn a_bag_and_a_urdf_come_to_a_diagnosis_in_three_commands() {
         yaml.contains("robot: ./arm.urdf\n") && yaml.contains("joints: [waist, shoulder, elbow"),
         "{yaml}"
     );
-    let diagnosis = json_of(&done(&folder, "diagnose recording.yaml --json -"));
+    done(&folder, identify);
+    assert!(folder.path("model.json").is_file());
+    let diagnosis = json_of(&done(&folder, &format!("{diagnose} --json -")));
     assert!(diagnosis["before"]["relative_error"].as_f64().unwrap() < 0.2, "{diagnosis}");
 }
 

@@ -251,8 +251,7 @@ fn pinocchio_and_mujoco_have_the_torques_of_what_was_written() {
 #[test]
 fn the_five_lines_of_the_readme_make_a_better_urdf() {
     let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
-    let block =
-        readme.split("```").find(|block| block.contains("dynid import arm.urdf --out arm.yaml\n")).unwrap();
+    let block = readme.split("```").find(|block| block.contains("--to urdf --template")).unwrap();
     let lines: Vec<&str> = block.trim().lines().collect();
     assert_eq!(lines.len(), 5, "{block}");
     let folder = Folder::new("urdf-readme");
