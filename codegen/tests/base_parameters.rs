@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod numeric;
+mod shipped;
 
 use dynid_codegen::base::{BaseSet, base_set};
 use dynid_codegen::robot::{DriveTable, Expression, RobotTable, TableRow, parse};
@@ -9,31 +10,12 @@ use dynid_description::{BaseParameter, DependentFrame, JointKind, Limits, Parame
 use numeric::regressor;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use shipped::{robots, workspace};
 use std::f64::consts::PI;
-use std::path::{Path, PathBuf};
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 fn robot(name: &str) -> RobotTable {
-    let path = workspace().join("robots").join(format!("{name}.yaml"));
-    parse(name, &std::fs::read(path).unwrap()).unwrap()
+    robots().into_iter().find(|robot| robot.name == name).unwrap()
 }
-
-const ROBOTS: [&str; 11] = [
-    "branched",
-    "cobot6",
-    "palletiser",
-    "panda",
-    "parallelogram6",
-    "planar_2r",
-    "puma560",
-    "scara4",
-    "stanford",
-    "tx40",
-    "ur10e",
-];
 
 /// Standard columns at enough random states for every rank to show.
 fn observations(robot: &RobotTable, set: &BaseSet, random: &mut Pcg64) -> nalgebra::DMatrix<f64> {
@@ -93,8 +75,8 @@ fn check(robot: &RobotTable, random: &mut Pcg64) -> Result<(), String> {
 #[test]
 fn the_base_of_every_robot_has_the_numeric_rank_and_the_same_torques_under_any_gravity() {
     let mut random = Pcg64::seed_from_u64(7);
-    for name in ROBOTS {
-        let mut robot = robot(name);
+    for mut robot in robots() {
+        let name = robot.name.clone();
         for gravity in
             [robot.gravity, [0.0; 3], [9.81, 0.0, 0.0], [0.0, 9.81, 0.0], [0.0, 0.0, 9.81], [1.0, 2.0, 3.0]]
         {
@@ -338,10 +320,10 @@ fn inertial_counts_are_those_of_the_independent_reference() {
         return;
     };
     let reference: serde_json::Value = serde_json::from_slice(&text).unwrap();
-    for name in ROBOTS.iter().filter(|name| reference.get(**name).is_some()) {
-        let set = base_set(&robot(name));
+    for robot in robots().iter().filter(|robot| reference.get(&robot.name).is_some()) {
+        let (name, set) = (&robot.name, base_set(robot));
         let inertial = |p: &&BaseParameter| set.standard[p.standard].kind <= ParameterKind::M;
-        let expected = reference[*name]["inertial_base_count"].as_u64().unwrap() as usize;
+        let expected = reference[name]["inertial_base_count"].as_u64().unwrap() as usize;
         assert_eq!(set.base.iter().filter(inertial).count(), expected, "{name}");
     }
 }
@@ -476,8 +458,8 @@ fn on_a_vertical_axis_a_rotor_cannot_be_told_from_mass_and_offset() {
 
 #[test]
 fn the_same_table_gives_the_same_base_every_time() {
-    for name in ROBOTS {
-        assert_eq!(base_set(&robot(name)), base_set(&robot(name)));
+    for (robot, again) in robots().iter().zip(&robots()) {
+        assert_eq!(base_set(robot), base_set(again));
     }
 }
 

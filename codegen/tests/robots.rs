@@ -1,28 +1,10 @@
 //! The robots of `robots/` are what the references say they are.
 #![allow(clippy::unwrap_used)]
 
-use dynid_codegen::robot::{RobotTable, parse};
+mod shipped;
+
 use dynid_description::JointKind;
-use std::path::{Path, PathBuf};
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-fn robots() -> Vec<RobotTable> {
-    let mut paths: Vec<PathBuf> =
-        std::fs::read_dir(workspace().join("robots")).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    paths
-        .iter()
-        .map(|path| {
-            let text = std::fs::read(path).unwrap();
-            parse(&path.display().to_string(), &text).unwrap_or_else(|mistakes| {
-                panic!("{}", mistakes.iter().map(|m| format!("{m}\n")).collect::<String>())
-            })
-        })
-        .collect()
-}
+use shipped::{robots, workspace};
 
 #[test]
 fn every_robot_reads_and_is_called_like_its_file() {
