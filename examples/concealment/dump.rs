@@ -46,7 +46,7 @@ fn truth(case: &Case, recordings: &Recordings) -> String {
         }
         let _ = writeln!(text, "  visible: {:.2}", hidden.visible);
         if let Some(joint) = hidden.joint {
-            let _ = writeln!(text, "  joint: {}", joint + 1);
+            let _ = writeln!(text, "  joint: {joint}");
         }
     }
     text

@@ -1,7 +1,7 @@
 //! A case: what is drawn for it, and its recordings.
 
 use dynid_runtime::effects::EffectKind;
-use dynid_runtime::model::Model;
+use dynid_runtime::model::{JointIndex, Model};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::Reference;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
@@ -24,9 +24,9 @@ const STANDING: [EffectKind; 2] = [EffectKind::LoadDependentFriction, EffectKind
 /// An effect as it was hidden.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Hidden {
-    /// Which, and 0-based joint.
+    /// Which.
     pub effect: EffectKind,
-    /// Joint that it must be named on; `None` for the whole robot's.
+    /// Number of the joint that it must be named on; `None` for the whole robot's.
     pub joint: Option<usize>,
     /// Its magnitude, see [`crate::hiding::Hiding::counts`].
     pub magnitude: f64,
@@ -78,6 +78,7 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
     };
     let motions = planned(model, count, length, &mut random)?;
     let noise = random.bits();
+    let number = |joint| model.robot().joint_number(JointIndex(joint)).0;
     let mut secrets: Vec<(Secret, f64)> = Vec::new();
     let mut hidden = Vec::new();
     for &effect in &case.effects {
@@ -94,7 +95,7 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
         hidden.push(Hidden {
             effect,
             // A payload is the robot's: it has one place.
-            joint: secret.joint.filter(|_| effect != EffectKind::Payload),
+            joint: secret.joint.filter(|_| effect != EffectKind::Payload).map(number),
             magnitude: size,
             visible: seen,
             outside: (effect == EffectKind::FreeForm).then(|| Outside::of(&secret).described(&secret)),

@@ -93,7 +93,7 @@ pub fn score(case: &Case) -> Result<Score, Failure> {
 
 fn compare(found: &Diagnosis, hidden: Vec<Hidden>, score: &mut Score) {
     let here = |hidden: &Hidden, joints: &[usize]| {
-        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&(joint + 1)))
+        joints.is_empty() || hidden.joint.is_none_or(|joint| joints.contains(&joint))
     };
     let here_is = |h: &Hidden, f: &Finding| {
         let over = h.outside.as_ref().is_none_or(|what| what.is_over(&f.variables));

@@ -68,7 +68,7 @@ impl Outcome {
 }
 
 fn joints_of(hidden: &Hidden) -> Vec<usize> {
-    hidden.joint.map(|j| j + 1).into_iter().collect()
+    hidden.joint.into_iter().collect()
 }
 
 /// An effect and the joints that it is on.
