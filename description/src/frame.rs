@@ -53,3 +53,45 @@ pub enum JointKind {
     /// others: [`Robot::motions`](crate::Robot::motions) says how.
     Fixed,
 }
+
+impl JointKind {
+    /// The unit on a prismatic joint, else that on a revolute one.
+    fn either(self, prismatic: &'static str, revolute: &'static str) -> &'static str {
+        if self == Self::Prismatic { prismatic } else { revolute }
+    }
+
+    /// Unit of the joint's torque: N of a prismatic joint, N.m of a revolute one.
+    pub fn torque_unit(self) -> &'static str {
+        self.either("N", "N.m")
+    }
+
+    /// Unit of the joint's position: m or rad.
+    pub fn position_unit(self) -> &'static str {
+        self.either("m", "rad")
+    }
+
+    /// Unit of the joint's speed: m/s or rad/s.
+    pub fn speed_unit(self) -> &'static str {
+        self.either("m/s", "rad/s")
+    }
+
+    /// Unit of the joint's acceleration: m/s2 or rad/s2.
+    pub fn acceleration_unit(self) -> &'static str {
+        self.either("m/s2", "rad/s2")
+    }
+
+    /// Unit of viscous friction: N.s/m or N.m.s/rad.
+    pub fn viscous_unit(self) -> &'static str {
+        self.either("N.s/m", "N.m.s/rad")
+    }
+
+    /// Unit of an angular wave number over the position: 1/m or 1/rad.
+    pub fn wave_unit(self) -> &'static str {
+        self.either("1/m", "1/rad")
+    }
+
+    /// Unit of a stiffness: N/m or N.m/rad.
+    pub fn stiffness_unit(self) -> &'static str {
+        self.either("N/m", "N.m/rad")
+    }
+}

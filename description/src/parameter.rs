@@ -95,17 +95,14 @@ impl ParameterKind {
     /// assert_eq!(ParameterKind::Fv.unit(JointKind::Prismatic), "N.s/m");
     /// ```
     pub fn unit(self, kind: JointKind) -> &'static str {
-        let prismatic = kind == JointKind::Prismatic;
         match self {
             XX | XY | XZ | YY | YZ | ZZ => "kg.m2",
             MX | MY | MZ => "kg.m",
             M => "kg",
-            Ia if prismatic => "kg",
+            Ia if kind == JointKind::Prismatic => "kg",
             Ia => "kg.m2",
-            Fv | Fvm if prismatic => "N.s/m",
-            Fv | Fvm => "N.m.s/rad",
-            Fc | Off | Fcm if prismatic => "N",
-            Fc | Off | Fcm => "N.m",
+            Fv | Fvm => kind.viscous_unit(),
+            Fc | Off | Fcm => kind.torque_unit(),
         }
     }
 }

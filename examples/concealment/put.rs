@@ -59,6 +59,7 @@ impl Joint {
                 torque: 1.0,
                 duration: 10.0,
                 gear,
+                fast: 0.0,
                 prismatic: false,
             }),
             ..term(secret.effect, Place::Joint(self.joint), shape, amplitude)

@@ -16,7 +16,7 @@
 //! ```
 
 use crate::effects::{LawError, UserLaw};
-use crate::model::{JointKind, JointNumber, Robot};
+use crate::model::{JointNumber, Robot};
 use crate::recording::yaml::{MAX_BYTES, Mistake, Node, Place, read_positions_of};
 use crate::regular_file;
 use serde::Deserialize;
@@ -150,7 +150,7 @@ fn law_of(raw: &Raw, node: &Node, robot: &Robot) -> Result<UserLaw, Mistake> {
         return Err(at_value(node, "joint", message));
     };
     let frame = &robot.frames[raw.joint - 1];
-    let unit = if frame.kind == JointKind::Prismatic { "N" } else { "N.m" };
+    let unit = frame.kind.torque_unit();
     if let Some(given) = raw.unit.as_ref().filter(|given| *given != unit) {
         let message = format!("'{given}': the torque of joint {} is in {unit}", raw.joint);
         return Err(at_value(node, "unit", message));

@@ -1,5 +1,5 @@
 use super::*;
-use crate::model::{Drive, Frame, Limits};
+use crate::model::{Drive, Frame, JointKind, Limits};
 
 /// Two revolute joints and a prismatic one.
 fn robot() -> Robot {

@@ -1,7 +1,6 @@
 //! Pushes from outside in the course of a diagnosis: found beside the standard model, set aside, looked at again beside the
 //! laws that were found.
 
-use super::candidates::trial::dense_columns;
 use super::contact::felt::Around;
 use super::contact::moving::{self, Left};
 use super::contact::search::{self as contact_search, Contacts};
@@ -116,8 +115,7 @@ fn pushed_in_motion(
 fn ringing(model: &ExtendedModel<'_>, design: &Design) -> Vec<Vec<f64>> {
     let mut columns = Vec::new();
     for term in model.terms.iter().filter(|t| t.effect.form().is_fast_only()) {
-        let (effect, place) = (term.effect, term.place);
-        columns.extend(dense_columns(&model.context, design, effect, place, &term.shape, model.change));
+        columns.extend(model.columns_of(design, term));
         columns.extend(tangents(model, design, term, &[]).into_iter().map(|(_, slope)| slope));
     }
     columns

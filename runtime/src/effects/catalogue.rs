@@ -45,14 +45,15 @@ macro_rules! catalogue {
 
 /// A joint of which every scale is one.
 #[cfg(test)]
-const PLAIN: super::Scale = super::Scale {
+pub(super) const PLAIN: super::Scale = super::Scale {
     speed: 1.0,
     range: 1.0,
     centre: 0.0,
     torque: 1.0,
     duration: 1.0,
     gear: 1.0,
-    prismatic: false,
+    fast: 0.0,
+    kind: crate::model::JointKind::Revolute,
 };
 
 catalogue! {

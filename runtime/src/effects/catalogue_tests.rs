@@ -1,7 +1,7 @@
 //! Every effect of the catalogue answers everything that is asked of one.
 
 use super::*;
-use crate::model::{Model, Robot};
+use crate::model::{JointKind, Model, Robot};
 use crate::simulation::testing::arm;
 
 const SCALE: Scale = Scale {
@@ -11,7 +11,8 @@ const SCALE: Scale = Scale {
     torque: 40.0,
     duration: 12.0,
     gear: 100.0,
-    prismatic: false,
+    fast: 0.0,
+    kind: JointKind::Revolute,
 };
 
 fn robot() -> Robot {
@@ -48,7 +49,7 @@ fn made_up(kind: EffectKind, place: Place, shape: &[f64]) -> Quantities {
             }
         }
         Form::Compliance(law) => {
-            let t = Transmission::from_shape(shape, 0.5, 1.0, 2.0, false);
+            let t = Transmission::from_shape(shape, 0.5, 1.0, 2.0, JointKind::Revolute);
             law.describe(&t)
                 .into_iter()
                 .map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
@@ -80,8 +81,8 @@ fn every_effect_has_all_of_its_words() {
             assert!(text.len() > 3, "{}", w.id);
         }
         assert!(w.what.ends_with('.') && w.title.starts_with(char::is_uppercase), "{}", w.id);
-        for prismatic in [false, true] {
-            assert!(kind.properties().abscissa.label(prismatic).len() > 5, "{}", w.id);
+        for kind_of_joint in [JointKind::Revolute, JointKind::Prismatic] {
+            assert!(kind.properties().abscissa.label(kind_of_joint).len() > 5, "{}", w.id);
         }
     }
 }

@@ -4,6 +4,8 @@
 //! inertia of the links behind the joint, `load` the torque that they would ask for if they followed the motor
 //! rigidly, and f the torque of spring and damper. The motor is then loaded by M ddx less than the rigid model says.
 
+use crate::model::JointKind;
+
 use super::shape::{ShapeSearch, Step};
 
 /// A compliant transmission of one joint.
@@ -19,14 +21,14 @@ pub struct Transmission {
     pub play: f64,
     /// Natural frequency with the median inertia of the link and the motor held, Hz.
     pub frequency: f64,
-    /// Whether the joint is prismatic.
-    pub prismatic: bool,
+    /// Whether the joint turns or slides.
+    pub kind: JointKind,
 }
 
 impl Transmission {
     /// From the scale-free shape (natural frequency in Hz, damping ratio, rotor as a fraction of the least inertia,
     /// play as a fraction of the travel) and the joint's inertia over the motion (least, median) and travel.
-    pub fn from_shape(shape: &[f64], least: f64, median: f64, travel: f64, prismatic: bool) -> Self {
+    pub fn from_shape(shape: &[f64], least: f64, median: f64, travel: f64, kind: JointKind) -> Self {
         let rotor = shape[2] * least;
         let link = (median - rotor).max(1e-3 * median);
         let w = 2.0 * std::f64::consts::PI * shape[0];
@@ -37,16 +39,16 @@ impl Transmission {
             rotor,
             play: shape[3] * travel,
             frequency: shape[0],
-            prismatic,
+            kind,
         }
     }
 }
 
 impl Transmission {
     /// From what a model keeps of it: stiffness, damping, rotor, play; `None` where that is not what it has.
-    pub fn from_amplitude(amplitude: &[f64], frequency: f64, prismatic: bool) -> Option<Self> {
+    pub fn from_amplitude(amplitude: &[f64], frequency: f64, kind: JointKind) -> Option<Self> {
         let &[stiffness, damping, rotor, play] = amplitude else { return None };
-        Some(Self { stiffness, damping, rotor, play, frequency, prismatic })
+        Some(Self { stiffness, damping, rotor, play, frequency, kind })
     }
 
     /// What a model keeps of it: stiffness, damping, rotor, play.
@@ -141,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_constant_load_leaves_nothing_and_a_step_rings_at_the_natural_frequency() {
-        let t = Transmission::from_shape(&[10.0, 0.01, 0.0, 0.0], 2.0, 2.0, 1.0, false);
+        let t = Transmission::from_shape(&[10.0, 0.01, 0.0, 0.0], 2.0, 2.0, 1.0, JointKind::Revolute);
         let mut out = vec![0.0; 1000];
         deflection(&[5.0; 1000], &[2.0; 1000], 500.0, &t, &mut out);
         assert!(out.iter().all(|x| x.abs() < 1e-9));
@@ -153,7 +155,7 @@ mod tests {
 
     #[test]
     fn play_is_felt_only_where_the_load_changes_its_sign() {
-        let t = Transmission::from_shape(&[40.0, 0.3, 0.0, 0.002], 1.0, 1.0, 1.0, false);
+        let t = Transmission::from_shape(&[40.0, 0.3, 0.0, 0.002], 1.0, 1.0, 1.0, JointKind::Revolute);
         let load: Vec<f64> = (0..2000).map(|k| 10.0 * (k as f64 * 0.01 * 0.63).cos()).collect();
         let mut out = vec![0.0; 2000];
         deflection(&load, &[1.0; 2000], 500.0, &t, &mut out);

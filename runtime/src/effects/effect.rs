@@ -2,6 +2,7 @@
 
 use super::form::Form;
 use super::quantity::Quantities;
+use crate::model::JointKind;
 
 /// An effect of the catalogue.
 ///
@@ -143,25 +144,19 @@ pub enum Abscissa {
 }
 
 impl Abscissa {
-    /// Its name with its unit on a prismatic or a revolute joint.
-    pub fn label(self, prismatic: bool) -> &'static str {
-        match (self, prismatic) {
-            (Self::Speed, false) => "joint speed, rad/s",
-            (Self::Speed, true) => "joint speed, m/s",
-            (Self::Position, false) => "joint position, rad",
-            (Self::Position, true) => "joint position, m",
-            (Self::Acceleration, false) => "acceleration, rad/s2",
-            (Self::Acceleration, true) => "acceleration, m/s2",
-            (Self::Load, false) => "load torque, N.m",
-            (Self::Load, true) => "load, N",
-            (Self::ModelTorque, false) => "model torque, N.m",
-            (Self::ModelTorque, true) => "model force, N",
-            (Self::HeardTorque, false) => "model torque of the other joint, N.m",
-            (Self::HeardTorque, true) => "model force of the other joint, N",
-            (Self::Time, _) => "time, s",
-            (Self::SinceReversal, false) => "distance since reversal, rad",
-            (Self::SinceReversal, true) => "distance since reversal, m",
-            (Self::WaveAngle, _) => "angle within one wave, rad",
+    /// Its name with its unit on a joint of this kind.
+    pub fn label(self, kind: JointKind) -> String {
+        let torque = if kind == JointKind::Prismatic { "force" } else { "torque" };
+        match self {
+            Self::Speed => format!("joint speed, {}", kind.speed_unit()),
+            Self::Position => format!("joint position, {}", kind.position_unit()),
+            Self::Acceleration => format!("acceleration, {}", kind.acceleration_unit()),
+            Self::Load => format!("load {torque}, {}", kind.torque_unit()),
+            Self::ModelTorque => format!("model {torque}, {}", kind.torque_unit()),
+            Self::HeardTorque => format!("model {torque} of the other joint, {}", kind.torque_unit()),
+            Self::Time => "time, s".into(),
+            Self::SinceReversal => format!("distance since reversal, {}", kind.position_unit()),
+            Self::WaveAngle => "angle within one wave, rad".into(),
         }
     }
 }

@@ -3,13 +3,21 @@
 //! Teeth and bearings are pressed by what passes through them. A rotor in front of the gear does not press them; where
 //! the pressing has a slow part only, as by a preload that follows the weight, gravity alone counts (Hamon, Gautier and
 //! Garrec 2011 compare the quasi-static load with the full one).
+//!
+//! What the motor does faster than the signals that a law is evaluated on, as where a controller answers to the noise of
+//! its encoders, may pass through the teeth, too. It has no mean, but its size has: where the slow load passes through
+//! zero, teeth are pressed nevertheless. With fast torques of normal distribution the expected losses are those of the
+//! folded normal distribution (Leone, Nelson and Nottingham 1961). How large they are a recording does not tell: drives
+//! report the mean of their current over a while, which is steadier than the current, and sensors add noise that is none.
 
-use super::joint_law::At;
+use super::joint_law::{At, Scale};
 use super::quantity::{Parameter, Quantities};
+use super::shape::Step;
+use statrs::function::erf::erf;
 
-/// What a loss is proportional to; the shape of a law has one number for it, or none for [`GearLoad::Whole`].
+/// Which load counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum GearLoad {
+enum Part {
     /// Gravity alone.
     Gravity,
     /// Inertia and gravity, the rotor's inertia included.
@@ -18,94 +26,182 @@ pub(super) enum GearLoad {
     Links,
 }
 
-/// Shapes to try, the usual load in the middle.
-pub(super) fn shapes() -> Vec<Vec<f64>> {
-    [GearLoad::Gravity, GearLoad::Whole, GearLoad::Links].map(GearLoad::shape).to_vec()
+/// What a loss is proportional to. The shape of a law has no number for the whole load, one for a part of it, and a second
+/// one where fast torques count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct GearLoad {
+    part: Part,
+    /// Standard deviation of the fast torques that pass through the gear, in that of those that were recorded.
+    fast: Option<f64>,
+}
+
+/// Expected losses at an instant, N.m or N.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Losses {
+    /// Mean of the load while it is driven, times the direction of motion.
+    pub driving: f64,
+    /// Mean of the load while it drives, against the direction of motion.
+    pub driven: f64,
+}
+
+/// Sizes of fast torques to try, and the factor by which the search varies them: a drive that reports the mean of what it
+/// has had over two control periods hides half of the noise of a differentiated position.
+const FAST: [f64; 2] = [1.0, 2.5];
+const FAST_STEP: f64 = 1.6;
+
+/// Shapes to try on a joint, the usual load in the middle: those with fast torques where it has some.
+pub(super) fn shapes(scale: &Scale) -> Vec<Vec<f64>> {
+    let mut shapes = vec![vec![0.0], Vec::new(), vec![1.0]];
+    if scale.fast > 0.0 {
+        shapes.extend([2.0, 3.0].iter().flat_map(|part| FAST.map(|fast| vec![*part, fast])));
+    }
+    shapes
+}
+
+/// The same without the loads that count the rotor's inertia.
+pub(super) fn shapes_behind_the_rotor(scale: &Scale) -> Vec<Vec<f64>> {
+    let behind = |shape: &Vec<f64>| GearLoad::of(shape).part != Part::Whole;
+    shapes(scale).into_iter().filter(behind).collect()
+}
+
+/// How the numbers of a shape are varied.
+pub(super) fn steps() -> Vec<Step> {
+    vec![Step::Keep, Step::Times(FAST_STEP)]
 }
 
 impl GearLoad {
     /// The load that a shape means.
     pub(super) fn of(shape: &[f64]) -> Self {
-        match shape.first() {
-            None => Self::Whole,
-            Some(x) if *x < 0.5 => Self::Gravity,
-            Some(_) => Self::Links,
-        }
+        let part = match shape.first() {
+            None => Part::Whole,
+            Some(x) if *x < 0.5 => Part::Gravity,
+            Some(x) if *x < 1.5 => Part::Links,
+            Some(x) if *x < 2.5 => Part::Whole,
+            Some(_) => Part::Links,
+        };
+        Self { part, fast: shape.get(1).copied() }
     }
 
-    /// The shape that means it.
-    pub(super) fn shape(self) -> Vec<f64> {
-        match self {
-            Self::Gravity => vec![0.0],
-            Self::Whole => Vec::new(),
-            Self::Links => vec![1.0],
-        }
+    /// Whether it takes gravity to tell it from others.
+    pub(super) fn needs_gravity(self) -> bool {
+        self.part == Part::Gravity
     }
 
-    /// Its value at an instant, N.m or N.
-    pub(super) fn at(self, at: &At) -> f64 {
-        match self {
-            Self::Gravity => at.gravity,
-            Self::Whole => at.load,
-            Self::Links => at.link,
+    /// Whether it is inertia and gravity as they are, without fast torques.
+    pub(super) fn is_plain(self) -> bool {
+        self.part == Part::Whole && self.fast.is_none()
+    }
+
+    /// What a gear that loses a part of it loses at an instant.
+    pub(super) fn losses(self, scale: &Scale, at: &At) -> Losses {
+        let load = at.sign
+            * match self.part {
+                Part::Gravity => at.gravity,
+                Part::Whole => at.load,
+                Part::Links => at.link,
+            };
+        let fast = self.fast.unwrap_or(0.0) * scale.fast;
+        if fast <= 0.0 {
+            return Losses { driving: load.max(0.0), driven: (-load).max(0.0) };
         }
+        let z = load / fast;
+        let above = 0.5 * (1.0 + erf(z * std::f64::consts::FRAC_1_SQRT_2));
+        let density = fast * (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
+        Losses { driving: load * above + density, driven: density - load * (1.0 - above) }
     }
 
     const GRAVITY: &'static str = "load_of_gravity_alone";
     const LINKS: &'static str = "load_without_rotor";
+    const FAST: &'static str = "fast_torque";
 
-    /// The quantity that says which load it is, where it is not the whole.
-    pub(super) fn parameter(self) -> Option<Parameter> {
-        let name = match self {
-            Self::Whole => return None,
-            Self::Gravity => Self::GRAVITY,
-            Self::Links => Self::LINKS,
+    /// The quantities that say which load it is, where it is not the whole without fast torques.
+    pub(super) fn parameters(self, scale: &Scale) -> Vec<Parameter> {
+        let part = match self.part {
+            Part::Whole => None,
+            Part::Gravity => Some(Self::GRAVITY),
+            Part::Links => Some(Self::LINKS),
         };
-        Some(Parameter::new(name, 1.0, 0.0, "1"))
+        let unit = scale.kind.torque_unit();
+        let fast = self.fast.map(|times| Parameter::new(Self::FAST, times * scale.fast, 0.0, unit));
+        part.map(|name| Parameter::new(name, 1.0, 0.0, "1")).into_iter().chain(fast).collect()
     }
 
-    /// The load that quantities tell of.
-    pub(super) fn told(q: &Quantities) -> Self {
-        if q.has(Self::GRAVITY) {
-            Self::Gravity
+    /// The load that quantities tell of, and whether with fast torques.
+    fn told(q: &Quantities) -> (Part, bool) {
+        let part = if q.has(Self::GRAVITY) {
+            Part::Gravity
         } else if q.has(Self::LINKS) {
-            Self::Links
+            Part::Links
         } else {
-            Self::Whole
-        }
+            Part::Whole
+        };
+        (part, q.has(Self::FAST))
     }
 
-    /// What a person calls it.
-    pub(super) fn words(self) -> &'static str {
-        match self {
-            Self::Gravity => "the torque of gravity alone",
-            Self::Whole => "the load torque",
-            Self::Links => "the load torque without the rotor's inertia",
+    /// What a person calls the load that quantities tell of.
+    pub(super) fn words(q: &Quantities) -> &'static str {
+        match Self::told(q) {
+            (Part::Gravity, _) => "the torque of gravity alone",
+            (Part::Whole, false) => "the load torque",
+            (Part::Whole, true) => "the load torque, with what the motor does faster than the signals",
+            (Part::Links, false) => "the load torque without the rotor's inertia",
+            (Part::Links, true) => {
+                "the load torque without the rotor's inertia, with what the motor does faster than the signals"
+            }
         }
     }
 
     /// Its name in a formula.
-    pub(super) fn symbol(self) -> &'static str {
-        match self {
-            Self::Gravity => "gravity",
-            Self::Whole => "load",
-            Self::Links => "link load",
+    pub(super) fn symbol(q: &Quantities) -> &'static str {
+        match Self::told(q) {
+            (Part::Gravity, _) => "gravity",
+            (Part::Whole, false) => "load",
+            (Part::Whole, true) => "load + fast",
+            (Part::Links, false) => "link load",
+            (Part::Links, true) => "link load + fast",
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::catalogue::PLAIN;
     use super::*;
+
+    fn scale() -> Scale {
+        Scale { fast: 0.75, ..PLAIN }
+    }
 
     #[test]
     fn every_shape_is_told_as_the_load_that_it_means() {
-        let at = At { load: 3.0, link: 2.0, gravity: 1.0, ..At::default() };
-        let values: Vec<f64> = shapes().iter().map(|shape| GearLoad::of(shape).at(&at)).collect();
-        assert_eq!(values, [1.0, 3.0, 2.0]);
-        for shape in shapes() {
+        for shape in shapes(&scale()) {
             let load = GearLoad::of(&shape);
-            assert_eq!(GearLoad::told(&Quantities::new(load.parameter().into_iter().collect())), load);
+            let told = GearLoad::told(&Quantities::new(load.parameters(&scale())));
+            assert_eq!(told, (load.part, load.fast.is_some()));
+        }
+        let at = At { load: 3.0, link: 2.0, gravity: 1.0, sign: 1.0, ..At::default() };
+        let plain = shapes(&PLAIN);
+        let values: Vec<f64> = plain.iter().map(|s| GearLoad::of(s).losses(&PLAIN, &at).driving).collect();
+        assert_eq!(values, [1.0, 3.0, 2.0], "none with fast torques where there are none");
+    }
+
+    #[test]
+    fn fast_torques_press_as_the_mean_of_all_that_they_may_be() {
+        let load = GearLoad::of(&[2.0, 2.0]);
+        for slow in [-4.0, -0.3, 0.0, 1.0, 20.0] {
+            let at = At { load: slow, sign: 1.0, ..At::default() };
+            let found = load.losses(&scale(), &at);
+            // The mean over a normal distribution, by the midpoint rule.
+            let (mut driving, mut driven, step) = (0.0, 0.0, 1e-3);
+            for k in -10_000..10_000 {
+                let z = (f64::from(k) + 0.5) * step;
+                let weight = step * (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
+                let torque: f64 = slow + 1.5 * z;
+                driving += weight * torque.max(0.0);
+                driven += weight * (-torque).max(0.0);
+            }
+            assert!((found.driving - driving).abs() < 1e-6, "{slow}: {found:?} {driving}");
+            assert!((found.driven - driven).abs() < 1e-6, "{slow}: {found:?} {driven}");
         }
     }
 }

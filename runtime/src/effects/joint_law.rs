@@ -2,6 +2,7 @@
 
 use super::quantity::Parameter;
 use super::shape::Step;
+use crate::model::JointKind;
 
 /// The scales of a joint in a recording: shapes are searched relative to them, so that no number of a law depends
 /// on a robot's size.
@@ -19,25 +20,11 @@ pub struct Scale {
     pub duration: f64,
     /// Motor turns per joint turn, or rad of the motor per metre.
     pub gear: f64,
-    /// Whether the joint is prismatic.
-    pub prismatic: bool,
-}
-
-impl Scale {
-    /// Unit of the joint's torque.
-    pub fn torque_unit(&self) -> &'static str {
-        if self.prismatic { "N" } else { "N.m" }
-    }
-
-    /// Unit of the joint's position.
-    pub fn position_unit(&self) -> &'static str {
-        if self.prismatic { "m" } else { "rad" }
-    }
-
-    /// Unit of the joint's speed.
-    pub fn speed_unit(&self) -> &'static str {
-        if self.prismatic { "m/s" } else { "rad/s" }
-    }
+    /// What the recorded torque varies by faster than the signals that laws are evaluated on: its standard deviation,
+    /// N.m or N. Zero where it is not known.
+    pub fast: f64,
+    /// Whether the joint turns or slides.
+    pub kind: JointKind,
 }
 
 /// One joint at one instant.

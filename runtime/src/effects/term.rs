@@ -8,6 +8,7 @@ use super::free_law::FreeLaw;
 use super::joint_law::Scale;
 use super::place::Place;
 use super::sensitivity::Distortion;
+use crate::model::JointKind;
 use serde::{Deserialize, Serialize};
 
 /// An effect that has become part of a model.
@@ -63,9 +64,9 @@ impl EffectTerm {
     pub fn transmission(&self) -> Option<(usize, Transmission)> {
         match self.effect.form() {
             Form::Compliance(_) => {
-                let prismatic = self.scale.is_some_and(|s| s.prismatic);
+                let kind = self.scale.map_or(JointKind::Revolute, TermScale::kind);
                 let frequency = self.shape.first().copied()?;
-                let known = Transmission::from_amplitude(&self.amplitude, frequency, prismatic)?;
+                let known = Transmission::from_amplitude(&self.amplitude, frequency, kind)?;
                 Some((self.place.joint()?, known))
             }
             Form::Joint(_)
@@ -91,13 +92,28 @@ pub struct TermScale {
     pub torque: f64,
     pub duration: f64,
     pub gear: f64,
+    #[serde(default)]
+    pub fast: f64,
     pub prismatic: bool,
 }
 
 impl TermScale {
     /// A revolute joint with speed, travel, torque, time and gear of one: shapes are numbers in SI as they stand.
-    pub const UNIT: Self =
-        Self { speed: 1.0, range: 1.0, centre: 0.0, torque: 1.0, duration: 1.0, gear: 1.0, prismatic: false };
+    pub const UNIT: Self = Self {
+        speed: 1.0,
+        range: 1.0,
+        centre: 0.0,
+        torque: 1.0,
+        duration: 1.0,
+        gear: 1.0,
+        fast: 0.0,
+        prismatic: false,
+    };
+
+    /// Whether the joint turns or slides.
+    pub fn kind(self) -> JointKind {
+        if self.prismatic { JointKind::Prismatic } else { JointKind::Revolute }
+    }
 }
 
 impl From<Scale> for TermScale {
@@ -109,7 +125,8 @@ impl From<Scale> for TermScale {
             torque: s.torque,
             duration: s.duration,
             gear: s.gear,
-            prismatic: s.prismatic,
+            fast: s.fast,
+            prismatic: s.kind == JointKind::Prismatic,
         }
     }
 }
@@ -123,7 +140,8 @@ impl From<TermScale> for Scale {
             torque: s.torque,
             duration: s.duration,
             gear: s.gear,
-            prismatic: s.prismatic,
+            fast: s.fast,
+            kind: s.kind(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a torque may depend on.
 
-use crate::model::{JointIndex, Robot};
+use crate::model::{JointIndex, JointKind, Robot};
 
 /// A quantity of a joint (0-based), or of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -123,18 +123,14 @@ impl Variable {
         }
     }
 
-    /// Its unit, where its joint is prismatic or not.
-    pub fn unit(self, prismatic: bool) -> &'static str {
-        match (self, prismatic) {
-            (Self::Position(_) | Self::TravelSinceReversal(_), false) => "rad",
-            (Self::Position(_) | Self::TravelSinceReversal(_), true) => "m",
-            (Self::Speed(_), false) => "rad/s",
-            (Self::Speed(_), true) => "m/s",
-            (Self::Acceleration(_), false) => "rad/s2",
-            (Self::Acceleration(_), true) => "m/s2",
-            (Self::Load(_) | Self::Torque(_), false) => "N.m",
-            (Self::Load(_) | Self::Torque(_), true) => "N",
-            (Self::Time | Self::TimeSinceReversal(_), _) => "s",
+    /// Its unit, where its joint is of this kind.
+    pub fn unit(self, kind: JointKind) -> &'static str {
+        match self {
+            Self::Position(_) | Self::TravelSinceReversal(_) => kind.position_unit(),
+            Self::Speed(_) => kind.speed_unit(),
+            Self::Acceleration(_) => kind.acceleration_unit(),
+            Self::Load(_) | Self::Torque(_) => kind.torque_unit(),
+            Self::Time | Self::TimeSinceReversal(_) => "s",
         }
     }
 }

@@ -4,6 +4,7 @@ use super::Factor;
 use super::observe::{EquationFactor, Observation, TimeBlock};
 use super::outcome::BlockWeight;
 use super::weights::{from_own_fits, iterate, residual_norm, solve_active};
+use crate::statistics::median::median;
 
 /// A block may deviate this many times as much as the typical one at full weight (Huber's constant).
 const HUBER: f64 = 1.5;
@@ -64,7 +65,7 @@ fn huber(blocks: &[TimeBlock], chi: &[f64]) -> Vec<Vec<f64>> {
     let scales: Vec<f64> = (0..equations)
         .map(|k| {
             let own = blocks.iter().filter_map(|b| b.equations.get(k)).filter(|e| e.factor.rows() > 0);
-            median(own.map(residual).collect())
+            median(&mut own.map(residual).collect::<Vec<_>>())
         })
         .collect();
     blocks
@@ -77,14 +78,6 @@ fn huber(blocks: &[TimeBlock], chi: &[f64]) -> Vec<Vec<f64>> {
             b.equations.iter().zip(&scales).map(weight).collect()
         })
         .collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// The observation with each block's rows multiplied by the root of its weight.

@@ -2,6 +2,7 @@
 
 use crate::model::{JointIndex, Robot};
 use crate::signal::Motion;
+use crate::statistics::median::median;
 
 /// Rows that are farther apart cannot hold even the narrowest band that equations have, 2 Hz.
 const SLOWEST: f64 = 4.0;
@@ -84,11 +85,13 @@ pub fn faulty_channel(robot: &Robot, motions: &[Motion]) -> Option<ChannelFault>
     let largest = |limits: &[[f64; 2]], j: usize| limits.get(j).map(|[low, high]| low.abs().max(high.abs()));
     for j in 0..n {
         let joint = JointIndex(j);
-        let speed = median(motions.iter().filter_map(|m| m.dq.get(j)).flatten().map(|v| v.abs()));
+        let typical =
+            |values: &mut dyn Iterator<Item = f64>| median(&mut values.map(f64::abs).collect::<Vec<_>>());
+        let speed = typical(&mut motions.iter().filter_map(|m| m.dq.get(j)).flatten().copied());
         if let Some(limit) = largest(&robot.limits.velocity, j).filter(|limit| speed > BEYOND * limit) {
             return Some(ChannelFault::TooFast { joint, speed, limit });
         }
-        let torque = median(torque(j).map(f64::abs));
+        let torque = typical(&mut torque(j));
         if let Some(limit) = largest(&robot.limits.torque, j).filter(|limit| torque > BEYOND * limit) {
             return Some(ChannelFault::TooStrong { joint, torque, limit });
         }
@@ -100,15 +103,6 @@ pub fn faulty_channel(robot: &Robot, motions: &[Motion]) -> Option<ChannelFault>
 fn constant(mut values: impl Iterator<Item = f64>) -> bool {
     let Some(first) = values.next() else { return false };
     values.all(|value| value == first)
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

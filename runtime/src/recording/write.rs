@@ -111,9 +111,8 @@ pub fn manifest_text(
     let kinds = robot.joint_kinds();
     let n = kinds.len();
     let columns = |letter: &str| (1..=n).map(|j| format!("{letter}{j}")).collect::<Vec<_>>().join(", ");
-    let units = |revolute: &str, prismatic: &str| {
-        let unit = |kind: &JointKind| if *kind == JointKind::Prismatic { prismatic } else { revolute };
-        format!("[{}]", kinds.iter().map(unit).collect::<Vec<_>>().join(", "))
+    let units = |of: fn(JointKind) -> &'static str| {
+        format!("[{}]", kinds.iter().map(|kind| of(*kind)).collect::<Vec<_>>().join(", "))
     };
     // A JSON string is a YAML string.
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
@@ -123,11 +122,22 @@ pub fn manifest_text(
     let _ = writeln!(text, "side: joint");
     let _ = writeln!(text, "layout: {{header: true, delimiter: \",\"}}");
     let _ = writeln!(text, "time: {{column: t, unit: s}}");
-    let _ = writeln!(text, "position: {{columns: [{}], unit: {}}}", columns("q"), units("rad", "m"));
+    let _ = writeln!(
+        text,
+        "position: {{columns: [{}], unit: {}}}",
+        columns("q"),
+        units(JointKind::position_unit)
+    );
     if motions.iter().any(|(_, t)| t.velocity.is_some()) {
-        let _ = writeln!(text, "velocity: {{columns: [{}], unit: {}}}", columns("dq"), units("rad/s", "m/s"));
+        let _ = writeln!(
+            text,
+            "velocity: {{columns: [{}], unit: {}}}",
+            columns("dq"),
+            units(JointKind::speed_unit)
+        );
     }
-    let _ = writeln!(text, "torque: {{columns: [{}], unit: {}}}", columns("tau"), units("N.m", "N"));
+    let _ =
+        writeln!(text, "torque: {{columns: [{}], unit: {}}}", columns("tau"), units(JointKind::torque_unit));
     let _ = writeln!(text, "trajectories:");
     for (file, trajectory) in motions {
         let fixed: Vec<String> = trajectory

@@ -1,3 +1,4 @@
 //! Statistics that identification and diagnosis share.
 
+pub(crate) mod median;
 pub(crate) mod moderation;

@@ -84,7 +84,7 @@ fn words(recordings: &[&Observed; 2], found: &DriveGains, known: &KnownPayload) 
     let rows = found.gains.iter().enumerate().map(|(j, gain)| {
         let (value, sigma, _) = parts(gain);
         let number = |x: Option<f64>, digits| x.map_or_else(|| "-".to_owned(), |x| significant(x, digits));
-        let force = if kinds.get(j) == Some(&JointKind::Prismatic) { "N" } else { "N.m" };
+        let force = kinds.get(j).map_or("N.m", |kind| kind.torque_unit());
         let said = match gain {
             DriveGain::Determined { .. } if found.absolute => format!("{force} for 1 of the recording"),
             DriveGain::Determined { .. } => "ratio".to_owned(),

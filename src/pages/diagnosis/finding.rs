@@ -122,7 +122,7 @@ fn orders(spectrum: &OrderSpectrum, unit: &str) -> Plot {
 
 /// Unit of the torques of a finding's joints.
 fn unit(finding: &Finding) -> &'static str {
-    if finding.term.scale.is_some_and(|scale| scale.prismatic) { "N" } else { "N.m" }
+    finding.term.scale.map_or("N.m", |scale| scale.kind().torque_unit())
 }
 
 /// A curve that is interrupted where rows were left out.

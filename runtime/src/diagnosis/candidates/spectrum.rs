@@ -118,7 +118,8 @@ mod tests {
         torque: 1.0,
         duration: 40.0,
         gear: 50.0,
-        prismatic: false,
+        fast: 0.0,
+        kind: crate::model::JointKind::Revolute,
     };
 
     #[test]

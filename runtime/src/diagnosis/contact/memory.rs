@@ -1,6 +1,7 @@
 //! How far means of a residual that remembers wander, whatever a few pushes do to it.
 
 use crate::diagnosis::rules::{SCAN_CLIPPED, SCAN_MOST_ORDER, SIGMA_PER_MAD};
+use crate::statistics::median::median;
 
 /// An autoregression with all of its lower orders.
 #[derive(Debug, Clone)]
@@ -98,15 +99,6 @@ pub(in crate::diagnosis) fn widening(deviations: &mut [f64], sigma: f64, indepen
     // So many know their spread no better than this.
     let surely = seen * (1.0 - 1.2 / independent.sqrt());
     (surely / sigma).max(1.0)
-}
-
-/// The upper median; 0 of no values.
-pub(in crate::diagnosis) fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Means over windows of n places that are all there, half of a window apart.

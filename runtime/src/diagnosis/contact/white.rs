@@ -6,8 +6,9 @@
 //! position, speed or load is then no push, and a push in a state that no other part of the motion visits has nothing
 //! left that would tell it.
 
-use crate::diagnosis::contact::memory::{Memory, median};
+use crate::diagnosis::contact::memory::Memory;
 use crate::diagnosis::rules::{SCAN_OWN_SHAPE, SCAN_PRESENT, SIGMA_PER_MAD};
+use crate::statistics::median::median;
 use std::ops::Range;
 
 /// Rows of one motion.

@@ -1,6 +1,5 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
-use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::explanation::standard_model::StandardModelFit;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
@@ -12,7 +11,7 @@ use crate::diagnosis::rules::{BINS, LEAST_DIFFERENCES, LEAST_MISMATCH, ORDERED_B
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{Abscissa, Variable};
-use crate::model::JointIndex;
+use crate::model::{JointIndex, JointKind};
 
 /// The variable that reveals a term, at a row of its first joint.
 fn abscissa(model: &ExtendedModel<'_>, joint: usize, term: &Accepted, r: &RowAt) -> f64 {
@@ -57,7 +56,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
     }
     let side = model.regression(term.effect.properties().window);
     let design = &side.design;
-    let dense = dense_columns(&model.context, design, term.effect, term.place, &term.shape, model.change);
+    let dense = model.columns_of(design, term);
     let amplitude: Vec<f64> = match term.fixed {
         Some(a) => vec![a],
         None => side.term_columns[k].clone().map(|c| side.fit.chi[c]).collect(),
@@ -85,18 +84,18 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
         })
         .collect();
     let mut curve = binned(rows);
-    let prismatic = |j: usize| model.context.scales[j].prismatic;
+    let kind = |j: usize| model.context.scales[j].kind;
     let name = match variable {
         Some(variable) => {
             let number = |j: usize| model.context.model.robot().joint_number(JointIndex(j)).0;
-            let unit = variable.unit(variable.joint().is_some_and(prismatic));
+            let unit = variable.unit(variable.joint().map_or(JointKind::Revolute, kind));
             format!("{}, {unit}", variable.words(number))
         }
-        None => properties.abscissa.label(prismatic(joint)).to_owned(),
+        None => properties.abscissa.label(kind(joint)),
     };
     curve.variable =
         if properties.along_motion { format!("{name} (torques along the motion)") } else { name };
-    curve.unit = model.context.scales[joint].torque_unit().into();
+    curve.unit = model.context.scales[joint].kind.torque_unit().into();
     Some(curve)
 }
 
@@ -230,8 +229,8 @@ pub(in crate::diagnosis) fn unexplained(model: &ExtendedModel<'_>) -> Unexplaine
             })
             .collect();
         let mut curve = binned(rows);
-        curve.variable = format!("joint speed, {}", model.context.scales[j].speed_unit());
-        curve.unit = model.context.scales[j].torque_unit().into();
+        curve.variable = format!("joint speed, {}", model.context.scales[j].kind.speed_unit());
+        curve.unit = model.context.scales[j].kind.torque_unit().into();
         out.curves.push(curve);
     }
     out.share = open / f64::max(all, 1e-300);

@@ -199,7 +199,7 @@ fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
 /// What is there and below what is named.
 pub(in crate::diagnosis) fn small(search: &Search<'_>, settings: &Settings) -> Vec<Small> {
     let context = &search.model.context;
-    let unit = |own: &[usize]| own.first().map_or("N.m", |&j| context.scales[j].torque_unit());
+    let unit = |own: &[usize]| own.first().map_or("N.m", |&j| context.scales[j].kind.torque_unit());
     let laws = search.small(settings).into_iter();
     laws.map(|law| Small {
         effect: law.effect.id_at(law.place).into(),

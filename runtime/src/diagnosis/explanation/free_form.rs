@@ -1,6 +1,5 @@
 //! A law over any variables, for a person: its variables, its swing, its curves with their band, a short formula.
 
-use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::explanation::curves::binned;
 use crate::diagnosis::explanation::proposal::{Point, propose};
 use crate::diagnosis::outcome::Curve;
@@ -8,7 +7,7 @@ use crate::diagnosis::rows::free::values;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{Axis, Form, FreeLaw, Parameter, Seen, Together, Variable};
-use crate::model::{JointIndex, Robot};
+use crate::model::{JointIndex, JointKind, Robot};
 
 /// Points of a variable at which a law is evaluated.
 const POINTS: usize = 41;
@@ -62,7 +61,7 @@ pub(in crate::diagnosis) fn swing(
 ) -> Option<Parameter> {
     let joint = term.place.joint()?;
     let (design, context) = (&model.slow.design, &model.context);
-    let dense = dense_columns(context, design, term.effect, term.place, &term.shape, model.change);
+    let dense = model.columns_of(design, term);
     let forward = |r: usize| context.signals[design.rows[r].signal].dq[joint][design.rows[r].centre] > 0.0;
     let of_direction = |direction: bool| {
         let rows = design.of_joint(joint).filter(|&r| forward(r) == direction);
@@ -76,7 +75,7 @@ pub(in crate::diagnosis) fn swing(
     };
     let both = [true, false].into_iter().filter_map(of_direction);
     let (swing, deviation) = both.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(Parameter::new("swing", swing, deviation, context.scales[joint].torque_unit()))
+    Some(Parameter::new("swing", swing, deviation, context.scales[joint].kind.torque_unit()))
 }
 
 /// Covariance of the amplitudes of term `k`, row by row.
@@ -118,11 +117,11 @@ pub(in crate::diagnosis) fn curves(model: &ExtendedModel<'_>, k: usize) -> Vec<C
             spread.push((at, made.max(0.0).sqrt(), 0.0));
         }
         let number = |j: usize| context.model.robot().joint_number(JointIndex(j)).0;
-        let prismatic = axis.variable.joint().is_some_and(|j| context.scales[j].prismatic);
+        let kind = axis.variable.joint().map_or(JointKind::Revolute, |j| context.scales[j].kind);
         let name = axis.variable.words(number);
         let mut curve = binned(rows);
-        curve.variable = format!("{name}, {}", axis.variable.unit(prismatic));
-        curve.unit = context.scales[joint].torque_unit().into();
+        curve.variable = format!("{name}, {}", axis.variable.unit(kind));
+        curve.unit = context.scales[joint].kind.torque_unit().into();
         curve.band = binned(spread).residual.iter().map(|s| 2.0 * s).collect();
         curve
     };
@@ -165,9 +164,9 @@ pub(in crate::diagnosis) fn proposal(model: &ExtendedModel<'_>, k: usize) -> Opt
         })
         .collect();
     let name = axis.variable.name(robot);
-    let angle = matches!(axis.variable, Variable::Position(j) if !model.context.scales[j].prismatic);
+    let angle = matches!(axis.variable, Variable::Position(j) if model.context.scales[j].kind != JointKind::Prismatic);
     let formula = propose(&points, &name, angle)?;
-    let unit = model.context.scales[joint].torque_unit();
+    let unit = model.context.scales[joint].kind.torque_unit();
     Some(match direction {
         None => format!("{formula} {unit}"),
         Some(speed) => format!("sign({})·({formula}) {unit}", speed.variable.name(robot)),

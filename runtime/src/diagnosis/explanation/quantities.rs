@@ -37,7 +37,7 @@ pub(in crate::diagnosis) fn uncertainty(
     let variances = fit.variances();
     let residual = fit.residual(&design);
     let rows = design.rows_within(LONGEST_BLOCK);
-    // White noise is what one already allows for; noise that lasts and what the law lacks show in blocks.
+    // The first allows for the noise of the test; by blocks also noise of longer memory and what the law lacks count.
     let sd = |c: usize| {
         let white = term.inflation * term.inflation * variances[c];
         white.max(fit.variance_by_blocks(&design, &residual, c, rows)).max(0.0).sqrt()
@@ -104,7 +104,7 @@ pub(in crate::diagnosis) fn quantified(
         }),
         Form::Free => free_form::swing(model, term, &amplitude, &sigma).map(|swing| vec![swing]),
         Form::User => term.place.law().map(|law| {
-            let unit = context.scales[law.joint()].torque_unit();
+            let unit = context.scales[law.joint()].kind.torque_unit();
             law.parameters([&amplitude, &sigma], [&term.shape, &shape_sigma], unit)
         }),
         Form::Window => None,

@@ -135,7 +135,7 @@ fn capital(text: &str) -> String {
 pub(in crate::diagnosis) fn torque_unit(robot: &Robot, number: usize) -> &'static str {
     let kinds = robot.joint_kinds();
     let joint = (0..robot.joints()).find(|&j| robot.joint_number(JointIndex(j)).0 == number);
-    if joint.is_some_and(|j| kinds[j] == JointKind::Prismatic) { "N" } else { "N.m" }
+    joint.map_or(JointKind::Revolute, |j| kinds[j]).torque_unit()
 }
 
 /// A contact.

@@ -241,7 +241,7 @@ impl<'a> Context<'a> {
         }
         let [least, median] = self.inertias[j].get_or_init(|| self.inertia(j));
         let (least, median) = (*least, *median);
-        Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].prismatic)
+        Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].kind)
     }
 
     /// Least and median inertia that a joint moves in these motions.

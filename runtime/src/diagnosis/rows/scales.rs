@@ -1,9 +1,10 @@
 //! How fast, how far and how hard each joint moves: what the shapes of laws are multiples of.
 
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
-use crate::diagnosis::rules::TOP_SPEED_PERCENT;
+use crate::diagnosis::rules::{SIGMA_PER_MAD, TOP_SPEED_PERCENT};
 use crate::effects::Scale;
-use crate::model::{JointKind, Model};
+use crate::model::Model;
+use crate::statistics::median::median;
 
 /// Scales of every joint over motions, for given standard parameters.
 pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: &[f64]) -> Vec<Scale> {
@@ -18,6 +19,7 @@ pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: 
             torque[j] = series.iter().fold(torque[j], |a, b| a.max(b.abs()));
         }
     }
+    let fast = fast_torques(signals, n);
     (0..n)
         .map(|j| {
             let positions = signals.iter().flat_map(|s| s.q[j].iter());
@@ -30,8 +32,20 @@ pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: 
                 torque: torque[j].max(1e-9),
                 duration,
                 gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),
-                prismatic: kinds[j] == JointKind::Prismatic,
+                fast: fast[j],
+                kind: kinds[j],
             }
+        })
+        .collect()
+}
+
+/// Standard deviation of what the recorded torque of a joint has above the cut-off of the signals, from its median: a few
+/// blows do not count.
+fn fast_torques(signals: &[Signals], joints: usize) -> Vec<f64> {
+    (0..joints)
+        .map(|j| {
+            let mut sizes: Vec<f64> = signals.iter().flat_map(|s| s.fast_torque(j)).map(f64::abs).collect();
+            SIGMA_PER_MAD * median(&mut sizes)
         })
         .collect()
 }

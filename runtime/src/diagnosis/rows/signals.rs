@@ -220,6 +220,18 @@ impl Signals {
         }
     }
 
+    /// What the recorded torque of a joint has above the cut-off of the filter; nothing where that is not known.
+    pub fn fast_torque(&self, joint: usize) -> Vec<f64> {
+        let Some(r) = &self.recorded else { return Vec::new() };
+        let mut whole = thinned(vec![shifted(&r.torque[joint], r.delay * r.rate)], r.stride).remove(0);
+        leave_out(&mut whole, &self.torque[joint]);
+        if let Some(known) = &self.known {
+            leave_out(&mut whole, &known[joint]);
+        }
+        let end = whole.len().saturating_sub(self.edge_samples);
+        whole.drain(..end).skip(self.edge_samples).collect()
+    }
+
     pub fn len(&self) -> usize {
         self.q.first().map_or(0, Vec::len)
     }

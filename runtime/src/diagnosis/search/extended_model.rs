@@ -140,6 +140,11 @@ impl<'a> ExtendedModel<'a> {
         })
     }
 
+    /// The columns of a law on all rows of a design of the same motions, one per amplitude.
+    pub fn columns_of(&self, design: &Design, term: &Accepted) -> Vec<Vec<f64>> {
+        dense_columns(&self.context, design, term.effect, term.place, &term.shape, self.change)
+    }
+
     /// What the model with all terms leaves of the torques on the rows of another design of the same motions.
     pub fn residual_on(&self, design: &Design) -> Vec<f64> {
         let mut residual = design.y.clone();
@@ -155,9 +160,7 @@ impl<'a> ExtendedModel<'a> {
             subtract(column, chi[design.parameters + k]);
         }
         for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
-            let columns =
-                dense_columns(&self.context, design, term.effect, term.place, &term.shape, self.change);
-            for (k, column) in columns.iter().enumerate() {
+            for (k, column) in self.columns_of(design, term).iter().enumerate() {
                 subtract(column, term.fixed.unwrap_or_else(|| chi[range.start + k]));
             }
         }

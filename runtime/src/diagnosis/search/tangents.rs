@@ -1,6 +1,5 @@
 //! How the torque of a law moves with the numbers of its shape.
 
-use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::SHAPE_STEP;
 use crate::diagnosis::search::extended_model::ExtendedModel;
@@ -15,8 +14,6 @@ pub(in crate::diagnosis) fn tangents(
     term: &Accepted,
     amplitude: &[f64],
 ) -> Vec<(usize, Vec<f64>)> {
-    let dense =
-        |shape: &[f64]| dense_columns(&model.context, design, term.effect, term.place, shape, model.change);
     let form = term.effect.form();
     let steps = form.shape_search(term.place, &model.context.scales, &[]).steps;
     // What the search does not vary chooses between forms of the law, and is no estimate. The shape of a sensitivity is
@@ -29,7 +26,7 @@ pub(in crate::diagnosis) fn tangents(
         let moved = |by: f64| {
             let mut shape = term.shape.clone();
             shape[i] += by;
-            dense(&shape)
+            model.columns_of(design, &Accepted { shape, ..term.clone() })
         };
         let mut slope = vec![0.0; design.rows.len()];
         for ((plus, minus), a) in moved(step).iter().zip(&moved(-step)).zip(&weights) {

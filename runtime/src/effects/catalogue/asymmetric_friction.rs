@@ -84,7 +84,7 @@ impl JointLaw for AsymmetricFriction {
     }
 
     fn parameters(&self, scale: &Scale, _: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        let unit = if scale.prismatic { "N.s/m" } else { "N.m.s/rad" };
+        let unit = scale.kind.viscous_unit();
         vec![Parameter::new("half_difference", a[0], s[0], unit)]
     }
 }

@@ -75,7 +75,7 @@ impl Compliance for Backlash {
     }
 
     fn describe(&self, t: &Transmission) -> Vec<(&'static str, f64, &'static str)> {
-        let (p, k, d) = if t.prismatic { ("m", "N/m", "N.s/m") } else { ("rad", "N.m/rad", "N.m.s/rad") };
+        let (p, k, d) = (t.kind.position_unit(), t.kind.stiffness_unit(), t.kind.viscous_unit());
         vec![("gap", t.play, p), ("k", t.stiffness, k), ("d", t.damping, d)]
     }
 }

@@ -4,7 +4,7 @@
 //! drives it. Coulomb friction that grows with the load is the case of equal losses, a wrong torque constant that of
 //! opposite ones; only what neither of them explains is this.
 
-use crate::effects::gear_load::GearLoad;
+use crate::effects::gear_load::{self, GearLoad};
 use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, SpecialCase, Step, ToldBy, Words,
@@ -59,13 +59,13 @@ impl Effect for DriveEfficiency {
         format!(
             "its efficiency is {} where it drives {} and {} where that drives it",
             q.text("efficiency_driving"),
-            GearLoad::told(q).words(),
+            GearLoad::words(q),
             q.text("efficiency_driven")
         )
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        let load = GearLoad::told(q).symbol();
+        let load = GearLoad::symbol(q);
         format!(
             "(1 / {} - 1)·{load} where {load}·dq > 0, ({} - 1)·{load} where {load}·dq < 0",
             q.value("efficiency_driving"),
@@ -81,12 +81,12 @@ impl JointLaw for DriveEfficiency {
     }
 
     /// A rotor is in front of the gear: its inertia is no load of it.
-    fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
-        [GearLoad::Gravity, GearLoad::Links].map(GearLoad::shape).to_vec()
+    fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
+        gear_load::shapes_behind_the_rotor(scale)
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
-        Vec::new()
+        gear_load::steps()
     }
 
     /// A drive that gains power is something else.
@@ -95,27 +95,26 @@ impl JointLaw for DriveEfficiency {
     }
 
     fn needs_gravity(&self, shape: &[f64]) -> bool {
-        GearLoad::of(shape) == GearLoad::Gravity
+        GearLoad::of(shape).needs_gravity()
     }
 
-    fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        let load = GearLoad::of(shape).at(at);
-        let drives = load * at.sign > 0.0;
-        out[0] = if drives { load } else { 0.0 };
-        out[1] = if drives { 0.0 } else { -load };
+    fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        let losses = GearLoad::of(shape).losses(scale, at);
+        out[0] = losses.driving * at.sign;
+        out[1] = losses.driven * at.sign;
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
         AtRest::Dry
     }
 
-    fn parameters(&self, _: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+    fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
         let driving = 1.0 / (1.0 + a[0]);
         let mut list = vec![
             Parameter::new("efficiency_driving", driving, s[0] * driving * driving, "1"),
             Parameter::new("efficiency_driven", 1.0 - a[1], s[1], "1"),
         ];
-        list.extend(GearLoad::of(shape).parameter());
+        list.extend(GearLoad::of(shape).parameters(scale));
         list
     }
 }

@@ -101,14 +101,14 @@ impl JointLaw for FrictionDrift {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        let unit = if scale.prismatic { "N.s/m" } else { "N.m.s/rad" };
+        let unit = scale.kind.viscous_unit();
         let mut out = Vec::new();
         if shape[0] < 0.5 || shape[0] > 1.5 {
             out.push(Parameter::new("viscous", a[0] / scale.speed, s[0] / scale.speed, unit));
         }
         if shape[0] > 0.5 {
             let last = a.len() - 1;
-            out.push(Parameter::new("coulomb", a[last], s[last], scale.torque_unit()));
+            out.push(Parameter::new("coulomb", a[last], s[last], scale.kind.torque_unit()));
         }
         out.push(Parameter::new("tau", shape[1], 0.0, "s"));
         out

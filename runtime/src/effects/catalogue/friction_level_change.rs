@@ -94,11 +94,11 @@ impl JointLaw for FrictionLevelChange {
         let whole = (viscous * speed + coulomb).abs().max(1e-12);
         let factor = 1.0 + (by_speed * speed + level) / whole;
         let factor_sigma = (by_speed_sigma * speed).hypot(*level_sigma) / whole;
-        let per_speed = if scale.prismatic { "N.s/m" } else { "N.m.s/rad" };
+        let per_speed = scale.kind.viscous_unit();
         vec![
             Parameter::new("factor", factor, factor_sigma, "1"),
             Parameter::new("viscous_change", *by_speed, *by_speed_sigma, per_speed),
-            Parameter::new("coulomb_change", *level, *level_sigma, scale.torque_unit()),
+            Parameter::new("coulomb_change", *level, *level_sigma, scale.kind.torque_unit()),
         ]
     }
 }
@@ -116,7 +116,8 @@ mod tests {
             torque: 1.0,
             duration: 1.0,
             gear: 1.0,
-            prismatic: false,
+            fast: 0.0,
+            kind: crate::model::JointKind::Revolute,
         };
         let shape = [3.0, 1.0];
         assert_eq!(FrictionLevelChange.amplitudes(&shape), 2);

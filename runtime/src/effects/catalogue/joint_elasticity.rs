@@ -67,7 +67,7 @@ impl Compliance for JointElasticity {
     }
 
     fn describe(&self, t: &Transmission) -> Vec<(&'static str, f64, &'static str)> {
-        let (k, d) = if t.prismatic { ("N/m", "N.s/m") } else { ("N.m/rad", "N.m.s/rad") };
+        let (k, d) = (t.kind.stiffness_unit(), t.kind.viscous_unit());
         vec![("k", t.stiffness, k), ("d", t.damping, d), ("frequency", t.frequency, "Hz")]
     }
 }

@@ -47,11 +47,11 @@ impl Effect for LoadDependentFriction {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("friction grows by {} of {}", q.text("mu"), GearLoad::told(q).words())
+        format!("friction grows by {} of {}", q.text("mu"), GearLoad::words(q))
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        format!("{}·|{}|·sign(dq)", q.value("mu"), GearLoad::told(q).symbol())
+        format!("{}·|{}|·sign(dq)", q.value("mu"), GearLoad::symbol(q))
     }
 }
 
@@ -60,12 +60,12 @@ impl JointLaw for LoadDependentFriction {
         1
     }
 
-    fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
-        gear_load::shapes()
+    fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
+        gear_load::shapes(scale)
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
-        Vec::new()
+        gear_load::steps()
     }
 
     fn only_positive(&self) -> bool {
@@ -73,16 +73,17 @@ impl JointLaw for LoadDependentFriction {
     }
 
     fn needs_gravity(&self, shape: &[f64]) -> bool {
-        GearLoad::of(shape) == GearLoad::Gravity
+        GearLoad::of(shape).needs_gravity()
     }
 
-    fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        out[0] = GearLoad::of(shape).at(at).abs() * at.sign;
+    fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        let losses = GearLoad::of(shape).losses(scale, at);
+        out[0] = (losses.driving + losses.driven) * at.sign;
     }
 
-    /// The load without the rotor and that of gravity alone are no variables of the language.
+    /// The load without the rotor, that of gravity alone and that with fast torques are no variables of the language.
     fn closed_form(&self, _: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
-        (GearLoad::of(shape) == GearLoad::Whole).then(|| {
+        GearLoad::of(shape).is_plain().then(|| {
             format!("{}*abs(load{j})*sign(dq{j})", number(amplitude.first().copied().unwrap_or(0.0)))
         })
     }
@@ -91,8 +92,8 @@ impl JointLaw for LoadDependentFriction {
         AtRest::Dry
     }
 
-    fn parameters(&self, _: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
+    fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
         let mu = Parameter::new("mu", a[0], s[0], "1");
-        std::iter::once(mu).chain(GearLoad::of(shape).parameter()).collect()
+        std::iter::once(mu).chain(GearLoad::of(shape).parameters(scale)).collect()
     }
 }

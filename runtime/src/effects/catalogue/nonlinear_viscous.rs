@@ -87,8 +87,8 @@ impl JointLaw for NonlinearViscous {
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
         vec![
-            Parameter::new("f", a[0], s[0], scale.torque_unit()),
-            Parameter::new("v0", scale.speed, 0.0, scale.speed_unit()),
+            Parameter::new("f", a[0], s[0], scale.kind.torque_unit()),
+            Parameter::new("v0", scale.speed, 0.0, scale.kind.speed_unit()),
             Parameter::new("p", shape[0], 0.0, "1"),
         ]
     }

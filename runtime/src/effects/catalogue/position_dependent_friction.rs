@@ -5,6 +5,7 @@ use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
 };
+use crate::model::JointKind;
 
 /// What a person is told.
 const WORDS: Words = Words {
@@ -64,7 +65,7 @@ impl JointLaw for PositionDependentFriction {
         let half_wave = std::f64::consts::PI / scale.range.max(1e-9);
         let mut orders: Vec<f64> =
             [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0].iter().map(|k| k * half_wave).collect();
-        if !scale.prismatic {
+        if scale.kind != JointKind::Prismatic {
             orders.extend([1.0, 2.0, 3.0, 4.0].iter().filter(|&&k| k > half_wave));
         }
         orders.into_iter().map(|k| vec![k]).collect()
@@ -94,9 +95,9 @@ impl JointLaw for PositionDependentFriction {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        let per = if scale.prismatic { "1/m" } else { "1/rad" };
+        let per = scale.kind.wave_unit();
         vec![
-            Parameter::new("amplitude", a[0].hypot(a[1]), s[0].max(s[1]), scale.torque_unit()),
+            Parameter::new("amplitude", a[0].hypot(a[1]), s[0].max(s[1]), scale.kind.torque_unit()),
             Parameter::new("wave_number", shape[0], 0.0, per),
             Parameter::new("phase", a[1].atan2(a[0]), 0.0, "rad"),
         ]

@@ -116,7 +116,7 @@ impl JointLaw for PositionDependentTorque {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        let unit = scale.torque_unit();
+        let unit = scale.kind.torque_unit();
         let at = |x: f64| legendre(x).iter().zip(a).map(|(p, a)| p * a).sum::<f64>();
         let curve = (-50..=50).map(|i| (f64::from(i) / 50.0, at(f64::from(i) / 50.0)));
         let (low, high) = curve.fold(((0.0, f64::INFINITY), (0.0, f64::NEG_INFINITY)), |(low, high), p| {
@@ -126,8 +126,8 @@ impl JointLaw for PositionDependentTorque {
         let sigma = (0..DEGREE).map(|k| ((top[k] - bottom[k]) * s[k]).powi(2)).sum::<f64>().sqrt();
         let mut list = vec![
             Parameter::new("swing", high.1 - low.1, sigma, unit),
-            Parameter::new("centre", shape[0], 0.0, scale.position_unit()),
-            Parameter::new("half_travel", shape[1], 0.0, scale.position_unit()),
+            Parameter::new("centre", shape[0], 0.0, scale.kind.position_unit()),
+            Parameter::new("half_travel", shape[1], 0.0, scale.kind.position_unit()),
         ];
         list.extend((0..DEGREE).map(|k| Parameter::new(&format!("p{}", k + 1), a[k], s[k], unit)));
         list
@@ -156,7 +156,8 @@ mod tests {
             torque: 1.0,
             duration: 1.0,
             gear: 1.0,
-            prismatic: false,
+            fast: 0.0,
+            kind: crate::model::JointKind::Revolute,
         };
         let shape = &PositionDependentTorque.shapes(&scale)[0];
         let at = |q: f64| {

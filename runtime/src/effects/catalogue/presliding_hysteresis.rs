@@ -88,8 +88,8 @@ impl JointLaw for PreslidingHysteresis {
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
         vec![
-            Parameter::new("level", a[0], s[0], scale.torque_unit()),
-            Parameter::new("distance", shape[0], 0.0, scale.position_unit()),
+            Parameter::new("level", a[0], s[0], scale.kind.torque_unit()),
+            Parameter::new("distance", shape[0], 0.0, scale.kind.position_unit()),
         ]
     }
 }

@@ -5,6 +5,7 @@ use crate::effects::{
     Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
     Sought, Step, Words,
 };
+use crate::model::JointKind;
 
 /// What a person is told.
 const WORDS: Words = Words {
@@ -66,7 +67,7 @@ impl JointLaw for Spring {
 
     fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
         let mut shapes = vec![vec![]];
-        if !scale.prismatic {
+        if scale.kind != JointKind::Prismatic {
             shapes.extend([1.5, 2.5, 5.0].map(|ratio| vec![ratio]));
         }
         shapes
@@ -108,12 +109,12 @@ impl JointLaw for Spring {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        let unit = if scale.prismatic { "N/m" } else { "N.m/rad" };
+        let unit = scale.kind.stiffness_unit();
         match shape.first() {
             None => vec![Parameter::new("k", a[0], s[0], unit)],
             Some(&ratio) => vec![
-                Parameter::new("lever_x", a[0], s[0], scale.torque_unit()),
-                Parameter::new("lever_y", a[1], s[1], scale.torque_unit()),
+                Parameter::new("lever_x", a[0], s[0], scale.kind.torque_unit()),
+                Parameter::new("lever_y", a[1], s[1], scale.kind.torque_unit()),
                 Parameter::new("ratio", ratio, 0.0, "1"),
             ],
         }

@@ -87,8 +87,8 @@ impl JointLaw for Stribeck {
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
         vec![
-            Parameter::new("fs", a[0], s[0], scale.torque_unit()),
-            Parameter::new("vs", shape[0], 0.0, scale.speed_unit()),
+            Parameter::new("fs", a[0], s[0], scale.kind.torque_unit()),
+            Parameter::new("vs", shape[0], 0.0, scale.kind.speed_unit()),
         ]
     }
 }

@@ -114,14 +114,19 @@ impl JointLaw for TorqueRipple {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        let per = if scale.prismatic { "1/m" } else { "1/rad" };
+        let per = scale.kind.wave_unit();
         let waves = a.chunks_exact(2).zip(s.chunks_exact(2)).zip(shape).enumerate();
         waves
             .flat_map(|(k, ((a, s), order))| {
                 // The first wave has the plain names.
                 let name = |name: &str| if k == 0 { name.to_owned() } else { format!("{name}_{}", k + 1) };
                 [
-                    Parameter::new(&name("amplitude"), a[0].hypot(a[1]), s[0].max(s[1]), scale.torque_unit()),
+                    Parameter::new(
+                        &name("amplitude"),
+                        a[0].hypot(a[1]),
+                        s[0].max(s[1]),
+                        scale.kind.torque_unit(),
+                    ),
                     Parameter::new(&name("order"), *order, 0.0, per),
                     Parameter::new(&name("order_per_motor_turn"), order / scale.gear, 0.0, "1"),
                     // c cos x + s sin x = amplitude sin(x + phase)

@@ -120,7 +120,7 @@ impl JointLaw for TorqueSaturation {
         };
         vec![
             Parameter::new("droop_at_most_torque", a[0], s[0], "1"),
-            Parameter::new("most_torque", scale.torque, 0.0, scale.torque_unit()),
+            Parameter::new("most_torque", scale.torque, 0.0, scale.kind.torque_unit()),
             last,
         ]
     }
