@@ -108,3 +108,13 @@ impl<'a> Reader<'a> {
         (values.len() == count).then_some(values)
     }
 }
+
+/// The children of this name.
+pub(crate) fn elements<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
+    node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
+}
+
+/// The first child of this name.
+pub(crate) fn first<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
+    elements(node, name).next()
+}

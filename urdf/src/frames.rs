@@ -11,7 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::document::{JointType, Urdf};
+use crate::document::Urdf;
+use crate::joint::JointType;
 use crate::pose::Pose;
 use crate::screw::{EXACT, Normal, Screw, normal};
 use crate::tree::{Moving, Tree};

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use nalgebra::Vector3;
 
 use crate::body::Body;
-use crate::document::{Joint, JointType, Urdf};
+use crate::document::Urdf;
 use crate::frames::{Frames, Row, frames};
+use crate::joint::{Joint, JointType};
 use crate::mistake::{Mistake, shown};
 use crate::pose::Pose;
 use crate::text::{angle, length, number, plain, quoted, tidy, variable};

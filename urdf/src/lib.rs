@@ -24,11 +24,15 @@
 mod angles;
 mod attributes;
 mod body;
+mod connections;
 mod document;
 mod frames;
 mod import;
+mod joint;
+mod link;
 mod mistake;
 mod mjcf;
+mod origin;
 mod pose;
 mod screw;
 mod skeleton;

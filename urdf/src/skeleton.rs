@@ -5,7 +5,8 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use crate::body::Body;
-use crate::document::{JointType, Urdf};
+use crate::document::Urdf;
+use crate::joint::JointType;
 use crate::pose::Pose;
 use crate::screw::Screw;
 use crate::tree::Tree;

@@ -1,7 +1,8 @@
 //! Which joints move, and which links each of them carries along.
 
 use crate::body::Body;
-use crate::document::{JointType, Urdf};
+use crate::document::Urdf;
+use crate::joint::JointType;
 use crate::mistake::{Mistake, Place, shown};
 use crate::pose::Pose;
 use dynid_description::bounds::MAX_FRAMES;

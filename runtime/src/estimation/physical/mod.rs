@@ -7,6 +7,7 @@
 mod body;
 mod interior_point;
 mod near_prior;
+mod prior_problem;
 mod problem;
 mod pseudo_inertia;
 

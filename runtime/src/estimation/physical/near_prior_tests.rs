@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::estimation::physical::pseudo_inertia::pseudo_inertia;
 use crate::model::{Drive, Frame, JointKind, Limits};
 
 /// An upright arm of two joints with a motor each, its standard parameters as base parameters grouped by `groups`.

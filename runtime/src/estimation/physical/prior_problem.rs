@@ -1,0 +1,268 @@
+//! The convex problem of [`near_prior`](super::near_prior): distance to the identified base parameters and divergence from
+//! the prior, and its minimum by Newton's method with backtracking.
+
+use nalgebra::{DMatrix, DVector, Matrix4};
+
+use super::interior_point::factored;
+use super::near_prior::{NearPriorError, Prior};
+use super::problem::{Combination, parameter, rotors};
+use super::pseudo_inertia::{pseudo_inertia, unit_inertia};
+use crate::model::{ParameterKind, Robot};
+
+/// Uncertainty of a base parameter, relative to its size, below which it is as good as exact: what is written with fewer
+/// digits is no better known, and the normal equations keep their rank.
+const EXACT: f64 = 1e-6;
+/// Weight of a rotor inertia without a prior beside a body: it takes what the data show beyond the bodies of the prior.
+const UNKNOWN_ROTOR: f64 = 1e-2;
+/// Scale of what has no prior, SI.
+const UNKNOWN: f64 = 1e3;
+/// Newton's decrement at which a minimum is found, relative to the objective, and at which rounding may end the search.
+const PRECISION: f64 = 1e-12;
+const ROUNDING: f64 = 1e-6;
+/// Newton steps for one weight; some ten are usual.
+const MOST_STEPS: usize = 200;
+
+/// The convex problem over the standard parameters that are not fixed.
+pub(super) struct Search {
+    /// Rows: determined base parameters in units in which their information is 1.
+    g: DMatrix<f64>,
+    y: DVector<f64>,
+    pub(super) normal: DMatrix<f64>,
+    pub(super) bodies: Vec<Known>,
+    /// Rotor inertias at the motors: combination, weight, scale.
+    rotors: Vec<(Combination, f64, f64)>,
+    /// Parameters that stay as they start: of frames that carry nothing, and friction that the data do not show.
+    fixed: Vec<usize>,
+    pub(super) start: DVector<f64>,
+    pub(super) determined: usize,
+}
+
+/// A body with a prior.
+pub(super) struct Known {
+    pub(super) frame: usize,
+    link: [usize; 10],
+    attached: Matrix4<f64>,
+    /// Inverse of the prior's pseudo-inertia, and its logarithmic determinant.
+    inverse: Matrix4<f64>,
+    log_determinant: f64,
+}
+
+impl Search {
+    pub(super) fn new(
+        robot: &Robot,
+        chi: &[f64],
+        covariance: &DMatrix<f64>,
+        prior: &Prior,
+    ) -> Result<Search, NearPriorError> {
+        let standard = robot.standard.len();
+        let mut search = Search {
+            g: DMatrix::zeros(0, standard),
+            y: DVector::zeros(0),
+            normal: DMatrix::zeros(standard, standard),
+            bodies: Vec::new(),
+            rotors: Vec::new(),
+            fixed: Vec::new(),
+            start: DVector::zeros(standard),
+            determined: 0,
+        };
+        for frame in 0..robot.frames.len() {
+            search.add_body(robot, prior, frame)?;
+        }
+        search.add_rotors(robot, prior);
+        search.add_data(robot, chi, covariance)?;
+        // Friction and offsets have no prior: where no data show them there is nothing to say.
+        for (k, p) in robot.standard.iter().enumerate() {
+            let is_loose = !ParameterKind::INERTIAL.contains(&p.kind) && p.kind != ParameterKind::Ia;
+            if is_loose && search.normal[(k, k)] == 0.0 {
+                search.fixed.push(k);
+            }
+        }
+        Ok(search)
+    }
+
+    fn add_body(&mut self, robot: &Robot, prior: &Prior, frame: usize) -> Result<(), NearPriorError> {
+        let own = ParameterKind::INERTIAL.map(|kind| parameter(robot, frame, kind));
+        let known: Vec<usize> = own.into_iter().flatten().collect();
+        let link = <[usize; 10]>::try_from(known).map_err(|_| NearPriorError::Shape)?;
+        let numbers = |body: &[f64; 10]| DVector::from_column_slice(body);
+        let own: [usize; 10] = std::array::from_fn(|k| k);
+        let attached = pseudo_inertia(&own, &numbers(&prior.attached[frame]));
+        let Some(body) = &prior.bodies[frame] else {
+            self.fixed.extend(link);
+            link.iter().zip(prior.attached[frame]).for_each(|(&k, value)| self.start[k] = value);
+            return Ok(());
+        };
+        let pseudo = pseudo_inertia(&own, &numbers(body));
+        let factor = nalgebra::Cholesky::new(pseudo).ok_or(NearPriorError::Prior(frame))?;
+        let log_determinant = 2.0 * (0..4).map(|i| factor.l_dirty()[(i, i)].ln()).sum::<f64>();
+        if !log_determinant.is_finite() {
+            return Err(NearPriorError::Prior(frame));
+        }
+        for (place, &k) in link.iter().enumerate() {
+            self.start[k] = body[place] + prior.attached[frame][place];
+        }
+        self.bodies.push(Known { frame, link, attached, inverse: factor.inverse(), log_determinant });
+        Ok(())
+    }
+
+    fn add_rotors(&mut self, robot: &Robot, prior: &Prior) {
+        let known = |motor: usize| prior.rotors.get(motor).copied().flatten().filter(|ia| *ia > 0.0);
+        let (combinations, start) = rotors(robot, |motor| known(motor).unwrap_or(0.1));
+        for (k, value) in start {
+            self.start[k] = value;
+        }
+        for (motor, combination) in combinations.into_iter().enumerate() {
+            let (weight, scale) = known(motor).map_or((UNKNOWN_ROTOR, UNKNOWN), |ia| (1.0, ia));
+            self.rotors.push((combination, weight, scale));
+        }
+    }
+
+    fn add_data(
+        &mut self,
+        robot: &Robot,
+        chi: &[f64],
+        covariance: &DMatrix<f64>,
+    ) -> Result<(), NearPriorError> {
+        let is_known =
+            |k: &usize| covariance[(*k, *k)] > 0.0 && covariance.row(*k).iter().all(|x| x.is_finite());
+        let known: Vec<usize> = (0..chi.len()).filter(is_known).collect();
+        if known.is_empty() {
+            return Err(NearPriorError::NoInformation);
+        }
+        self.determined = known.len();
+        let before = robot.base_from_standard(self.start.as_slice());
+        let floor = |k: usize| EXACT * chi[k].abs().max(before[k].abs()).max(EXACT);
+        let sigma: Vec<f64> = known.iter().map(|&k| (covariance[(k, k)] + floor(k).powi(2)).sqrt()).collect();
+        let scaled = DMatrix::from_fn(known.len(), known.len(), |i, j| {
+            let value = if i == j { sigma[i] * sigma[i] } else { covariance[(known[i], known[j])] };
+            value / (sigma[i] * sigma[j])
+        });
+        let factor = factored(scaled).ok_or(NearPriorError::NoInformation)?;
+        let mut rows = DMatrix::zeros(known.len(), robot.standard.len());
+        for (i, &b) in known.iter().enumerate() {
+            for &(k, coefficient) in robot.base[b].combination.iter() {
+                rows[(i, k)] += coefficient / sigma[i];
+            }
+        }
+        let mut y = DVector::from_fn(known.len(), |i, _| chi[known[i]] / sigma[i]);
+        for &k in &self.fixed {
+            y -= rows.column(k) * self.start[k];
+            rows.column_mut(k).fill(0.0);
+        }
+        let l = factor.l();
+        self.g = l.solve_lower_triangular(&rows).ok_or(NearPriorError::NoInformation)?;
+        self.y = l.solve_lower_triangular(&y).ok_or(NearPriorError::NoInformation)?;
+        self.normal = self.g.tr_mul(&self.g);
+        Ok(())
+    }
+
+    pub(super) fn distance(&self, x: &DVector<f64>) -> f64 {
+        (&self.g * x - &self.y).norm_squared()
+    }
+
+    /// D of one body; `None` where it is none.
+    pub(super) fn divergence(&self, body: &Known, x: &DVector<f64>) -> Option<f64> {
+        let pseudo = pseudo_inertia(&body.link, x) - body.attached;
+        let factor = nalgebra::Cholesky::new(pseudo)?;
+        let log_determinant = 2.0 * (0..4).map(|i| factor.l_dirty()[(i, i)].ln()).sum::<f64>();
+        let value = body.inverse.dot(&pseudo) - log_determinant + body.log_determinant - 4.0;
+        value.is_finite().then_some(value)
+    }
+
+    /// R; `None` outside of what is possible.
+    fn regulariser(&self, x: &DVector<f64>) -> Option<f64> {
+        let mut sum = 0.0;
+        for body in &self.bodies {
+            sum += self.divergence(body, x)?;
+        }
+        for (combination, weight, scale) in &self.rotors {
+            let value = at(combination, x);
+            if value <= 0.0 {
+                return None;
+            }
+            sum += weight * (value / scale - (value / scale).ln() - 1.0);
+        }
+        sum.is_finite().then_some(sum)
+    }
+
+    /// Gradient and curvature of R.
+    pub(super) fn curvature(&self, x: &DVector<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> {
+        let mut gradient = DVector::zeros(x.len());
+        let mut hessian = DMatrix::zeros(x.len(), x.len());
+        let basis: [Matrix4<f64>; 10] = std::array::from_fn(unit_inertia);
+        for body in &self.bodies {
+            let inverse = (pseudo_inertia(&body.link, x) - body.attached).try_inverse()?;
+            let slope = body.inverse - inverse;
+            let products = basis.map(|b| inverse * b);
+            for (place, &i) in body.link.iter().enumerate() {
+                gradient[i] += slope.dot(&basis[place]);
+                for (other, &j) in products.iter().zip(&body.link) {
+                    hessian[(i, j)] += products[place].dot(&other.transpose());
+                }
+            }
+        }
+        for (combination, weight, scale) in &self.rotors {
+            let value = at(combination, x);
+            for &(i, a) in combination {
+                gradient[i] += weight * a * (1.0 / scale - 1.0 / value);
+                for &(j, b) in combination {
+                    hessian[(i, j)] += weight * a * b / (value * value);
+                }
+            }
+        }
+        self.fixed.iter().for_each(|&k| hessian[(k, k)] = 1.0);
+        Some((gradient, hessian))
+    }
+
+    /// The minimum of half the distance and `gamma` R, both over `gamma`.
+    pub(super) fn minimum(&self, gamma: f64, mut x: DVector<f64>) -> Result<DVector<f64>, NearPriorError> {
+        let value = |x: &DVector<f64>| Some(0.5 * self.distance(x) / gamma + self.regulariser(x)?);
+        for _ in 0..MOST_STEPS {
+            let (mut gradient, mut hessian) = self.curvature(&x).ok_or(NearPriorError::NotConverged)?;
+            gradient += self.g.tr_mul(&(&self.g * &x - &self.y)) / gamma;
+            hessian += &self.normal / gamma;
+            let step = scaled_solution(hessian, &gradient).ok_or(NearPriorError::NotConverged)?;
+            let decrement = gradient.dot(&step);
+            if !decrement.is_finite() {
+                return Err(NearPriorError::NotConverged);
+            }
+            let before = value(&x).ok_or(NearPriorError::NotConverged)?;
+            if decrement < PRECISION * (1.0 + before.abs()) {
+                return Ok(x);
+            }
+            let mut share = 1.0;
+            let next = loop {
+                let next = &x - &step * share;
+                if value(&next).is_some_and(|after| after <= before - 0.1 * share * decrement) {
+                    break Some(next);
+                }
+                share *= 0.5;
+                if share < 1e-10 {
+                    break None;
+                }
+            };
+            match next {
+                Some(next) => x = next,
+                // What is left to gain is below the rounding of the objective.
+                None if decrement < ROUNDING * (1.0 + before.abs()) => return Ok(x),
+                None => return Err(NearPriorError::NotConverged),
+            }
+        }
+        Err(NearPriorError::NotConverged)
+    }
+}
+
+/// The solution of a symmetric system whose unknowns have units of different size.
+fn scaled_solution(mut matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    let scale = matrix.diagonal().map(|d| 1.0 / d.sqrt());
+    for i in 0..scale.len() {
+        for j in 0..scale.len() {
+            matrix[(i, j)] *= scale[i] * scale[j];
+        }
+    }
+    Some(factored(matrix)?.solve(&right.component_mul(&scale)).component_mul(&scale))
+}
+
+fn at(combination: &Combination, x: &DVector<f64>) -> f64 {
+    combination.iter().map(|&(k, coefficient)| coefficient * x[k]).sum()
+}
