@@ -87,6 +87,11 @@ fn role(name: &str) -> Option<(Role, String)> {
     Some((role, words.join(" ")))
 }
 
+/// What a name says that a signal measures.
+pub(super) fn role_of(name: &str) -> Option<Role> {
+    role(name).map(|(role, _)| role)
+}
+
 /// The columns of a recording, by their names.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Channels {
