@@ -181,7 +181,7 @@ fn commands(folder: &Folder) -> String {
 /// The keys that a reader lists where it meets one that it does not know.
 fn listed(error: &str) -> Vec<String> {
     let (_, list) = error.split_once("expected ").unwrap_or_else(|| panic!("no list in: {error}"));
-    let list = list.lines().next().unwrap_or_default().trim_start_matches("one of ");
+    let list = list.split(['\n', ';']).next().unwrap_or_default().trim_start_matches("one of ");
     list.split([',', ' ', '`']).filter(|word| !word.is_empty() && *word != "or").map(str::to_owned).collect()
 }
 

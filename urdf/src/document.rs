@@ -296,25 +296,7 @@ fn read_joint(
 ) -> Option<Joint> {
     let place = reader.place_of(node);
     let name = reader.required(node, "name")?.to_owned();
-    let kind = match reader.required(node, "type")? {
-        "fixed" => JointType::Fixed,
-        "revolute" => JointType::Revolute,
-        "continuous" => JointType::Continuous,
-        "prismatic" => JointType::Prismatic,
-        "floating" => JointType::Floating,
-        "planar" => JointType::Planar,
-        other => {
-            let found = shown(other);
-            reader.report(
-                place,
-                format!(
-                    "joint '{}' has type '{found}': expected revolute, continuous, prismatic or fixed",
-                    shown(&name)
-                ),
-            );
-            return None;
-        }
-    };
+    let kind = read_type(reader, node, &name)?;
     let mut end = |tag: &'static str| {
         let Some(node) = first(node, tag) else {
             reader.report(place, format!("joint '{}' has no <{tag}>", shown(&name)));
@@ -332,17 +314,7 @@ fn read_joint(
     let origin = read_origin(reader, node, snap, rounded);
     let axis =
         if kind == JointType::Fixed { Some(Vector3::x()) } else { read_axis(reader, node, &name, snap) };
-    let dynamics = first(node, "dynamics");
-    let mut friction = |name: &str| {
-        let node = dynamics?;
-        let value = reader.number(node, name)?;
-        if value < 0.0 {
-            let place = reader.place_of(node);
-            reader.warn(place, format!("{name} {value} is below 0"));
-        }
-        Some(value)
-    };
-    let (damping, friction) = (friction("damping"), friction("friction"));
+    let [damping, friction] = ["damping", "friction"].map(|what| read_friction(reader, node, what));
     let mimic = first(node, "mimic").and_then(|node| {
         Some(Mimic {
             place: reader.place_of(node),
@@ -369,6 +341,38 @@ fn read_joint(
         mimic,
         gear: None,
     })
+}
+
+fn read_type(reader: &mut Reader<'_>, node: Node<'_, '_>, joint: &str) -> Option<JointType> {
+    Some(match reader.required(node, "type")? {
+        "fixed" => JointType::Fixed,
+        "revolute" => JointType::Revolute,
+        "continuous" => JointType::Continuous,
+        "prismatic" => JointType::Prismatic,
+        "floating" => JointType::Floating,
+        "planar" => JointType::Planar,
+        other => {
+            let (place, joint, found) = (reader.place_of(node), shown(joint), shown(other));
+            reader.report(
+                place,
+                format!(
+                    "joint '{joint}' has type '{found}': expected revolute, continuous, prismatic or fixed"
+                ),
+            );
+            return None;
+        }
+    })
+}
+
+/// A number of a joint's `<dynamics>`.
+fn read_friction(reader: &mut Reader<'_>, node: Node<'_, '_>, what: &str) -> Option<f64> {
+    let node = first(node, "dynamics")?;
+    let value = reader.number(node, what)?;
+    if value < 0.0 {
+        let place = reader.place_of(node);
+        reader.warn(place, format!("{what} {value} is below 0"));
+    }
+    Some(value)
 }
 
 fn read_axis(reader: &mut Reader<'_>, node: Node<'_, '_>, joint: &str, snap: f64) -> Option<Vector3<f64>> {

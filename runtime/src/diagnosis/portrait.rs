@@ -1,14 +1,17 @@
 //! An effect of the catalogue on a made-up motion: how its torque lies over the variable that reveals it.
 
 use super::error::DiagnosisError;
+use super::experiment::{Question, distances, typical_laws};
 use super::explanation::curves::abscissa;
 use super::rows::context::Context;
 use super::rows::scales::scales;
 use super::rows::signals::Signals;
 use crate::effects::{
-    BodyEstimate, CoupledRotor, EffectKind, Form, HEARD_JOINT, Parameter, Place, Quantities, Transmission,
+    BodyEstimate, CoupledRotor, EffectKind, EffectTerm, Form, HEARD_JOINT, Parameter, Place, Quantities,
+    Transmission,
 };
 use crate::model::{JointIndex, Model};
+use crate::signal::Motion;
 
 /// Rows a second of the made-up motion, Hz, and its duration, s.
 const RATE: f64 = 500.0;
@@ -22,6 +25,10 @@ const QUICKER: f64 = 1.3;
 const REACH: f64 = 2.2;
 /// Shift, mass and moment of inertia about its centre of the body that is drawn, m, kg and kg.m².
 const BODY: (f64, f64, f64) = (0.1, 1.0, 0.002);
+
+/// The joint (0-based) on which laws are compared, and the part from which one imitates another.
+const IMITATED: usize = 0;
+const HALF: f64 = 0.5;
 
 /// An effect as it may be in a robot, and its torque.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,14 +70,14 @@ pub fn portrait(
     effect: EffectKind,
     size: f64,
 ) -> Result<Option<Portrait>, DiagnosisError> {
-    let signals = [made_up_motion(model)];
+    let signals = [Signals::of_motion(&made_up_motion(model))];
     let context = Context::new(model, &signals, scales(model, &signals, chi), chi.to_vec())?;
     let places = effect.form().places(model.robot());
     Ok(places.into_iter().find_map(|place| at_place(&context, effect, place, size)))
 }
 
 /// Every joint swings slowly over most of its reach, with quick reversals on the way.
-fn made_up_motion(model: &dyn Model) -> Signals {
+fn made_up_motion(model: &dyn Model) -> Motion {
     let robot = model.robot();
     let samples = (DURATION * RATE) as usize;
     let reach = |j: usize| {
@@ -100,7 +107,40 @@ fn made_up_motion(model: &dyn Model) -> Signals {
     };
     let dq: Vec<Vec<f64>> = q.iter().map(slope).collect();
     let ddq = dq.iter().map(slope).collect();
-    Signals::without_torque("", RATE, 0.0, [q, dq, ddq])
+    let torque = vec![vec![0.0; samples]; q.len()];
+    let (name, fixed) = (String::new(), Vec::new());
+    Motion { name, rate: RATE, start: 0.0, q, dq, ddq, torque, fixed, edge_samples: 0 }
+}
+
+/// The laws of a joint that imitate one of them on the made-up motion, the best first: each with the part of the squares that
+/// the standard model leaves of the law and that the other one takes, where that is half of them or more.
+///
+/// # Errors
+/// [`DiagnosisError`] where the robot cannot be evaluated.
+pub fn imitators(
+    model: &dyn Model,
+    chi: &[f64],
+    effect: EffectKind,
+) -> Result<Vec<(EffectKind, f64)>, DiagnosisError> {
+    let motion = made_up_motion(model);
+    let noise = vec![1.0; model.robot().joints()];
+    let mut found = Vec::new();
+    for other in EffectKind::ALL.into_iter().filter(|other| *other != effect) {
+        let both = typical_laws((model, chi), IMITATED, &[effect, other], 1.0, &motion)?;
+        let laws: Vec<EffectTerm> = both.into_iter().flatten().collect();
+        if laws.len() < 2 {
+            continue;
+        }
+        let apart = distances(&Question { model, chi, noise: &noise, laws: &laws }, &motion)?.apart;
+        let Some(alone) = apart[0][0].filter(|alone| *alone > 0.0) else { continue };
+        // What contains the law takes all of it.
+        let part = 1.0 - apart[0][1].map_or(0.0, |left| (left / alone).powi(2));
+        if part >= HALF {
+            found.push((other, part));
+        }
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    Ok(found)
 }
 
 fn at_place(context: &Context<'_>, effect: EffectKind, place: Place, size: f64) -> Option<Portrait> {
@@ -246,6 +286,18 @@ mod tests {
             assert!(portrait.points.iter().all(|p| p.0.is_finite() && p.1.is_finite()), "{}", effect.id());
             assert!(!portrait.parameters.is_empty(), "{}", effect.id());
         }
+    }
+
+    #[test]
+    fn a_law_that_bends_with_speed_imitates_another_one_and_a_wave_does_not() {
+        let (model, standard) = arm();
+        let chi = model.robot().base_from_standard(&standard);
+        let found = imitators(&model, &chi, EffectKind::NonlinearViscous).expect("an arm");
+        let part = |kind| found.iter().find(|(other, _)| *other == kind).map(|(_, part)| *part);
+        assert!(part(EffectKind::Stribeck).is_some_and(|part| part > 0.5), "{found:?}");
+        assert_eq!(part(EffectKind::TorqueRipple), None, "{found:?}");
+        assert!(found.iter().all(|(_, part)| (0.5..=1.0).contains(part)), "{found:?}");
+        assert!(imitators(&model, &chi, EffectKind::Payload).expect("an arm").is_empty());
     }
 
     #[test]

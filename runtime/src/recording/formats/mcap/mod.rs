@@ -19,6 +19,7 @@ mod plan;
 mod reader;
 mod survey;
 mod topics;
+mod walk;
 mod write;
 
 use std::io;

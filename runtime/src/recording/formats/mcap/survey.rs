@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::message::{self, Kind};
-use super::{bag, chosen, error, fits, log::Log, plan, topics_of};
+use super::{bag, chosen, error, fits, log::Log, topics_of, walk};
 use crate::recording::RecordingError;
 use crate::recording::formats::Survey;
 use crate::recording::look::Topic;
@@ -46,7 +46,7 @@ pub(in crate::recording) fn survey(
 
 /// Adds the signals of a message of a definition that are new; its stamp.
 fn defined(log: &Log, k: usize, data: &[u8], all: &mut Vec<String>) -> Result<i64, super::cdr::Fault> {
-    let (signals, stamp) = plan::signals(&log.definitions[k], data, MOST_SIGNALS)?;
+    let (signals, stamp) = walk::signals(&log.definitions[k], data, MOST_SIGNALS)?;
     for signal in signals {
         if all.len() < MOST_SIGNALS && !all.contains(&signal) {
             all.push(signal);
