@@ -181,8 +181,13 @@ fn commands(folder: &Folder) -> String {
 /// The keys that a reader lists where it meets one that it does not know.
 fn listed(error: &str) -> Vec<String> {
     let (_, list) = error.split_once("expected ").unwrap_or_else(|| panic!("no list in: {error}"));
-    let list = list.split(['\n', ';']).next().unwrap_or_default().trim_start_matches("one of ");
-    list.split([',', ' ', '`']).filter(|word| !word.is_empty() && *word != "or").map(str::to_owned).collect()
+    // One reader writes `a`, `b` or `c`, the other a, b, c; what helps may follow.
+    let list = list.split(" at line ").next().unwrap_or_default();
+    if list.contains('`') {
+        return list.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+    }
+    let list = list.lines().next().unwrap_or_default().trim_start_matches("one of ");
+    list.split(", ").map(str::to_owned).collect()
 }
 
 /// That the part of the reference from `heading` to the next one of its level has each of the keys.

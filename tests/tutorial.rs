@@ -58,6 +58,12 @@ fn of_report(report: &str, caption: &str) -> String {
     alone(&report[from..to])
 }
 
+/// The figure that a list of motions names.
+fn figure(list: &str) -> String {
+    let (_, name) = list.split_once("figure: ").unwrap();
+    format!("motions/{}", name.split('}').next().unwrap())
+}
+
 /// The last curve of a picture: of a report's, the law.
 fn curve(svg: &str) -> Option<&str> {
     let (_, path) = svg.rsplit_once(" d=\"M")?;
@@ -81,7 +87,7 @@ fn every_command_of_the_tutorial_prints_what_it_shows() {
     let residual = of_report(&read("report.html"), "What the standard model leaves, over joint speed");
     // What else a page puts into its pictures is no matter of the tutorial.
     let pictures = [
-        ("tutorial_motion.svg", read("motions/motion1.svg"), true),
+        ("tutorial_motion.svg", read(&figure(&read("motions/motions.yaml"))), true),
         ("tutorial_law.svg", read("law.svg"), true),
         ("tutorial_residual.svg", residual, false),
     ];

@@ -132,9 +132,11 @@ pub fn imitators(
             continue;
         }
         let apart = distances(&Question { model, chi, noise: &noise, laws: &laws }, &motion)?.apart;
-        let Some(alone) = apart[0][0].filter(|alone| *alone > 0.0) else { continue };
-        // What contains the law takes all of it.
-        let part = 1.0 - apart[0][1].map_or(0.0, |left| (left / alone).powi(2));
+        // A law that has this one for a special case is not compared with it.
+        let (Some(alone), Some(left)) = (apart[0][0].filter(|alone| *alone > 0.0), apart[0][1]) else {
+            continue;
+        };
+        let part = 1.0 - (left / alone).powi(2);
         if part >= HALF {
             found.push((other, part));
         }
