@@ -182,9 +182,10 @@ fn commands(folder: &Folder) -> String {
 fn listed(error: &str) -> Vec<String> {
     let (_, list) = error.split_once("expected ").unwrap_or_else(|| panic!("no list in: {error}"));
     // One reader writes `a`, `b` or `c`, the other a, b, c; what helps may follow.
-    let list = list.split(" at line ").next().unwrap_or_default();
     if list.contains('`') {
-        return list.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+        let parts: Vec<&str> = list.split('`').collect();
+        let goes_on = |pair: &&[&str]| matches!(pair[0], "one of " | "" | ", " | " or ");
+        return parts.chunks_exact(2).take_while(goes_on).map(|pair| pair[1].to_owned()).collect();
     }
     let list = list.lines().next().unwrap_or_default().trim_start_matches("one of ");
     list.split(", ").map(str::to_owned).collect()
