@@ -180,8 +180,8 @@ fn at_place(context: &Context<'_>, effect: EffectKind, place: Place, size: f64) 
         parameters,
         laws,
         quantities: all,
-        variable: properties.abscissa.label(scale.prismatic).to_owned(),
-        unit: scale.torque_unit().to_owned(),
+        variable: properties.abscissa.label(scale.kind),
+        unit: scale.kind.torque_unit().to_owned(),
         along_motion: properties.along_motion,
         points: points.collect(),
     })
