@@ -10,6 +10,7 @@
 //! assert!(page.to_html().contains("<svg"));
 //! ```
 
+mod alone;
 mod axis;
 mod escape;
 mod html;
@@ -18,6 +19,7 @@ mod plot;
 mod series;
 mod sheet;
 
+pub use alone::alone;
 pub use escape::escape;
 pub use html::Page;
 pub use numbers::{falls_or_rises, percent, significant};
