@@ -24,7 +24,7 @@ pub fn joint_words(joints: &[usize]) -> String {
 
 /// What an effect is called, in the middle of a sentence.
 pub fn effect_words(id: &str) -> String {
-    EffectKind::from_id(id).map_or_else(|| id.to_owned(), |effect| effect.words().title.to_lowercase())
+    EffectKind::name_of(id).to_owned()
 }
 
 /// The words with a capital letter first.

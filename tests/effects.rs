@@ -16,7 +16,7 @@ fn the_table_names_every_effect_and_which_of_them_need_a_baseline() {
     let text = words_of(&run(&folder, "effects"));
     for kind in EffectKind::ALL {
         let line = text.lines().find(|line| line.split_whitespace().next() == Some(kind.id())).unwrap();
-        assert!(line.contains(kind.words().title) && line.contains(kind.words().looks_like), "{line}");
+        assert!(line.contains(&kind.words().title()) && line.contains(kind.words().looks_like), "{line}");
         assert_eq!(line.contains(" needed "), kind.needs_baseline(), "{line}");
     }
 }
@@ -30,8 +30,8 @@ fn every_effect_is_told_with_its_law_and_a_picture_where_it_has_one() {
         assert_eq!(output.status.success(), has_picture, "{}: {}", kind.id(), error_of(&output));
         let text = words_of(&run(&folder, &format!("effects {}", kind.id())));
         let words = kind.words();
-        for part in [words.title, words.what, words.looks_like, words.experiment, words.source, words.put_in]
-        {
+        let title = words.title();
+        for part in [&title, words.what, words.looks_like, words.experiment, words.source, words.put_in] {
             assert!(text.contains(part), "{}: '{part}' is not in {text}", kind.id());
         }
         assert_eq!(text.contains("***"), has_picture, "{}", kind.id());
@@ -78,10 +78,7 @@ fn every_law_of_a_joint_can_be_put_into_a_robot_and_is_the_same_for_every_seed()
             words_of(&output).lines().next().unwrap().to_owned()
         };
         let first = said(1);
-        assert!(
-            first.starts_with(&format!("Added: {} on joint 2: ", capital(kind.words().title))),
-            "{first}"
-        );
+        assert!(first.starts_with(&format!("Added: {} on joint 2: ", kind.words().title())), "{first}");
         assert_eq!(first, said(2));
     }
     for (effect, words) in [
@@ -95,11 +92,6 @@ fn every_law_of_a_joint_can_be_put_into_a_robot_and_is_the_same_for_every_seed()
         assert_eq!(output.status.code(), Some(2), "{effect}");
         assert!(error_of(&output).contains(words), "{effect}: {}", error_of(&output));
     }
-}
-
-fn capital(title: &str) -> String {
-    let lower = title.to_lowercase();
-    lower[..1].to_uppercase() + &lower[1..]
 }
 
 #[test]

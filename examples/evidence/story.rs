@@ -105,7 +105,8 @@ fn named(text: &mut String, told: &Told<'_>) {
 }
 
 fn finding_words(text: &mut String, finding: &Finding) {
-    let title = EffectKind::from_id(&finding.effect).map_or(finding.effect.as_str(), |k| k.words().title);
+    let title =
+        EffectKind::from_id(&finding.effect).map_or_else(|| finding.effect.clone(), |k| k.words().title());
     let numbers: Vec<String> = finding
         .parameters
         .iter()

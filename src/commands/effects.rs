@@ -101,7 +101,7 @@ fn overview() -> String {
     let rows = EffectKind::ALL.into_iter().map(|kind| {
         let words = kind.words();
         let baseline = if kind.needs_baseline() { "needed" } else { "" };
-        vec![words.id.to_owned(), words.title.to_owned(), baseline.to_owned(), words.looks_like.to_owned()]
+        vec![words.id.to_owned(), words.title(), baseline.to_owned(), words.looks_like.to_owned()]
     });
     format!(
         "{}\n\n`dynid effects ID` tells its law, with a picture, what imitates it and the motion that shows it.",
@@ -111,8 +111,8 @@ fn overview() -> String {
 
 fn plot(kind: EffectKind, portrait: &Portrait) -> Plot {
     let torque = format!("torque of joint {}, {}", portrait.joint, portrait.unit);
-    Plot::new(kind.words().title, axis(portrait), torque).with(
-        kind.words().title,
+    Plot::new(kind.words().title(), axis(portrait), torque).with(
+        kind.words().title(),
         Role::Law,
         SeriesKind::Points,
         thinned(&portrait.points),
@@ -121,7 +121,7 @@ fn plot(kind: EffectKind, portrait: &Portrait) -> Plot {
 
 fn page(about: &About) -> String {
     let (kind, drawn, words) = (about.kind, about.drawn.as_ref(), about.kind.words());
-    let mut parts = vec![format!("{} ({})\n{}", words.title, words.id, words.what)];
+    let mut parts = vec![format!("{} ({})\n{}", words.title(), words.id, words.what)];
     let mut law = format!("Torque: {}", kind.form().words());
     for formula in drawn.iter().flat_map(|portrait| &portrait.laws) {
         law.push_str(&format!("\n  {formula}"));

@@ -70,9 +70,7 @@ pub fn diagnose_and_confirm(
 /// What was taken out and why, for a person; nothing where nothing was.
 fn words(refuted: &[Refuted]) -> Option<String> {
     let one = |r: &Refuted| {
-        let title = EffectKind::from_id(&r.effect)
-            .map_or(r.effect.as_str(), |kind| kind.words().title)
-            .to_lowercase();
+        let title = EffectKind::name_of(&r.effect);
         let joints: Vec<String> = r.joints.iter().map(ToString::to_string).collect();
         let place =
             if joints.is_empty() { String::new() } else { format!(" on joint {}", joints.join(" and ")) };

@@ -95,6 +95,11 @@ impl EffectKind {
         Self::ALL.into_iter().find(|k| k.id() == id)
     }
 
+    /// What the effect with this id is called within a sentence; the id of one that is not in the catalogue.
+    pub fn name_of(id: &str) -> &str {
+        Self::from_id(id).map_or(id, |kind| kind.words().name)
+    }
+
     /// Its name in the JSON.
     pub fn id(self) -> &'static str {
         self.words().id

@@ -77,10 +77,10 @@ fn every_name_is_its_own_serde_name_and_finds_its_effect() {
 fn every_effect_has_all_of_its_words() {
     for kind in EffectKind::ALL {
         let w = kind.words();
-        for text in [w.title, w.what, w.looks_like, w.revealed_by, w.experiment, w.source] {
+        for text in [w.name, w.what, w.looks_like, w.revealed_by, w.experiment, w.source] {
             assert!(text.len() > 3, "{}", w.id);
         }
-        assert!(w.what.ends_with('.') && w.title.starts_with(char::is_uppercase), "{}", w.id);
+        assert!(w.what.ends_with('.') && w.title().starts_with(char::is_uppercase), "{}", w.id);
         for kind_of_joint in [JointKind::Revolute, JointKind::Prismatic] {
             assert!(kind.properties().abscissa.label(kind_of_joint).len() > 5, "{}", w.id);
         }

@@ -30,8 +30,8 @@ pub trait Effect: Sync {
 pub struct Words {
     /// Name of the effect in the JSON.
     pub id: &'static str,
-    /// A short title.
-    pub title: &'static str,
+    /// What it is called within a sentence.
+    pub name: &'static str,
     /// What it is, in one sentence.
     pub what: &'static str,
     /// Where it shows in the residual.
@@ -47,6 +47,16 @@ pub struct Words {
     pub symbols: &'static [(&'static str, &'static str)],
     /// How it is put into a simulated robot or a recording.
     pub put_in: &'static str,
+}
+
+impl Words {
+    /// Its name with a capital letter first.
+    pub fn title(&self) -> String {
+        let mut letters = self.name.chars();
+        letters
+            .next()
+            .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+    }
 }
 
 impl Words {

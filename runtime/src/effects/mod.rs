@@ -13,7 +13,7 @@
 //! use dynid_runtime::effects::EffectKind;
 //!
 //! let stribeck = EffectKind::from_id("stribeck").expect("the catalogue has it");
-//! assert_eq!(stribeck.words().title, "Stribeck friction");
+//! assert_eq!(stribeck.words().name, "Stribeck friction");
 //! assert!(!stribeck.needs_baseline());
 //! ```
 

@@ -47,7 +47,7 @@ pub(super) struct About {
 #[derive(Serialize)]
 pub(super) struct Known {
     pub id: &'static str,
-    pub title: &'static str,
+    pub title: String,
     pub what: &'static str,
     pub torque: &'static str,
     pub laws: Vec<String>,
@@ -127,7 +127,7 @@ impl About {
         let (kind, words, drawn) = (self.kind, self.kind.words(), self.drawn.as_ref());
         Known {
             id: words.id,
-            title: words.title,
+            title: words.title(),
             what: words.what,
             torque: kind.form().words(),
             laws: drawn.map_or_else(Vec::new, |portrait| portrait.laws.clone()),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dynid_codegen::{ExportError, Known, Law};
-use dynid_runtime::effects::{EffectTerm, UserLaw};
+use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::Identified;
 
@@ -62,10 +62,10 @@ fn known(identified: &Identified, robot: &Robot, chi: Vec<f64>) -> Known {
 
 /// `Stribeck friction on joint 2`.
 fn title(term: &EffectTerm) -> String {
-    let name = term.place.law().map_or(term.effect.words().title, UserLaw::id);
+    let name = term.place.law().map_or_else(|| term.effect.words().title(), |law| law.id().to_owned());
     let joints: Vec<String> = term.joints.iter().map(ToString::to_string).collect();
     match joints.len() {
-        0 => name.to_owned(),
+        0 => name,
         1 => format!("{name} on joint {}", joints[0]),
         _ => format!("{name} on joints {}", joints.join(", ")),
     }

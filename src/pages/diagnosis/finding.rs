@@ -10,7 +10,7 @@ use crate::words::{confidence_words, joint_words, part_words};
 pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
     let effect = EffectKind::from_id(&finding.effect);
     let words = effect.map(EffectKind::words);
-    let title = words.map_or(finding.effect.as_str(), |w| w.title);
+    let title = words.map_or_else(|| finding.effect.clone(), Words::title);
     page.heading(&format!("{title} on {}", joint_words(&finding.joints)));
     page.paragraph(&finding.sentence);
     if let Some(formula) = finding.formula() {

@@ -43,7 +43,7 @@ pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Find
     let detail = effect.effect().detail(&f.quantities());
     format!(
         "{place}: {}. {}: {detail}. Held-out error of {} {} from {:.2} % to {:.2} %.",
-        words.title.to_lowercase(),
+        words.name,
         capital(words.what.trim_end_matches('.')),
         if f.joints.is_empty() { "all joints" } else { "its joints" },
         falls_or_rises(f.held_out_before, f.held_out_after),
@@ -245,11 +245,9 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             .findings
             .iter()
             .map(|f| {
-                let title = EffectKind::from_id(&f.effect)
-                    .map_or(f.effect.as_str(), |k| k.words().title)
-                    .to_lowercase();
+                let title = EffectKind::name_of(&f.effect);
                 match f.joints.as_slice() {
-                    [] => title,
+                    [] => title.to_owned(),
                     joints => {
                         let list: Vec<String> = joints.iter().map(ToString::to_string).collect();
                         format!("{title} on joint {}", list.join(" and "))

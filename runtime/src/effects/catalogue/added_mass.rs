@@ -9,7 +9,7 @@ use crate::model::Robot;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "added_mass",
-    title: "Added mass",
+    name: "added mass",
     what: "A body is attached to an inner link that the model does not know: a dress pack, a valve block, a camera.",
     looks_like: "gravity and inertia torques of the joints below that link only",
     revealed_by: "joint position",

@@ -9,7 +9,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "asymmetric_friction",
-    title: "Asymmetric friction",
+    name: "asymmetric friction",
     what: "Friction rises differently with speed in the two directions of motion.",
     looks_like: "a residual that is even in the speed: the two branches of the friction curve have different slopes",
     revealed_by: "joint speed",

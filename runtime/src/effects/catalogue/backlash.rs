@@ -8,7 +8,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "backlash",
-    title: "Backlash",
+    name: "backlash",
     what: "There is play between motor and link: when the load changes its direction the link is free for a moment and then hits the other flank.",
     looks_like: "short bursts in the instants in which the load torque changes its sign, and nowhere else",
     revealed_by: "load torque",

@@ -9,7 +9,7 @@ use crate::model::{JointKind, Robot};
 /// What a person is told.
 const WORDS: Words = Words {
     id: "base_tilt",
-    title: "Base tilt",
+    name: "base tilt",
     what: "The base does not stand as the model says: gravity acts from another direction.",
     looks_like: "gravity torques of all joints, also of joints with a vertical axis",
     revealed_by: "joint position",

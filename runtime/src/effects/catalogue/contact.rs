@@ -5,7 +5,7 @@ use crate::effects::{Abscissa, Effect, Form, Properties, Quantities, SmoothingWi
 /// What a person is told.
 const WORDS: Words = Words {
     id: "contact",
-    title: "Contact",
+    name: "contact",
     what: "Something pushed the robot for a while.",
     looks_like: "several joints jump together, in the ratio that one force on one link has, and come back",
     revealed_by: "time",

@@ -5,7 +5,7 @@ use crate::effects::{Abscissa, Effect, Form, Properties, Quantities, SmoothingWi
 /// What a person is told.
 const WORDS: Words = Words {
     id: "coupled_transmission",
-    title: "Coupled transmission",
+    name: "coupled transmission",
     what: "A motor turns with two joints at once, so that its friction and inertia act on both.",
     looks_like: "friction of one joint that depends on the speed of its neighbour",
     revealed_by: "speed of the neighbouring joint",

@@ -13,7 +13,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "drive_efficiency",
-    title: "Drive efficiency",
+    name: "drive efficiency",
     what: "The drive loses a part of the power that it transmits, and not the same part when it drives the load as when the load drives it.",
     looks_like: "a residual proportional to the load torque, with one factor where torque and speed agree and another where they oppose",
     revealed_by: "load torque",

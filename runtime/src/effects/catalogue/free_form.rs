@@ -5,7 +5,7 @@ use crate::effects::{Abscissa, Effect, Form, Properties, Quantities, SmoothingWi
 /// What a person is told.
 const WORDS: Words = Words {
     id: "free_form",
-    title: "Torque by no known law",
+    name: "torque by no known law",
     what: "A torque that is a function of some variables and of no law of the catalogue.",
     looks_like: "a residual that one or two variables order, of this joint or of another",
     revealed_by: "the variables that it depends on",

@@ -8,7 +8,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "friction_drift",
-    title: "Friction drift",
+    name: "friction drift",
     what: "Friction changes in the course of the motion: the joint warms up and its lubricant thins.",
     looks_like: "a residual proportional to friction that fades with time in every motion",
     revealed_by: "time",

@@ -8,7 +8,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "friction_level_change",
-    title: "Friction level change",
+    name: "friction level change",
     what: "Friction has changed since the baseline by one factor while inertias have not: other temperature, other lubricant, wear.",
     looks_like: "a residual proportional to the friction of the baseline",
     revealed_by: "friction torque of the baseline",

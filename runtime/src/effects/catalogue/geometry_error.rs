@@ -9,7 +9,7 @@ use crate::model::Robot;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "geometry_error",
-    title: "Geometry error",
+    name: "geometry error",
     what: "A length in the table of the robot is not the real one.",
     looks_like: "gravity and inertia coupling of the joints on both sides of the length",
     revealed_by: "joint position",

@@ -7,7 +7,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "joint_elasticity",
-    title: "Joint elasticity",
+    name: "joint elasticity",
     what: "Motor and link are joined by a spring: the link swings while the encoder on the motor hardly sees it.",
     looks_like: "ringing of one frequency after every jerk, on the joint and on those it is coupled to",
     revealed_by: "frequency",

@@ -10,7 +10,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "load_dependent_friction",
-    title: "Load-dependent friction",
+    name: "load-dependent friction",
     what: "The friction level grows with the torque that the joint transmits: gear teeth and bearings are pressed harder.",
     looks_like: "a residual with the sign of the speed whose size follows the load torque",
     revealed_by: "load torque",

@@ -9,7 +9,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "nonlinear_viscous",
-    title: "Non-linear viscous friction",
+    name: "non-linear viscous friction",
     what: "The friction curve bends with speed: the lubricant shears, warms up and thins, so that friction grows less (or more) than in proportion.",
     looks_like: "a residual that is odd in the speed and bends over its whole range",
     revealed_by: "joint speed",

@@ -9,7 +9,7 @@ use crate::model::Robot;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "payload",
-    title: "Payload",
+    name: "payload",
     what: "A rigid body is attached to the flange that the model does not know.",
     looks_like: "gravity and inertia torques of all joints as of one body at the flange",
     revealed_by: "joint position",

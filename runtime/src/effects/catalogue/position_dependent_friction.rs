@@ -10,7 +10,7 @@ use crate::model::JointKind;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "position_dependent_friction",
-    title: "Position-dependent friction",
+    name: "position-dependent friction",
     what: "The friction level is not the same all along the travel: a worn section, a misaligned gear, an uneven preload.",
     looks_like: "a residual with the sign of the speed that depends on where the joint is",
     revealed_by: "joint position",

@@ -8,7 +8,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "position_dependent_torque",
-    title: "Position-dependent torque",
+    name: "position-dependent torque",
     what: "A torque that is a function of the position alone and no spring: a cable that bends, a magnet, a balancer.",
     looks_like: "a bent residual over the position, the same at every speed and in both directions",
     revealed_by: "joint position",

@@ -9,7 +9,7 @@ use crate::model::Robot;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "position_offset",
-    title: "Position offset",
+    name: "position offset",
     what: "The zero of an encoder is off: the joint is not where the recording says.",
     looks_like: "gravity and coupling torques of several joints that are turned by a constant angle",
     revealed_by: "joint position",

@@ -9,7 +9,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "presliding_hysteresis",
-    title: "Presliding hysteresis",
+    name: "presliding hysteresis",
     what: "After a reversal friction does not jump: it builds up over a small displacement, as contacts bend before they slide.",
     looks_like: "a residual after every reversal that dies out over a distance, whatever the speed",
     revealed_by: "distance since reversal",

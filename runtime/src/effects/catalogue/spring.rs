@@ -10,7 +10,7 @@ use crate::model::JointKind;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "spring",
-    title: "Spring",
+    name: "spring",
     what: "An elastic torque pulls the joint towards a position: a hose package, a balancer, a cable.",
     looks_like: "a residual that is a function of the position alone, the same at every speed and in both directions",
     revealed_by: "joint position",

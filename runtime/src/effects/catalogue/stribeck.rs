@@ -10,7 +10,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "stribeck",
-    title: "Stribeck friction",
+    name: "Stribeck friction",
     what: "Friction is higher close to rest and falls as the joint gathers speed, because a lubricant film builds up.",
     looks_like: "a peak of the residual on both sides of zero speed, with the sign of the speed",
     revealed_by: "joint speed",

@@ -9,7 +9,7 @@ use crate::model::Robot;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "time_delay",
-    title: "Time delay",
+    name: "time delay",
     what: "Torque and position were not recorded at the same instant.",
     looks_like: "a residual proportional to the rate of change of the torque, on every joint",
     revealed_by: "rate of change of the torque",

@@ -12,7 +12,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "torque_constant_drift",
-    title: "Torque constant drift",
+    name: "torque constant drift",
     what: "The factor between recorded and real torque changes in the course of the recording: magnets and windings grow warm.",
     looks_like: "a residual proportional to the whole torque, gravity and inertia too, that grows or fades with time",
     revealed_by: "time",

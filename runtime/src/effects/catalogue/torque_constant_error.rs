@@ -8,7 +8,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "torque_constant_error",
-    title: "Torque constant error",
+    name: "torque constant error",
     what: "The torque recorded on one joint is off by a factor: a wrong drive gain or torque constant.",
     looks_like: "a residual proportional to the whole torque of the joint, friction and inertia alike",
     revealed_by: "model torque",

@@ -8,7 +8,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "torque_crosstalk",
-    title: "Torque crosstalk",
+    name: "torque crosstalk",
     what: "The torque recorded on one joint holds a part of that of a neighbour: a sensor that is bent by other loads, or lines that hear each other.",
     looks_like: "a residual proportional to the torque of another joint, its friction included",
     revealed_by: "model torque of the other joint",

@@ -9,7 +9,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "torque_ripple",
-    title: "Torque ripple",
+    name: "torque ripple",
     what: "The torque pulsates with the angle: cogging, current offsets, gear teeth, a wave generator.",
     looks_like: "a sharp line in the order spectrum over the angle, at the same order whatever the speed",
     revealed_by: "joint position",

@@ -9,7 +9,7 @@ use crate::effects::{
 /// What a person is told.
 const WORDS: Words = Words {
     id: "torque_saturation",
-    title: "Torque saturation",
+    name: "torque saturation",
     what: "At high current the motor gives less torque than the recording says: its iron saturates.",
     looks_like: "a residual that bends with the torque of the joint and matters only at high torque",
     revealed_by: "model torque",

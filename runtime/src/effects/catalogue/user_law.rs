@@ -5,7 +5,7 @@ use crate::effects::{Abscissa, Effect, Form, Properties, Quantities, SmoothingWi
 /// What a person is told, where the law itself is not at hand.
 const WORDS: Words = Words {
     id: "user_law",
-    title: "Law of the user",
+    name: "law of the user",
     what: "A torque by a law that the user wrote down.",
     looks_like: "the law's own course over its variables",
     revealed_by: "the variables of the law",

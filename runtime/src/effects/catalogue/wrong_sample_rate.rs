@@ -9,7 +9,7 @@ use crate::model::Robot;
 /// What a person is told.
 const WORDS: Words = Words {
     id: "wrong_sample_rate",
-    title: "Wrong sample rate",
+    name: "wrong sample rate",
     what: "The time base is wrong: speeds and accelerations are off by a factor and its square while gravity is not.",
     looks_like: "inertia and gravity torques that do not agree on one scale of time",
     revealed_by: "acceleration",
