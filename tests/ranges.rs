@@ -78,7 +78,7 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, joints of the robot, and a seed, which may be any.
-const OTHERS: [&str; 30] = [
+const OTHERS: [&str; 31] = [
     "--format",
     "--loaded",
     "--payload",
@@ -94,6 +94,7 @@ const OTHERS: [&str; 30] = [
     "--out",
     "--json",
     "--report",
+    "--residuals",
     "--robot",
     "--method",
     "--baseline",

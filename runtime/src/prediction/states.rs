@@ -40,9 +40,7 @@ pub fn row_states(
     }
     let rigid = without_friction(robot, chi);
     let mut rows = Vec::new();
-    for (trajectory, (motion, plan)) in
-        motions.iter().zip(row_plans(robot, motions, settings)?).enumerate()
-    {
+    for (trajectory, (motion, plan)) in motions.iter().zip(row_plans(robot, motions, settings)?).enumerate() {
         let load = torques(model, &rigid, motion.state_slices().states());
         for joint in 0..robot.joints() {
             let of = |signal: &[Vec<f64>]| decimated(&signal[joint], &plan);
@@ -59,5 +57,6 @@ fn without_friction(robot: &Robot, chi: &[f64]) -> Vec<f64> {
     use ParameterKind::{Fc, Fcm, Fv, Fvm, Off};
     let is_friction = |kind: ParameterKind| matches!(kind, Fv | Fc | Fvm | Fcm | Off);
     let each = robot.base.iter().zip(chi);
-    each.map(|(base, &value)| if is_friction(robot.standard[base.standard].kind) { 0.0 } else { value }).collect()
+    each.map(|(base, &value)| if is_friction(robot.standard[base.standard].kind) { 0.0 } else { value })
+        .collect()
 }

@@ -49,6 +49,12 @@ impl Page {
         self.element("p class=\"note\"", "p", text)
     }
 
+    /// Words that are meant to the letter, such as a command.
+    pub fn literal(&mut self, text: &str) -> &mut Self {
+        let _ = write!(self.body, "<p><code>{}</code></p>", escape(text));
+        self
+    }
+
     /// A plot.
     pub fn plot(&mut self, plot: &Plot) -> &mut Self {
         self.body.push_str(&plot.to_html());
@@ -56,13 +62,16 @@ impl Page {
         self
     }
 
-    /// A list of sentences.
+    /// A list of sentences; nothing where there are none.
     pub fn list<S: AsRef<str>>(&mut self, items: impl IntoIterator<Item = S>) -> &mut Self {
-        self.body.push_str("<ul>");
+        let before = self.body.len();
         for item in items {
             self.element("li", "li", item.as_ref());
         }
-        self.body.push_str("</ul>");
+        if self.body.len() > before {
+            self.body.insert_str(before, "<ul>");
+            self.body.push_str("</ul>");
+        }
         self
     }
 

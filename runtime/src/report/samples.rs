@@ -127,7 +127,8 @@ mod tests {
 
     #[test]
     fn a_column_that_several_curves_have_is_carried_once() {
-        let points = |f: fn(f64) -> f64| (0..9000).map(|k| (f64::from(k), f(f64::from(k)))).collect::<Vec<_>>();
+        let points =
+            |f: fn(f64) -> f64| (0..9000).map(|k| (f64::from(k), f(f64::from(k)))).collect::<Vec<_>>();
         let (a, b) = (points(f64::sin), points(f64::cos));
         let swapped = |p: &[(f64, f64)]| p.iter().map(|p| ((0.1 * p.0).sin(), p.1)).collect::<Vec<_>>();
         let over = vec![swapped(&a), swapped(&b)];

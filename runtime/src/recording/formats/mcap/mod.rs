@@ -5,6 +5,7 @@
 //! nanoseconds does not fit a double.
 
 mod bag;
+mod begun;
 mod cdr;
 mod chunk;
 mod container;
@@ -21,6 +22,8 @@ use super::{Format, Survey, Wanted};
 use crate::recording::look::Topic;
 use crate::recording::names::{listed, meant};
 use crate::recording::{Column, RecordingError, Rows};
+pub(in crate::recording) use bag::files_of;
+pub(in crate::recording) use begun::begun;
 use container::{Fields, Found, Records, op};
 use merge::Merge;
 use message::{Decoder, FIELDS, Kind, Signal};
@@ -63,7 +66,7 @@ enum Time {
 
 impl McapReader {
     pub fn open(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Self, RecordingError> {
-        let paths = bag::files_of(path, file)?;
+        let paths = files_of(path, file)?;
         let topics = topics_of(&paths)?;
         let topic = chosen(file, &topics, wanted.topic)?.clone();
         let (mut signals, mut times) = (Vec::new(), Vec::new());
@@ -301,7 +304,7 @@ pub(in crate::recording) fn survey(
     file: &str,
     topic: Option<&str>,
 ) -> Result<Survey, RecordingError> {
-    let paths = bag::files_of(path, file)?;
+    let paths = files_of(path, file)?;
     let topics = topics_of(&paths)?;
     let fits = |t: &&Topic| Kind::of(&t.kind).is_some() && t.encoding == "cdr" && t.count > 0;
     let found: Vec<&Topic> = topics.iter().filter(fits).collect();
