@@ -4,7 +4,7 @@ use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{Identified, NamedParameter};
 use dynid_runtime::report::{Page, percent, significant};
 
-use super::parameters::{Prior, parameters};
+use super::parameters::{Prior, parameters, relations};
 use super::provenance::provenance;
 use super::residuals::residuals;
 use super::torques::torques;
@@ -43,6 +43,7 @@ pub fn page(recorded: &Recorded, told: Told<'_>) -> String {
          value ± 1.96 sigma contains the truth in 95 of 100 recordings. The white one is for errors that are independent from \
          row to row.",
     );
+    page.details("What is regrouped into each base parameter", |page| relations(page, robot));
     more_of_parameters(&mut page, identified);
     page.heading("Torques, measured and predicted");
     torques(&mut page, told.compared);

@@ -29,7 +29,7 @@ impl Prior {
     }
 }
 
-/// The whole table: values with what is known of them, what was known beforehand, and what is regrouped into each.
+/// The whole table: values with what is known of them, and what was known beforehand.
 pub(super) fn parameters(page: &mut Page, robot: &Robot, found: &[NamedParameter], prior: Option<&Prior>) {
     let has_white = found.iter().any(|p| p.sigma_white.is_some());
     let has_prior_sigma = prior.is_some_and(|p| p.values.iter().flatten().any(|(_, sigma)| sigma.is_some()));
@@ -37,7 +37,7 @@ pub(super) fn parameters(page: &mut Page, robot: &Robot, found: &[NamedParameter
     header.extend(has_white.then_some("sigma, white"));
     header.extend(prior.map(|p| p.name));
     header.extend(has_prior_sigma.then_some("its sigma"));
-    header.extend(["<unit", "<what is regrouped into it"]);
+    header.push("<unit");
     let row = |p: &NamedParameter| {
         let at = robot.base.iter().position(|b| b.name == p.name);
         let known = prior.and_then(|prior| *prior.values.get(at?)?);
@@ -54,9 +54,20 @@ pub(super) fn parameters(page: &mut Page, robot: &Robot, found: &[NamedParameter
         if has_prior_sigma {
             cells.push(number(known.and_then(|k| k.1), 2));
         }
-        let relation = at.map_or_else(String::new, |at| robot.base[at].relation.to_string());
-        cells.extend([unit, if relation == p.name { "-".to_owned() } else { relation }]);
+        cells.push(unit);
         cells
     };
     page.table(&header, &found.iter().map(row).collect::<Vec<_>>());
+}
+
+/// What is regrouped into the base parameters that are more than one standard parameter.
+pub(super) fn relations(page: &mut Page, robot: &Robot) {
+    let regrouped = robot.base.iter().filter(|p| p.relation != p.name);
+    let rows: Vec<Vec<String>> =
+        regrouped.map(|p| vec![p.name.to_string(), p.relation.to_string()]).collect();
+    if rows.is_empty() {
+        page.paragraph("Nothing is regrouped: every base parameter is a standard parameter.");
+    } else {
+        page.table(&["parameter", "<what is regrouped into it"], &rows);
+    }
 }

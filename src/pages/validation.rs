@@ -3,7 +3,7 @@
 use dynid_runtime::model_file::Identified;
 use dynid_runtime::report::{Page, percent};
 
-use super::parameters::parameters;
+use super::parameters::{parameters, relations};
 use super::provenance::provenance;
 use super::residuals::residuals;
 use super::torques::{per_joint, torques};
@@ -25,6 +25,7 @@ pub fn page(
     page.table(&["joint", "relative error"], &per_joint(compared));
     page.details("The parameters of the model", |page| {
         parameters(page, compared.robot, &model.base_parameters, None);
+        relations(page, compared.robot);
     });
     page.heading("Torques, measured and predicted");
     torques(&mut page, compared);

@@ -7,7 +7,7 @@ use super::escape::escape;
 use super::plot::Plot;
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
+const SCRIPT: &str = concat!(include_str!("picture.js"), include_str!("hand.js"));
 
 /// A page that grows from top to bottom. Every text given to it is escaped.
 #[derive(Debug, Clone)]

@@ -87,9 +87,10 @@ impl Plot {
         if self.series.len() > 1 {
             out.push_str("<p class=\"legend\">");
             for series in self.series.iter().filter(|s| !s.label.is_empty()) {
+                let dots = if series.kind == SeriesKind::Points { " dots" } else { "" };
                 let _ = write!(
                     out,
-                    "<span class=\"key {}\">{}</span> ",
+                    "<span class=\"key {}{dots}\">{}</span> ",
                     series.role.class(),
                     escape(&series.label)
                 );

@@ -8,7 +8,7 @@ use super::extras::Extras;
 use super::finding::found;
 use super::forward::forward;
 use crate::errors::noise_words;
-use crate::pages::parameters::parameters;
+use crate::pages::parameters::{parameters, relations};
 use crate::pages::provenance::provenance;
 use crate::pages::residuals::residuals;
 use crate::recorded::titled;
@@ -39,6 +39,7 @@ pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String
         .map_or_else(String::new, |p| format!(", beside those of the {}", prior_words(p.name)));
     page.details(&format!("All {} base parameters{known}", extras.robot.base.len()), |page| {
         parameters(page, &extras.robot, &extras.parameters(diagnosis), extras.prior.as_ref());
+        relations(page, &extras.robot);
     });
     page.heading("How this was done");
     page.paragraph(&format!(
