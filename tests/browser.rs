@@ -22,7 +22,7 @@ fn reports(name: &str) -> Folder {
     let folder = Folder::new(name);
     for words in [
         "simulate planar_2r --out . --motions 2 --period 4 --rate 1000 --record-every 2 --noise 1 --seed 7 --residue 1",
-        "identify recording.yaml --out m.json --report identified.html",
+        "identify recording.yaml --out m.json --report identified.html --residuals rows.csv",
         "validate m.json recording.yaml --report validated.html",
         "diagnose recording.yaml --report diagnosed.html",
     ] {
@@ -93,10 +93,21 @@ fn values_are_shown_under_the_pointer_and_by_keys() {
     for part in ["time", "measured", "predicted", "difference", "N.m"] {
         assert!(words.contains(part), "{words}");
     }
-    // The numbers are those of the file: measured less predicted is the difference.
-    let numbers = browser.run("return [...document.querySelectorAll('.values')[0].querySelectorAll('b')].map(b => parseFloat(b.textContent.replace('\u{2212}', '-')));");
-    let [measured, predicted, difference] = [0, 1, 2].map(|k| numbers[k].as_f64().unwrap());
-    assert!((measured - predicted - difference).abs() < 2e-3 * (1.0 + measured.abs()), "{numbers}");
+    // They are those of the row of that time.
+    let read = "const v = document.querySelector('.values'); const number = e => parseFloat(e.textContent.replace('\u{2212}', '-')
+        .replace('time', '')); return [v.firstChild, ...v.querySelectorAll('b')].map(number);";
+    let shown: Vec<f64> = browser.run(read).as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    let text = std::fs::read_to_string(folder.path("rows.csv")).unwrap();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| names.iter().position(|n| *n == name).unwrap();
+    let rows =
+        text.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect::<Vec<f64>>());
+    let near = |row: &Vec<f64>| row[0] == 1.0 && (row[column("t")] - shown[0]).abs() < 2e-3;
+    let row = rows.into_iter().find(near).unwrap_or_else(|| panic!("no row at {shown:?}"));
+    for (value, name) in shown[1..].iter().zip(["tau1", "predicted_1", "residual1"]) {
+        let truth = row[column(name)];
+        assert!((value - truth).abs() < 1e-3 * truth.abs() + 1e-3, "{name}: {value} for {truth}");
+    }
     browser.run("document.querySelector('figure svg').focus();");
     browser.keys(&["\u{e014}", "\u{e014}", "\u{e014}"]);
     let moved = browser.run(told);
@@ -156,15 +167,21 @@ fn a_page_prints_light_even_where_the_screen_is_dark() {
     let Some(browser) = Browser::start("print", 1280) else { return };
     let folder = reports("print");
     browser.open(&folder.path(PAGES[2]));
-    let paper = "return getComputedStyle(document.body).backgroundColor;";
-    let dark = json!([{"name": "prefers-color-scheme", "value": "dark"}]);
-    browser.devtools("Emulation.setEmulatedMedia", json!({"media": "screen", "features": dark}));
-    assert_ne!(browser.run(paper), json!("rgb(255, 255, 255)"));
-    browser.devtools("Emulation.setEmulatedMedia", json!({"media": "print", "features": dark}));
-    assert_eq!(browser.run(paper), json!("rgb(255, 255, 255)"));
+    let colours = "return [document.body, document.querySelector('.curves .after')].map(e => getComputedStyle(e)) \
+        .map((style, k) => k ? style.color : style.backgroundColor);";
+    let emulate = |media: &str, scheme: &str| {
+        let features = json!([{"name": "prefers-color-scheme", "value": scheme}]);
+        browser.devtools("Emulation.setEmulatedMedia", json!({"media": media, "features": features}));
+        browser.run(colours)
+    };
+    let light = emulate("screen", "light");
+    assert_eq!(light[0], "rgb(255, 255, 255)");
+    let dark = emulate("screen", "dark");
+    assert!(dark[0] != light[0] && dark[1] != light[1], "{dark}");
+    assert_eq!(emulate("print", "dark"), light);
     let tools = "return getComputedStyle(document.querySelector('.tools')).display;";
     assert_eq!(browser.run(tools), json!("none"));
-    browser.devtools("Emulation.setEmulatedMedia", json!({"media": "", "features": dark}));
+    emulate("", "dark");
     let pdf = browser.printed();
     let text = String::from_utf8_lossy(&pdf);
     assert!(pdf.starts_with(b"%PDF") && text.matches("/Type /Page\n").count() >= 2, "{} bytes", pdf.len());

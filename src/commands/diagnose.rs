@@ -24,7 +24,7 @@ use crate::estimated::named;
 use crate::failure::Failure;
 use crate::output::{Bar, print, write, write_json};
 use crate::pages::Prior;
-use crate::pages::diagnosis::{Extras, page, summary};
+use crate::pages::diagnosis::{Extras, Tested, page, summary};
 use crate::provenance::Provenance;
 use crate::recorded::{Measured, left_out_words, measure};
 use crate::saved::read_model;
@@ -123,20 +123,11 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
     };
     let speeds: Vec<SpeedFault> = speeds.into_iter().filter(moves).collect();
     diagnosis.verdict.extend(speed_words(&speeds, robot).iter().map(|words| format!("{}.", capital(words))));
-    let extras = Extras {
-        fitted: fitted(&measured, &diagnosis, &arguments.sampling),
-        tested: match (&test, &arguments.test) {
-            (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
-            _ => None,
-        },
-        forward: simulated(&measured, &diagnosis, arguments.closed_loop),
-        prior: match &arguments.reference {
-            Some(path) => Some(Prior::saved("reference", &read_model(path)?, robot)),
-            None => Prior::nominal(robot),
-        },
-        from: if arguments.report.is_some() { provenance(arguments, words)? } else { Provenance::default() },
-        ..Extras::of(robot)
+    let tested = match (&test, &arguments.test) {
+        (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
+        _ => None,
     };
+    let extras = extras(arguments, words, &measured, &diagnosis, tested)?;
     hand_out(arguments, &measured, &diagnosis, &extras)
 }
 
@@ -169,6 +160,28 @@ fn hand_out(
         write(path, &page(&measured.title, diagnosis, extras, &left_out_words(&measured.rows)))?;
     }
     Ok(())
+}
+
+/// What a report has besides the diagnosis.
+fn extras(
+    arguments: &Arguments,
+    words: &[String],
+    measured: &Measured,
+    diagnosis: &Diagnosis,
+    tested: Option<Tested>,
+) -> Result<Extras, Failure> {
+    let robot = measured.dynamics.model().robot();
+    Ok(Extras {
+        fitted: fitted(measured, diagnosis, &arguments.sampling),
+        tested,
+        forward: simulated(measured, diagnosis, arguments.closed_loop),
+        prior: match &arguments.reference {
+            Some(path) => Some(Prior::saved("reference", &read_model(path)?, robot)),
+            None => Prior::nominal(robot),
+        },
+        from: if arguments.report.is_some() { provenance(arguments, words)? } else { Provenance::default() },
+        ..Extras::of(robot)
+    })
 }
 
 /// What the report says of its files.

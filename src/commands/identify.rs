@@ -5,6 +5,7 @@ mod load;
 mod method;
 mod payload;
 mod physical;
+mod rows;
 mod simulated;
 
 use std::path::{Path, PathBuf};
@@ -14,17 +15,13 @@ use dynid_runtime::estimation::observe::{Equations, Observation};
 use dynid_runtime::estimation::{Estimate, EstimateSettings, Method, estimate};
 use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
-use dynid_runtime::prediction::{Predictor, evaluate, observed_errors, row_states};
+use dynid_runtime::prediction::observed_errors;
 use dynid_runtime::report::{percent, significant};
 
 use crate::arguments::{Sampling, Source};
-use crate::compared::{Compared, residual_file};
-use crate::errors::prediction_failure;
+use crate::compared::residual_file;
 use crate::failure::Failure;
-use crate::output::{print, table, warn, write, write_json};
-use crate::pages::Prior;
-use crate::pages::identification::{Told, page};
-use crate::provenance::Provenance;
+use crate::output::{print, table, write_json};
 use crate::ranges;
 use crate::recorded::{self, Recorded, left_out_words};
 use crate::speeds::{and_of_speeds, speed_words};
@@ -120,56 +117,9 @@ pub(super) fn run(arguments: &Arguments, line: &[String]) -> Result<(), Failure>
         write_json(path, &identified)?;
     }
     if arguments.report.is_some() || arguments.residuals.is_some() {
-        row_by_row(arguments, line, &recorded, whole, &identified)?;
+        rows::write(arguments, line, &recorded, whole, &identified)?;
     }
     Ok(())
-}
-
-/// Writes what shows the torques row by row: the report and the file of residuals.
-fn row_by_row(
-    arguments: &Arguments,
-    line: &[String],
-    recorded: &Recorded,
-    whole: bool,
-    identified: &Identified,
-) -> Result<(), Failure> {
-    let failed = |error| prediction_failure(&arguments.recording.recording, &error);
-    let model = recorded.dynamics.model();
-    let robot = model.robot();
-    let chi = identified.chi(robot).unwrap_or_else(|_| vec![0.0; robot.base.len()]);
-    let predictor = Predictor { chi: &chi, effects: &[], delay: 0.0 };
-    let (motions, settings) = (&recorded.motions, &recorded.settings);
-    let evaluation = evaluate(model, &[predictor], motions, settings, &[]).map_err(failed)?;
-    let states = row_states(model, &chi, motions, settings).map_err(failed)?;
-    let compared = Compared { robot, evaluation: &evaluation, states: &states, models: &["predicted"] };
-    if let Some(path) = &arguments.residuals {
-        if !whole {
-            warn(&format!("{}: the recording is long: only its beginning is in it", path.display()));
-        }
-        compared.write(path, &recorded.joints)?;
-    }
-    if let Some(path) = &arguments.report {
-        let mut from = Provenance::of(line);
-        from.recording(&arguments.recording.recording, arguments.recording.robot.as_deref())?;
-        if let Some(prior) = &arguments.prior {
-            from.file(prior)?;
-        }
-        let prior = prior(arguments, robot)?;
-        let told = Told { identified, compared, whole, prior: prior.as_ref(), from: &from };
-        write(path, &page(recorded, told))?;
-    }
-    Ok(())
-}
-
-/// What was known of the parameters beforehand: the prior that was given, else the nominal values of the robot.
-fn prior(arguments: &Arguments, robot: &Robot) -> Result<Option<Prior>, Failure> {
-    Ok(match &arguments.prior {
-        Some(path) => physical::standard_of(path, robot)?.map(|standard| {
-            let values = robot.base_from_standard(&standard);
-            Prior { name: "prior", values: values.into_iter().map(|v| Some((v, None))).collect() }
-        }),
-        None => Prior::nominal(robot),
-    })
 }
 
 /// Identifies from the observation of the method's equations; the last one is of the torques.

@@ -7,12 +7,17 @@ use crate::provenance::Provenance;
 /// The program, the command line, the files with their fingerprints, and when they were recorded where they say so.
 pub(super) fn provenance(page: &mut Page, from: &Provenance) {
     page.heading("Where this page comes from");
-    page.paragraph(&format!(
-        "dynid {}. The same files and the same words make the same page:",
-        env!("CARGO_PKG_VERSION")
-    ));
-    if let Some(command) = from.command() {
-        page.literal(&command);
+    let version = env!("CARGO_PKG_VERSION");
+    match from.command() {
+        Some(command) => {
+            page.paragraph(&format!(
+                "dynid {version}. The same files and the same words make the same page:"
+            ));
+            page.literal(&command);
+        }
+        None => {
+            page.paragraph(&format!("dynid {version}."));
+        }
     }
     for (name, begun) in &from.recorded {
         page.paragraph(&format!("{name} begins at {begun} by the header stamps of its messages."));
