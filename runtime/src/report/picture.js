@@ -237,8 +237,11 @@ class Picture {
     const scale = picture.width / this.svg.viewBox.baseVal.width;
     const wide = this.values.offsetWidth;
     const beside = across * scale + (across > (left + right) / 2 ? -wide - 12 : 12);
-    this.values.style.left = `${Math.min(Math.max(beside, 0), picture.width - wide)}px`;
-    this.values.style.top = `${picture.top - this.figure.getBoundingClientRect().top + top * scale + 4}px`;
+    const above = picture.top - this.figure.getBoundingClientRect().top;
+    // On a phone, below the picture.
+    const narrow = picture.width < 500;
+    this.values.style.left = `${narrow ? 0 : Math.min(Math.max(beside, 0), picture.width - wide)}px`;
+    this.values.style.top = `${above + (narrow ? picture.height + 2 : top * scale + 4)}px`;
   }
 
   leave() {
