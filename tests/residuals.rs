@@ -78,9 +78,9 @@ fn a_log_of_residuals_is_a_recording_and_holds_what_the_tables_hold() {
         dynid_runtime::recording::load(&manifest, &robot).unwrap().trajectories.remove(0)
     };
     let table = read("table.yaml");
-    assert_eq!(table.torque[1], column(&text, "predicted_2"));
-    let motions = column(&text, "motion");
-    let first = motions.iter().filter(|m| **m == 1.0).count();
+    // Where the second motion begins, the arm is elsewhere: the reader cuts there.
+    let first = column(&text, "motion").iter().filter(|m| **m == 1.0).count();
+    assert_eq!(table.torque[1], column(&text, "predicted_2")[..first]);
     let log = read("log.yaml");
     assert_eq!(log.torque[0], column(&text, "tau1")[..first]);
     assert_eq!(log.position[1], column(&text, "q2")[..first]);
