@@ -61,14 +61,9 @@ impl<'a> Compared<'a> {
         format!("joint {}", joint_number(self.robot, joint))
     }
 
-    /// Whether a joint is prismatic.
-    pub fn is_prismatic(self, joint: usize) -> bool {
-        self.robot.joint_kinds().get(joint) == Some(&JointKind::Prismatic)
-    }
-
-    /// Unit of the torque of a joint.
-    pub fn torque_unit(self, joint: usize) -> &'static str {
-        if self.is_prismatic(joint) { "N" } else { "N.m" }
+    /// What kind of joint it is, which says its units.
+    pub fn kind(self, joint: usize) -> JointKind {
+        self.robot.joint_kinds().get(joint).copied().unwrap_or(JointKind::Revolute)
     }
 
     /// Writes states, torques and residuals row by row in the format that the end of the path stands for. `joints` are

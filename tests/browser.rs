@@ -135,7 +135,7 @@ fn a_name_takes_its_curve_away_and_the_choice_changes_the_abscissa_of_the_residu
         }
         return all;";
     let views = browser.run(residual);
-    let names = ["speed, rad/s", "position, rad", "acceleration, rad/s\u{b2}", "load, N.m", "time, s"];
+    let names = ["speed, rad/s", "position, rad", "acceleration, rad/s2", "load, N.m", "time, s"];
     for (k, name) in names.into_iter().enumerate() {
         assert_eq!(views[k][1], name);
         assert!((0..k).all(|other| views[k][2] != views[other][2]), "{name}");

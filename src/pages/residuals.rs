@@ -24,12 +24,12 @@ pub(super) fn residuals(page: &mut Page, compared: Compared<'_>) {
 }
 
 fn variables(compared: Compared<'_>, joint: usize) -> [Variable; 5] {
-    let unit = if compared.is_prismatic(joint) { "m" } else { "rad" };
+    let kind = compared.kind(joint);
     [
-        (format!("speed, {unit}/s"), |_, state, k| state.speed[k]),
-        (format!("position, {unit}"), |_, state, k| state.position[k]),
-        (format!("acceleration, {unit}/s²"), |_, state, k| state.acceleration[k]),
-        (format!("load, {}", compared.torque_unit(joint)), |_, state, k| state.load[k]),
+        (format!("speed, {}", kind.speed_unit()), |_, state, k| state.speed[k]),
+        (format!("position, {}", kind.position_unit()), |_, state, k| state.position[k]),
+        (format!("acceleration, {}", kind.acceleration_unit()), |_, state, k| state.acceleration[k]),
+        (format!("load, {}", kind.torque_unit()), |_, state, k| state.load[k]),
         (Plot::TIME.to_owned(), |rows, _, k| rows.time[k]),
     ]
 }
@@ -50,7 +50,7 @@ fn plot(compared: Compared<'_>, joint: usize) -> Plot {
     };
     let [first, others @ ..] = &variables(compared, joint);
     let title = capital(&compared.joint(joint));
-    let mut plot = Plot::new(title, &first.0, format!("residual, {}", compared.torque_unit(joint)));
+    let mut plot = Plot::new(title, &first.0, format!("residual, {}", compared.kind(joint).torque_unit()));
     for (k, points) in over(first).into_iter().enumerate() {
         let model = k % models;
         let (label, role, mean) = match models {

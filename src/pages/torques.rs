@@ -23,7 +23,7 @@ fn plot(compared: Compared<'_>, rows: &JointRows) -> Plot {
     if compared.evaluation.trajectories.len() > 1 {
         title.push_str(&format!(", {}", compared.evaluation.trajectories[rows.trajectory]));
     }
-    Plot::new(title, Plot::TIME, format!("torque, {}", compared.torque_unit(rows.joint)))
+    Plot::new(title, Plot::TIME, format!("torque, {}", compared.kind(rows.joint).torque_unit()))
         .with("measured", Role::Measured, SeriesKind::Line, curve(&|k| rows.measured[k]))
         .with("predicted", Role::After, SeriesKind::Line, curve(&|k| predicted[k]))
         .with("difference", Role::Law, SeriesKind::Line, curve(&|k| rows.measured[k] - predicted[k]))
