@@ -1,6 +1,7 @@
 //! `dynid diagnose REC`: which physics is missing, where, and does adding it help on held-out motion?
 
 pub mod compare;
+mod extras;
 pub mod mistakes;
 mod reference;
 
@@ -23,14 +24,11 @@ use crate::errors::prediction_failure;
 use crate::estimated::named;
 use crate::failure::Failure;
 use crate::output::{Bar, print, write, write_json};
-use crate::pages::Prior;
-use crate::pages::diagnosis::{Extras, Tested, page, summary};
-use crate::provenance::Provenance;
+use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
-use crate::saved::read_model;
 use crate::speeds::{and_of_speeds, speed_words};
 use crate::words::capital;
-use compare::{Test, fitted, tested};
+use compare::{Test, tested};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
@@ -127,7 +125,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
         (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
         _ => None,
     };
-    let extras = extras(arguments, words, &measured, &diagnosis, tested)?;
+    let extras = extras::of(arguments, words, &measured, &diagnosis, tested)?;
     hand_out(arguments, &measured, &diagnosis, &extras)
 }
 
@@ -160,41 +158,6 @@ fn hand_out(
         write(path, &page(&measured.title, diagnosis, extras, &left_out_words(&measured.rows)))?;
     }
     Ok(())
-}
-
-/// What a report has besides the diagnosis.
-fn extras(
-    arguments: &Arguments,
-    words: &[String],
-    measured: &Measured,
-    diagnosis: &Diagnosis,
-    tested: Option<Tested>,
-) -> Result<Extras, Failure> {
-    let robot = measured.dynamics.model().robot();
-    Ok(Extras {
-        fitted: fitted(measured, diagnosis, &arguments.sampling),
-        tested,
-        forward: simulated(measured, diagnosis, arguments.closed_loop),
-        prior: match &arguments.reference {
-            Some(path) => Some(Prior::saved("reference", &read_model(path)?, robot)),
-            None => Prior::nominal(robot),
-        },
-        from: if arguments.report.is_some() { provenance(arguments, words)? } else { Provenance::default() },
-        ..Extras::of(robot)
-    })
-}
-
-/// What the report says of its files.
-fn provenance(arguments: &Arguments, words: &[String]) -> Result<Provenance, Failure> {
-    let mut from = Provenance::of(words);
-    let source = &arguments.recording;
-    for path in [Some(&source.recording), arguments.baseline.as_ref(), arguments.test.as_ref()] {
-        path.map_or(Ok(()), |path| from.recording(path, source.robot.as_deref()))?;
-    }
-    for path in [&arguments.reference, &arguments.laws] {
-        path.as_ref().map_or(Ok(()), |path| from.file(path))?;
-    }
-    Ok(from)
 }
 
 /// Another recording, where it is one of the same robot.
