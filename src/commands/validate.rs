@@ -62,7 +62,8 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
             from.file(&arguments.model)?;
             from.recording(&arguments.recording.recording, arguments.recording.robot.as_deref())?;
             let heading = heading(model.robot(), &measured.title);
-            let notes = notes(arguments, &identified, &measured, &prepared, &evaluation);
+            let mut notes = notes(arguments, &identified, &measured, &prepared, &evaluation);
+            notes.extend(noise_words(&evaluation));
             write(path, &page(&heading, &identified, compared, &notes, &from))?;
         }
     }
