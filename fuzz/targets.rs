@@ -116,7 +116,12 @@ pub fn mcap(bytes: &[u8]) {
     let log =
         "robot: arm\njoints: [elbow, shoulder]\ntorque: {unit: N.m}\ntrajectories: [{file: rows.mcap}]\n";
     loaded("rows.mcap", bytes, log);
-    looked_at("rows.mcap", bytes);
+    let topic = "/arm_controller/state";
+    let by_fields = log.replace("rows.mcap", &format!("rows.mcap, topic: {topic}"))
+        + "fields: {position: actual.positions, torque: actual.effort}\n";
+    loaded("rows.mcap", bytes, &by_fields);
+    looked_at("rows.mcap", bytes, None);
+    looked_at("rows.mcap", bytes, Some(topic));
 }
 
 /// A Parquet file: columns, and numbers of lists.
@@ -128,15 +133,15 @@ pub fn parquet(bytes: &[u8]) {
         .replace("[q1, q2]", "['observation.state[0]', 'action[1]']")
         .replace("[u1, u2]", "['observation.state[2]', 'action[3]']");
     loaded("rows.parquet", bytes, &lists);
-    looked_at("rows.parquet", bytes);
+    looked_at("rows.parquet", bytes, None);
 }
 
 /// A data file as `look` reads it.
-fn looked_at(file: &str, bytes: &[u8]) {
+fn looked_at(file: &str, bytes: &[u8], topic: Option<&str>) {
     let Ok(folder) = tempfile::tempdir() else { return };
     let path = folder.path().join(file);
     if std::fs::write(&path, bytes).is_ok() {
-        let _ = look(&path, file, None);
+        let _ = look(&path, file, topic);
     }
 }
 

@@ -37,6 +37,8 @@ range!("control samples a row", record_every, RECORD_EVERY: usize, 1 to 1000000)
 range!("a factor on noise", noise, NOISE: f64, 0.0 to 1e4);
 range!("a step of encoders, rad or m", quantum, QUANTUM: f64, 0.0 to 1.0);
 range!("a size of physics beyond the model", size, SIZE: f64, 0.0 to 100.0);
+range!("a gain, N.m or N per unit", gain, GAIN: f64, -1e9 to 1e9);
+range!("a largest torque of a law, N.m or N", law_size, LAW_SIZE: f64, 1e-6 to 1e6);
 range!("a stiffness, N.m/rad or N/m", stiffness, STIFFNESS: f64, 1e-3 to 1e12);
 range!("a damping, N.m.s/rad or N.s/m", damping, DAMPING: f64, 0.0 to 1e9);
 range!("a play, rad or m", play, PLAY: f64, 0.0 to 10.0);

@@ -6,7 +6,7 @@ use dynid_codegen::base::base_set;
 use dynid_codegen::numeric_robot;
 use dynid_codegen::robot::parse_with_warnings;
 use dynid_runtime::model::{Model, RecursiveModel, Robot};
-use dynid_runtime::recording::nearest;
+use dynid_runtime::recording::meant;
 use dynid_runtime::regular_file;
 use dynid_urdf::ImportOptions;
 
@@ -118,8 +118,7 @@ pub fn read(path: &Path) -> Result<Robot, Failure> {
 
 fn unknown(name: &str) -> Failure {
     let known: Vec<String> = models::all().iter().map(|m| m.robot().name.to_string()).collect();
-    let meant = nearest(name, known.iter().map(String::as_str));
-    let meant = meant.map_or_else(String::new, |meant| format!(" (did you mean '{meant}'?)"));
+    let meant = meant(name, known.iter().map(String::as_str));
     Failure::Input(format!(
         "there is no robot '{name}'{meant}: known are {}; or give the path of a robot YAML or a URDF",
         known.join(", ")

@@ -35,6 +35,20 @@ impl Known {
     }
 }
 
+impl Known {
+    /// That there are as many gains as the robot has joints, where both are known.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn check_gains(&self, gains: &[f64]) -> Result<(), String> {
+        match self.kinds.len() {
+            0 => Ok(()),
+            joints if gains.is_empty() || gains.len() == joints => Ok(()),
+            joints => Err(format!("--gain has {} numbers, but the robot has {joints} joints", gains.len())),
+        }
+    }
+}
+
 /// Names that the joints of a robot have in its URDF; `None` for another robot.
 ///
 /// # Errors
@@ -78,11 +92,11 @@ pub struct Start {
     pub wrong: Vec<String>,
 }
 
-/// A recording YAML for a data file, to be written to `place.1`, with `unit` as that of the torques.
+/// A recording YAML for a data file, to be written to `place.1`, with what is known of the torques.
 pub fn recording_yaml(
     contents: &Contents,
     known: &Known,
-    unit: Option<&str>,
+    given: Torques<'_>,
     place: (&Path, Option<&Path>),
 ) -> Start {
     let (data, out) = place;
@@ -102,16 +116,18 @@ pub fn recording_yaml(
     lines.push(format!("title: {}", quoted(&name)));
     let names: Vec<String> = contents.signals.iter().map(|signal| signal.name.clone()).collect();
     let found = channels(&names);
-    let log = is_log(data);
+    // Signals of messages that do not tell of joints are columns.
+    let log = is_log(data) && !names.iter().any(|name| name.ends_with(']'));
     if log {
         lines.extend(of_log(contents, known, &found, &mut start));
     } else {
         lines.extend(of_table(contents, known, &found, &mut start));
     }
     let columns = if log { String::new() } else { columns(&in_order(&found.torque, known, &found)) };
-    lines.push(torque(&columns, known, unit.or(if found.current { Some("A") } else { None }), &mut start));
+    let given = Torques { unit: given.unit.or(found.current.then_some("A")), ..given };
+    lines.push(torque(&columns, known, given, &mut start));
     lines.push("trajectories:".into());
-    let topic = contents.topic.as_ref().filter(|_| log);
+    let topic = contents.topic.as_ref();
     let topic = topic.map_or_else(String::new, |topic| format!(", topic: {}", quoted(topic)));
     let reference = beside(data, out);
     let reference = reference.strip_prefix("./").unwrap_or(&reference);
@@ -234,17 +250,30 @@ fn in_order(names: &[String], known: &Known, found: &Channels) -> Vec<String> {
     }
 }
 
-fn torque(columns: &str, known: &Known, unit: Option<&str>, start: &mut Start) -> String {
+/// What is known of the torques: their unit, and the gains of units that need them.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Torques<'a> {
+    /// Their unit.
+    pub unit: Option<&'a str>,
+    /// N.m, N, per unit of each joint; empty where it is not known.
+    pub gain: &'a [f64],
+}
+
+fn torque(columns: &str, known: &Known, given: Torques<'_>, start: &mut Start) -> String {
     let separator = if columns.is_empty() { "" } else { ", " };
-    let Some(unit) = unit else {
+    let Some(unit) = given.unit else {
         start.open.push("`torque` has no unit: N.m, or A with a `gain` (--unit)".into());
         return format!("torque: {{{columns}}}  # unit: N.m, or unit: A and gain: [N.m per A of each joint]");
     };
     let raw = matches!(unit, "A" | "mA" | "V" | "%" | "count" | "1");
+    if raw && !given.gain.is_empty() {
+        let gain: Vec<String> = given.gain.iter().map(ToString::to_string).collect();
+        return format!("torque: {{{columns}{separator}unit: {unit}, gain: [{}]}}", gain.join(", "));
+    }
     if raw {
-        start.open.push(format!("`torque` needs a `gain`: N.m per {unit} of each joint"));
+        start.open.push(format!("`torque` needs a `gain`: N.m per {unit} of each joint (--gain)"));
         return format!(
-            "torque: {{{columns}{separator}unit: {unit}}}  # and gain: [N.m per {unit} of each joint]"
+            "torque: {{{columns}{separator}unit: {unit}}}  # to be filled in: , gain: [N.m per {unit} of each joint]}}"
         );
     }
     let of = |kind: &JointKind| if *kind == JointKind::Prismatic { "N" } else { unit };

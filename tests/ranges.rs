@@ -78,7 +78,9 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, joints of the robot, and a seed, which may be any.
-const OTHERS: [&str; 31] = [
+const OTHERS: [&str; 33] = [
+    "--svg",
+    "--effect",
     "--format",
     "--loaded",
     "--payload",

@@ -245,3 +245,41 @@ fn official_packages_read_what_is_written() {
     let output = Command::new(python).arg("check.py").current_dir(&folder.0).output().unwrap();
     assert!(output.status.success(), "{}", error_of(&output));
 }
+
+#[test]
+fn gains_that_are_given_stand_in_the_yaml_and_others_have_a_place_to_be_filled_in() {
+    let folder = Folder::new("gains");
+    folder.write("m.csv", "t,q1,q2,i1,i2\n0,0,0,1,2\n0.01,0.1,0.2,2,1\n0.02,0.2,0.1,1,1\n");
+    let looked = words_of(&done(&folder, "look m.csv --robot planar_2r --unit A --gain 11.5,-7 --out -"));
+    assert!(looked.contains("columns: [i1, i2], unit: A, gain: [11.5, -7]}"), "{looked}");
+    let without = words_of(&done(&folder, "look m.csv --robot planar_2r --unit A --out -"));
+    assert!(without.contains("# to be filled in: , gain: [N.m per A of each joint]}"), "{without}");
+    let output = run(&folder, "look m.csv --robot planar_2r --unit A --gain 11.5 --out -");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        error_of(&output).contains("--gain has 1 numbers, but the robot has 2 joints"),
+        "{}",
+        error_of(&output)
+    );
+}
+
+#[test]
+fn a_topic_of_any_type_is_looked_at_and_written_as_columns() {
+    let folder = Folder::new("topic");
+    std::fs::copy(data("controller.mcap"), folder.path("log.mcap")).unwrap();
+    let none = words_of(&done(&folder, "look log.mcap"));
+    assert!(none.contains("--topic looks at another one"), "{none}");
+    let look = "look log.mcap --topic /arm_controller/state --robot planar_2r --unit N.m --out r.yaml";
+    let said = words_of(&done(&folder, look));
+    for words in ["actual.positions[elbow]", "actual.effort[shoulder]", "load"] {
+        assert!(said.contains(words), "'{words}' is not in: {said}");
+    }
+    let yaml = std::fs::read_to_string(folder.path("r.yaml")).unwrap();
+    assert!(
+        yaml.contains("position: {columns: [\"actual.positions[elbow]\", \"actual.positions[shoulder]\"]}"),
+        "{yaml}"
+    );
+    assert!(yaml.contains("topic: /arm_controller/state"), "{yaml}");
+    let motions = json_of(&done(&folder, "look r.yaml --json -"));
+    assert_eq!(motions[0]["rows"], 40, "{motions}");
+}

@@ -86,6 +86,28 @@ impl ParameterKind {
         }
     }
 
+    /// What it is, in the middle of a sentence.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            XX => "moment of inertia of the link about x, at the origin of its frame",
+            YY => "moment of inertia about y",
+            ZZ => "moment of inertia about z",
+            XY => "product of inertia, -∫xy dm",
+            XZ => "product of inertia, -∫xz dm",
+            YZ => "product of inertia, -∫yz dm",
+            MX => "first moment, mass times the x of the centre of mass",
+            MY => "first moment along y",
+            MZ => "first moment along z",
+            M => "mass",
+            Ia => "inertia of the rotor, at the joint",
+            Fv => "viscous friction of the joint",
+            Fc => "Coulomb friction of the joint",
+            Off => "constant torque of the joint: what the sensor or the current says where there is none",
+            Fvm => "viscous friction at motor speed, of a motor that several joints turn",
+            Fcm => "Coulomb friction at motor speed",
+        }
+    }
+
     /// SI unit, where the frame that the parameter belongs to moves like this.
     ///
     /// ```

@@ -177,7 +177,7 @@ fn bags_that_are_not_read_are_refused_with_how_to_convert_them() {
 
 #[test]
 fn columns_are_read_from_parquet_files_of_every_codec() {
-    for name in ["snappy", "zstd", "lz4", "none", "pages_v2"] {
+    for name in ["snappy", "zstd", "lz4", "none", "gzip", "brotli", "pages_v2"] {
         let recording = read(&TABLE.replace("FILE", &format!("{name}.parquet"))).unwrap();
         assert_rows(&recording, 0..ROWS, true, name);
     }
@@ -194,6 +194,83 @@ fn stamps_of_nanoseconds_and_narrow_numbers_are_read_and_gaps_are_left_out() {
     let recording = read(&text).unwrap();
     assert_rows(&recording, (0..ROWS).filter(|k| ![7, 8].contains(k)), true, "types");
     assert_eq!((recording.rows.left_out, recording.rows.examples[0].line), (2, 8));
+}
+
+#[test]
+fn a_unit_of_stamps_that_is_not_said_is_that_of_their_type_or_of_their_steps_and_told() {
+    let from_first = |unit: &str| format!("column: t, {unit}from_first_row: true");
+    let with = |file: &str, unit: &str| TABLE.replace("FILE", file).replace("column: t", &from_first(unit));
+    let typed = read(&with("types.parquet", "")).unwrap();
+    assert_rows(&typed, (0..ROWS).filter(|k| ![7, 8].contains(k)), true, "by type");
+    assert!(typed.rows.notes[0].contains("stamps are in ns, by the type"), "{:?}", typed.rows.notes);
+    refused(&with("types.parquet", "unit: ms, "), &["recording.yaml:2:", "in ns", "`unit: ns`"]);
+    let whole = read(&with("whole.parquet", "")).unwrap();
+    assert_rows(&whole, 0..ROWS, true, "by steps");
+    assert!(whole.rows.notes[0].contains("taken as ms (`time: {unit: ms}`"), "{:?}", whole.rows.notes);
+    let said = read(&with("whole.parquet", "unit: ms, ")).unwrap();
+    assert_rows(&said, 0..ROWS, true, "said");
+    assert!(said.rows.notes.is_empty(), "{:?}", said.rows.notes);
+    let seconds = read(&with("whole.parquet", "unit: s, ")).unwrap();
+    assert!((seconds.trajectories[0].time[1] - 10.0).abs() < 1e-9, "what is said holds");
+}
+
+#[test]
+fn messages_of_any_type_are_read_by_the_fields_of_their_definition() {
+    let fields = "fields: {position: actual.positions, velocity: actual.velocities, torque: actual.effort}\n";
+    let log = LOG.replace("FILE", "controller.mcap, topic: /arm_controller/state") + fields;
+    assert_rows(&read(&log).unwrap(), 0..ROWS, false, "fields");
+    assert_rows(&read(&format!("{log}velocity: {{unit: rad/s}}\n")).unwrap(), 0..ROWS, true, "with speeds");
+    let by_place = "robot: arm\ntime: {column: header.stamp}\ntorque: {columns: ['actual.effort[elbow]', \
+        'actual.effort[shoulder]'], unit: N.m}\nposition: {columns: ['actual.positions[elbow]', 'actual.positions[shoulder]']}\n\
+        trajectories: [{file: controller.mcap, topic: /arm_controller/state}]\n";
+    assert_rows(&read(by_place).unwrap(), 0..ROWS, false, "columns");
+    let scalar =
+        by_place.replace("'actual.effort[elbow]'", "load").replace("'actual.effort[shoulder]'", "'flags[1]'");
+    let recording = read(&scalar).unwrap();
+    let torque = &recording.trajectories[0].torque;
+    assert_eq!((torque[0][24], torque[1][24]), (3.0, 2.0));
+}
+
+#[test]
+fn fields_that_are_not_there_are_told_with_those_that_are() {
+    let log = LOG.replace("FILE", "controller.mcap, topic: /arm_controller/state");
+    let fields = |text: &str| format!("{log}fields: {{{text}}}\n");
+    let good = "position: actual.positions, torque: actual.effort";
+    refused(
+        &log,
+        &["JointTrajectoryControllerState", "`fields: {position:", "look FILE --topic /arm_controller/state"],
+    );
+    let by_name = log
+        .replace("joints: [elbow, shoulder]", "time: {column: header.stamp}")
+        .replace("{unit: N.m}", "{columns: [a.b, load]}")
+        + "position: {columns: [load, load]}\n";
+    refused(&by_name, &["`a.b`: there is no field `a`", "actual.positions[]", "load"]);
+    refused(
+        &log.replace(", topic: /arm_controller/state", ""),
+        &["no topic holds JointState", "/arm_controller/state"],
+    );
+    refused(
+        &fields(&good.replace("positions", "position")),
+        &["there is no field `position`", "did you mean `positions`"],
+    );
+    refused(&fields(&good.replace("actual.effort", "load")), &["`load` is one number"]);
+    refused(
+        &fields(good).replace("[elbow,", "[elbov,"),
+        &["no joint `elbov`", "did you mean `elbow`", "shoulder"],
+    );
+    refused(
+        &fields(&format!("{good}, names: header.frame_id")),
+        &["there is no list of names (header.frame_id)"],
+    );
+    refused(&(fields(good) + "velocity: {unit: rad/s}\n"), &["recording.yaml:5:", "fields", "no path to it"]);
+    refused(
+        &TABLE.replace("FILE", "zstd.mcap").replace("torque", "fields: {position: a, torque: b}\ntorque"),
+        &["fields", "joints"],
+    );
+    refused(
+        &fields("position: desired.positions, torque: actual.accelerations"),
+        &["`actual.accelerations[elbow]` is in none of 40"],
+    );
 }
 
 #[test]
@@ -219,7 +296,6 @@ fn what_a_parquet_file_lacks_is_told_with_what_it_has() {
     let with = |from: &str, to: &str| TABLE.replace("FILE", "types.parquet").replace(from, to);
     refused(&with("dq2", "dq3"), &["`dq3`", "did you mean", "t, q1, q2, dq1"]);
     refused(&with("dq2", "task"), &["`task`", "texts"]);
-    refused(&TABLE.replace("FILE", "gzip.parquet"), &["GZIP", "snappy, zstd"]);
     refused(&TABLE.replace("FILE", "none.parquet").replace("columns: [q1, q2]", "columns: [1, 77]"), &["77"]);
     let folder = std::env::temp_dir().join(format!("dynid-no-parquet-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();

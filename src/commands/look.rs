@@ -10,8 +10,9 @@ use serde::Serialize;
 use crate::arguments::Source;
 use crate::failure::Failure;
 use crate::output::{print, table, warn, write, write_json};
+use crate::ranges;
 use crate::recorded::{heading, left_out_words, measure, recording_failure};
-use crate::start::{Known, Start, recording_yaml};
+use crate::start::{Known, Start, Torques, recording_yaml};
 
 /// What to look at.
 #[derive(Debug, Args)]
@@ -27,6 +28,16 @@ pub(super) struct Arguments {
     /// Unit of the torques: N.m, or A for currents (files do not say it)
     #[arg(long)]
     unit: Option<String>,
+    /// Of torques in a drive's own unit: N.m, or N, per unit of each joint, with commas
+    #[arg(
+        long,
+        value_delimiter = ',',
+        requires = "unit",
+        allow_negative_numbers = true,
+        value_parser = ranges::gain,
+        value_name = ranges::GAIN,
+    )]
+    gain: Vec<f64>,
     /// Where a recording YAML to start from is written; `-` is standard output
     #[arg(long)]
     out: Option<PathBuf>,
@@ -57,7 +68,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let contents = look(&arguments.file, &shown, arguments.topic.as_deref()).map_err(recording_failure)?;
     let known = Known::of(arguments.robot.as_deref(), arguments.out.as_deref())?;
     let place = (arguments.file.as_path(), arguments.out.as_deref());
-    let Start { text, open, wrong } = recording_yaml(&contents, &known, arguments.unit.as_deref(), place);
+    known.check_gains(&arguments.gain).map_err(Failure::Input)?;
+    let given = Torques { unit: arguments.unit.as_deref(), gain: &arguments.gain };
+    let Start { text, open, wrong } = recording_yaml(&contents, &known, given, place);
     if let Some(path) = &arguments.json {
         write_json(path, &Found { contents: &contents, recording: &text, open: &open })?;
     }

@@ -3,6 +3,7 @@
 mod challenge;
 mod demo;
 pub mod diagnose;
+mod effects;
 mod excite;
 mod export;
 mod identify;
@@ -38,6 +39,8 @@ enum Command {
     Demo(demo::Arguments),
     /// List the robots that have generated models
     Robots,
+    /// List the effects that a diagnosis looks for, or tell what one of them is
+    Effects(effects::Arguments),
     /// Search motions that make a robot's parameters observable
     Excite(excite::Arguments),
     /// Write a robot or an identified model as C, Rust without std, URDF or MJCF
@@ -114,6 +117,7 @@ fn execute(command: Command, words: &[String]) -> Result<(), Failure> {
     match command {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Robots => robots::run(),
+        Command::Effects(arguments) => effects::run(&arguments),
         Command::Excite(arguments) => excite::run(&arguments),
         Command::Paper(arguments) => paper::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

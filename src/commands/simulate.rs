@@ -1,5 +1,6 @@
 //! `dynid simulate MODEL|ROBOT`: a closed loop, written as a recording.
 
+mod effect;
 mod elastic;
 mod robot;
 
@@ -22,6 +23,7 @@ use crate::recording_files::{RobotReference, write_recording};
 use crate::robots::{Dynamics, read_yaml, resolve};
 use crate::saved::own_dynamics;
 use crate::start::{joint_names, numbered};
+use effect::{hidden_law, words};
 use robot::{Parameters, missing, parameters, plant, saved_model};
 
 /// What to simulate, and where to put it.
@@ -103,6 +105,10 @@ pub(super) struct Arguments {
         value_name = ranges::SIZE,
     )]
     ripple: f64,
+    /// Law of a joint that is added, ID:JOINT or ID:JOINT:SIZE: an id of `dynid effects`, and its largest torque in an
+    /// ordinary motion, N.m or N, 1e-6..1e6 [default: half of the joint's Coulomb friction]; may be repeated
+    #[arg(long, value_name = "ID:JOINT[:SIZE]")]
+    effect: Vec<String>,
     /// Elastic joint: JOINT:STIFFNESS[:DAMPING[:PLAY]], SI, stiffness 1e-3..1e12, damping 0..1e9, play 0..10; may be
     /// repeated
     #[arg(long)]
@@ -158,7 +164,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(law) = terms.iter().filter_map(|t| t.place.law()).find(|law| law.is_of_acceleration()) {
         return Err(Failure::Input(of_acceleration(&arguments.robot, law)));
     }
-    let world = World::from_base(model, &chi).with(terms);
+    let hidden =
+        arguments.effect.iter().map(|text| hidden_law(model, &chi, text)).collect::<Result<Vec<_>, _>>()?;
+    hidden.iter().for_each(|term| print(&format!("Added: {}", words(term))));
+    let world = World::from_base(model, &chi).with(terms).with(&hidden);
     for id in world.left_out_ids() {
         print(&format!("{id} is in the model, but is not simulated"));
     }

@@ -86,9 +86,11 @@ pub fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), Fai
     write(path, &text)
 }
 
-/// True where progress may be drawn: a person is watching.
+/// True where progress may be drawn: a person is watching, and has not asked for a terminal without control codes
+/// (<https://no-color.org>), which a bar is drawn with.
 pub fn watched() -> bool {
-    std::io::stderr().is_terminal()
+    let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    std::io::stderr().is_terminal() && !plain
 }
 
 /// A progress bar on standard error; silent where nobody watches.

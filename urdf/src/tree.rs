@@ -63,23 +63,10 @@ impl Urdf {
     /// # Errors
     /// Links that are not there, a tip that is not beyond the base, joints of which there is no table.
     pub(crate) fn tree(&self, base: Option<&str>, tip: Option<&str>) -> Result<Tree, Vec<Mistake>> {
-        let found = |name: &str, what: &str| {
-            self.links.iter().position(|link| link.name == name).ok_or_else(|| {
-                let known: Vec<String> = self.links.iter().take(12).map(|link| shown(&link.name)).collect();
-                let more = if self.links.len() > 12 { ", ..." } else { "" };
-                let place = self.links[self.root].place;
-                let words = format!(
-                    "there is no link '{}' for {what}: links are {}{more}",
-                    shown(name),
-                    known.join(", ")
-                );
-                vec![Mistake::new(place, words)]
-            })
-        };
-        let base = base.map_or(Ok(self.root), |name| found(name, "--base"))?;
+        let base = base.map_or(Ok(self.root), |name| self.link_named(name, "--base"))?;
         let mut moves = vec![tip.is_none(); self.joints.len()];
         if let Some(name) = tip {
-            self.path(base, found(name, "--tip")?)?.into_iter().for_each(|j| moves[j] = true);
+            self.path(base, self.link_named(name, "--tip")?)?.into_iter().for_each(|j| moves[j] = true);
         }
         let mut tree = Tree { base, bodies: Vec::new(), held: Vec::new() };
         let mut mistakes = Vec::new();
@@ -123,6 +110,21 @@ impl Urdf {
         mistakes.extend(self.left_behind(&tree));
         tree.held.sort_unstable();
         if mistakes.is_empty() { Ok(self.in_order(tree)) } else { Err(mistakes) }
+    }
+
+    /// The link with a name; `what` it is wanted for.
+    fn link_named(&self, name: &str, what: &str) -> Result<usize, Vec<Mistake>> {
+        self.links.iter().position(|link| link.name == name).ok_or_else(|| {
+            let known: Vec<String> = self.links.iter().take(12).map(|link| shown(&link.name)).collect();
+            let more = if self.links.len() > 12 { ", ..." } else { "" };
+            let place = self.links[self.root].place;
+            let words = format!(
+                "there is no link '{}' for {what}: links are {}{more}",
+                shown(name),
+                known.join(", ")
+            );
+            vec![Mistake::new(place, words)]
+        })
     }
 
     /// Joints from the base to the tip.

@@ -88,6 +88,7 @@ mod explanation;
 mod judging;
 mod motions;
 mod outcome;
+mod portrait;
 mod predict;
 mod preparation;
 mod pushes;
@@ -107,6 +108,7 @@ pub use outcome::{
     OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
     Standing, StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
+pub use portrait::{Portrait, imitators, portrait};
 pub use predict::{joint_scales, term_torques};
 pub use reference::{NoReference, Reference};
 pub use settings::{Progress, Settings, Silent};

@@ -128,6 +128,20 @@ impl EffectKind {
         self.properties().sought == Sought::OnlyAgainstBaseline
     }
 
+    /// Laws that imitate it: the simpler ones that it must be told from, those that must be told from it, and those that
+    /// the same variable reveals.
+    pub fn imitators(self) -> Vec<Self> {
+        let of_robot = |kind: &Self| !matches!(kind.form(), Form::Window | Form::Free);
+        let near = |other: &Self| {
+            let same = other.words().revealed_by == self.words().revealed_by
+                && other.properties().abscissa == self.properties().abscissa;
+            same && of_robot(other) && of_robot(&self)
+                || self.special_cases().any(|k| k == *other)
+                || other.special_cases().any(|k| k == self)
+        };
+        Self::ALL.into_iter().filter(|other| *other != self && near(other)).collect()
+    }
+
     /// The simpler laws that it must be told from (backlash with zero gap is elasticity).
     pub fn special_cases(self) -> impl Iterator<Item = Self> {
         let effects = self.properties().special_case.map_or(&[][..], |case| case.effects);

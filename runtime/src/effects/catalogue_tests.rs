@@ -158,6 +158,25 @@ fn sentences_and_formulas_have_all_of_their_numbers() {
 }
 
 #[test]
+fn every_quantity_and_every_name_of_a_formula_has_a_meaning() {
+    for kind in EffectKind::ALL {
+        let words = kind.words();
+        assert!(words.put_in.len() > 10, "{}", words.id);
+        assert!(words.symbols.iter().all(|(name, what)| !name.is_empty() && what.len() > 3), "{}", words.id);
+        for (place, _, shapes) in everywhere(kind) {
+            for shape in shapes {
+                let q = made_up(kind, place, &shape);
+                for name in q.names() {
+                    assert!(!words.meaning(name).is_empty(), "{}: {name}", words.id);
+                }
+                let formula = kind.effect().formula(&q.by_name());
+                assert!(!formula.contains("0.5"), "{}: '{formula}' has a number", words.id);
+            }
+        }
+    }
+}
+
+#[test]
 fn every_law_of_a_joint_fills_its_columns() {
     let at = At {
         time: 0.7,

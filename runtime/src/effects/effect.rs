@@ -42,6 +42,26 @@ pub struct Words {
     pub experiment: &'static str,
     /// Literature.
     pub source: &'static str,
+    /// What the names of its quantities, and other symbols of its formula, mean; those of the motion (q, dq, ddq) mean
+    /// the same in all formulas.
+    pub symbols: &'static [(&'static str, &'static str)],
+    /// How it is put into a simulated robot or a recording.
+    pub put_in: &'static str,
+}
+
+impl Words {
+    /// What a name of its quantities means; quantities that are counted (`amplitude_2`, `p3`) have the meaning of the
+    /// first. Empty where there is none of this name.
+    pub fn meaning(&self, name: &str) -> &'static str {
+        let plain = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let same = |known: &str| {
+            known == name || known.trim_end_matches('1') == plain || known == plain.trim_end_matches('_')
+        };
+        let exact = self.symbols.iter().find(|(known, _)| *known == name);
+        exact
+            .or_else(|| self.symbols.iter().find(|(known, _)| same(known)))
+            .map_or("", |(_, meaning)| meaning)
+    }
 }
 
 /// How an effect is looked for and drawn.

@@ -34,6 +34,25 @@ pub enum Form {
 }
 
 impl Form {
+    /// How the torque is made, in one sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Joint(_) => "a torque on the joint, from its own motion and load",
+            Self::Heard(_) => "a torque on the joint, from that of another one",
+            Self::Sensitivity(_) => {
+                "what the torques of the model change by when one of its numbers, or of the recording's, is another one"
+            }
+            Self::Compliance(_) => {
+                "what a link that lags behind its motor takes less or more than a rigid one"
+            }
+            Self::Body(_) => "the torques of inertia and gravity of a rigid body on the link",
+            Self::Coupled => "a torque on both joints that turn the motor",
+            Self::Window => "an outside force on a link, in windows of time",
+            Self::Free => "curves over one or two variables, as splines",
+            Self::User => "a torque on the joint, from the user's formula",
+        }
+    }
+
     /// Everywhere in a robot that such an effect can be.
     pub fn places(self, robot: &Robot) -> Vec<Place> {
         let n = robot.joints();

@@ -24,12 +24,27 @@ impl Parameter {
 
 /// The quantities of one finding, to be put into its sentence and its formula.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Quantities(Vec<Parameter>);
+pub struct Quantities {
+    list: Vec<Parameter>,
+    /// Whether names stand for values.
+    by_name: bool,
+}
 
 impl Quantities {
     /// From a list.
     pub fn new(list: Vec<Parameter>) -> Self {
-        Self(list)
+        Self { list, by_name: false }
+    }
+
+    /// The same quantities written by their names, as for the formula of a law without numbers.
+    #[must_use]
+    pub fn by_name(self) -> Self {
+        Self { by_name: true, ..self }
+    }
+
+    /// Their names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.list.iter().map(|p| p.name.as_str())
     }
 
     /// Whether there is one with this name.
@@ -45,13 +60,16 @@ impl Quantities {
     /// All of them by name: `k1 = 0.31 ± 0.02 N.m, k2 = ...`.
     pub fn all(&self) -> String {
         let each: Vec<String> =
-            self.0.iter().map(|p| format!("{} = {}", p.name, self.text(&p.name))).collect();
+            self.list.iter().map(|p| format!("{} = {}", p.name, self.text(&p.name))).collect();
         each.join(", ")
     }
 
     /// Value and unit: `0.31 N.m`; empty where there is none.
     pub fn value(&self, name: &str) -> String {
-        self.get(name).map_or_else(String::new, |p| format!("{}{}", short(p.value), unit(p)))
+        self.get(name).map_or_else(String::new, |p| match self.by_name {
+            true => p.name.clone(),
+            false => format!("{}{}", short(p.value), unit(p)),
+        })
     }
 
     /// Value, standard deviation where it is known and smaller than the value, and unit: `0.31 ± 0.02 N.m`; empty
@@ -67,7 +85,7 @@ impl Quantities {
     }
 
     fn get(&self, name: &str) -> Option<&Parameter> {
-        self.0.iter().find(|p| p.name == name)
+        self.list.iter().find(|p| p.name == name)
     }
 }
 
@@ -98,6 +116,7 @@ mod tests {
         assert_eq!(q.value("known"), "0.312 N.m");
         assert_eq!(q.text("vague"), "0.312");
         assert_eq!(q.text("missing"), "");
+        assert_eq!(q.clone().by_name().value("known"), "known");
         assert!(q.has("vague") && !q.has("missing"));
     }
 }

@@ -86,6 +86,22 @@ impl BodyEstimate {
     }
 }
 
+/// What the quantities of a body mean.
+pub const BODY_SYMBOLS: &[(&str, &str)] = &[
+    ("mass", "mass of the body"),
+    ("x", "centre of the body along x of the link's frame"),
+    ("y", "the same along y"),
+    ("z", "the same along z"),
+    ("I1", "smallest moment of inertia about the centre"),
+    ("I2", "middle moment of inertia"),
+    ("I3", "largest moment of inertia"),
+    ("moment", "first moment about the axis of the joint, where the mass does not show"),
+    ("direction", "direction of the first moment"),
+    ("inertia", "moment of inertia about that axis"),
+    ("axis", "number of the joint whose axis it is"),
+    ("physically_consistent", "1 where a real body can have these numbers"),
+];
+
 /// What is told of a body in a sentence.
 pub fn body_detail(q: &Quantities) -> String {
     if q.has("moment") {

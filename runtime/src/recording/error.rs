@@ -112,7 +112,7 @@ fn beside(file: &std::path::Path) -> String {
     let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let meant = super::nearest(&stem(&name), stems.iter().map(String::as_str));
     let place = stems.iter().position(|stem| Some(stem.as_str()) == meant);
-    place.map_or_else(String::new, |k| format!(" (did you mean `{}`?)", names[k]))
+    place.map_or_else(String::new, |k| super::names::offered(&names[k]))
 }
 
 /// Files of a folder that are looked at for a name that was meant.

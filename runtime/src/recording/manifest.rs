@@ -30,6 +30,8 @@ pub struct Manifest {
     pub side: Side,
     /// Names that the joints have in logs that name them (MCAP), in the order of the robot's table; may be empty.
     pub joints: Vec<String>,
+    /// Where the signals of these joints are in messages of other types than those that tell of joints.
+    pub fields: Option<MessageFields>,
     /// How the text files are laid out.
     pub layout: Layout,
     /// Where time comes from.
@@ -86,8 +88,8 @@ pub enum Time {
     Column {
         /// The column.
         column: Column,
-        /// Its unit.
-        unit: Unit,
+        /// Its unit; `None` where it is not said: s, or what the type of the column says.
+        unit: Option<Unit>,
         /// Whether the first row is t = 0.
         from_first_row: bool,
         /// The file, where it is not the trajectory's.
@@ -95,6 +97,33 @@ pub enum Time {
     },
     /// Rows are equally spaced, the first at t = 0; Hz.
     Rate(f64),
+}
+
+/// Paths to lists of numbers in the messages of a log, `actual.positions`, whose elements have names.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MessageFields {
+    /// Of the positions.
+    pub position: String,
+    /// Of the velocities, where they are wanted.
+    #[serde(default)]
+    pub velocity: Option<String>,
+    /// Of the torques.
+    pub torque: String,
+    /// Of the names of the elements, where it is none of the usual ones.
+    #[serde(default)]
+    pub names: Option<String>,
+}
+
+impl MessageFields {
+    /// The path of a channel, by its key.
+    pub(super) fn path(&self, quantity: &str) -> Option<&str> {
+        match quantity {
+            "position" => Some(&self.position),
+            "velocity" => self.velocity.as_deref(),
+            _ => Some(&self.torque),
+        }
+    }
 }
 
 /// Columns of one quantity, one per joint.

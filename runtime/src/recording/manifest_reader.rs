@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::RecordingError;
 use super::column::Column;
-use super::manifest::{Channel, Layout, Manifest, Side, Time, Window};
+use super::manifest::{Channel, Layout, Manifest, MessageFields, Side, Time, Window};
 use super::manifest_values::number;
 use super::unit::{Quantity, Unit};
 use crate::regular_file;
@@ -36,6 +36,7 @@ struct Raw {
     side: Side,
     #[serde(default)]
     joints: Vec<String>,
+    fields: Option<MessageFields>,
     #[serde(default)]
     layout: Layout,
     time: Option<RawTime>,
@@ -104,6 +105,7 @@ impl Manifest {
             title: raw.title,
             side: raw.side,
             joints: raw.joints,
+            fields: raw.fields,
             layout: raw.layout,
             time: Time::Rate(0.0),
             position: raw.position.unwrap_or_default(),
@@ -116,7 +118,7 @@ impl Manifest {
             Some(time) => manifest.check_time(time)?,
             None => Time::Column {
                 column: Column::Name(STAMP.into()),
-                unit: Unit::second(),
+                unit: Some(Unit::second()),
                 from_first_row: false,
                 file: None,
             },
@@ -154,8 +156,7 @@ impl Manifest {
                         let message = format!("`{}` is no unit of time, expected one of {wanted}", unit.name);
                         return Err(self.error(&["time", "unit"], &message));
                     }
-                    Some(unit) => unit,
-                    None => Unit::second(),
+                    unit => unit,
                 };
                 let from_first_row = raw.from_first_row.unwrap_or(false);
                 Ok(Time::Column { column, unit, from_first_row, file: raw.file })
@@ -165,6 +166,11 @@ impl Manifest {
 
     /// Columns where no joints are named, and joints as they must be.
     fn check_channels(&self) -> Result<(), RecordingError> {
+        if self.fields.is_some() && self.joints.is_empty() {
+            let message =
+                "`fields` say where the signals of `joints` are: name the joints as the messages do";
+            return Err(self.error(&["fields"], message));
+        }
         if self.joints.is_empty() {
             let channels = ["position", "velocity", "torque"];
             let without =

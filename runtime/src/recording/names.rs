@@ -17,9 +17,14 @@ pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Op
     best.filter(|(score, _)| *score >= SIMILAR).map(|(_, name)| name)
 }
 
-/// " (did you mean `...`?)", or nothing.
-pub(super) fn meant<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(wanted, names).map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
+/// " (did you mean `...`?)" with the name most like `wanted`, or nothing.
+pub fn meant<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(wanted, names).map_or_else(String::new, offered)
+}
+
+/// A name that is offered for another one.
+pub(super) fn offered(name: &str) -> String {
+    format!(" (did you mean `{name}`?)")
 }
 
 /// Names one after another, the first forty, each at most forty characters.

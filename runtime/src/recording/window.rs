@@ -43,6 +43,8 @@ impl Open {
         let torque = files.channel(&manifest.torque, "torque", "effort")?;
         let clock = files.clock()?;
         let sources = files.open()?;
+        let mut report = RowReport::default();
+        let clock = clock.of_types(manifest, &sources, &mut report.notes)?;
         Ok(Self {
             name: name_of(manifest, window),
             sources,
@@ -56,7 +58,7 @@ impl Open {
             rows_read: 0,
             last_time: f64::NEG_INFINITY,
             inside: window.from.is_none(),
-            report: RowReport::default(),
+            report,
             motions: 0,
         })
     }
@@ -115,6 +117,7 @@ impl Open {
     }
 
     fn take_block(&mut self, conversions: &Conversions, piece: &mut Piece, count: usize) {
+        self.clock.settle(&self.sources, &mut self.report.notes);
         let time = self.clock.times(&self.sources, self.rows_read, count);
         let runs = self.runs_inside(&time);
         let lines = &self.sources[self.position[0].0].1.lines;

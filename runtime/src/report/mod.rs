@@ -10,6 +10,7 @@
 //! assert!(page.to_html().contains("<svg"));
 //! ```
 
+mod alone;
 mod axis;
 mod escape;
 mod html;
@@ -20,6 +21,7 @@ mod series;
 mod sheet;
 mod thin;
 
+pub use alone::alone;
 pub use escape::escape;
 pub use html::Page;
 pub use numbers::{falls_or_rises, percent, significant};

@@ -78,12 +78,14 @@ pub enum SimulationError {
         found: f64,
     },
     /// A robot without limits.
-    #[error("{robot} has no {what} limits: give them under `limits:` in its YAML")]
+    #[error("{}", without_limits(robot, missing, *joints))]
     NoLimits {
         /// The robot.
         robot: String,
-        /// Which limits.
-        what: &'static str,
+        /// Which limits: keys of `limits:`.
+        missing: Vec<&'static str>,
+        /// Its joints.
+        joints: usize,
     },
     /// A motion whose torque stays above the limits however slow it is.
     #[error(
@@ -101,4 +103,21 @@ pub enum SimulationError {
         /// The robot.
         robot: String,
     },
+}
+
+/// Which limits a robot lacks, and what is to be written where.
+fn without_limits(robot: &str, missing: &[&'static str], joints: usize) -> String {
+    let names = match missing {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    };
+    let numbers = (1..=joints).map(|j| format!("joint {j}")).collect::<Vec<_>>().join(", ");
+    let keys: Vec<String> = missing.iter().map(|key| format!("{key}: [<{numbers}>]")).collect();
+    format!(
+        "{robot} has no {names} limits. Add to its YAML, as a key of its own beside `frames:` (`dynid import` writes the YAML of a URDF):\n  \
+         limits: {{{}}}\nwith one number for a symmetric limit, or [low, high], for each joint; rad, rad/s, rad/s2, of \
+         prismatic joints m, m/s, m/s2",
+        keys.join(", ")
+    )
 }

@@ -8,6 +8,7 @@ use dynid_runtime::simulation::excitation::{TellError, TellPlan, TellSettings, T
 use dynid_runtime::simulation::{Reference, to_csv};
 
 use super::{Arguments, MOST_ROWS};
+use crate::commands::effects::effect_named;
 use crate::failure::Failure;
 use crate::motions::{PLAN, PlannedMotion, plan_text, to_svg};
 use crate::output::{Together, print, table};
@@ -52,13 +53,11 @@ fn settings(arguments: &Arguments, robot: &Robot, joint: usize) -> Result<TellSe
     let wrong = |what: String| Err(Failure::Input(what));
     let mut effects: Vec<EffectKind> = Vec::new();
     for id in &arguments.tell {
-        match EffectKind::from_id(id) {
-            None => return wrong(format!("--tell {id}: the catalogue has no such effect")),
-            Some(effect) if effects.contains(&effect) => {
-                return wrong(format!("--tell: {id} is there twice"));
-            }
-            Some(effect) => effects.push(effect),
+        let effect = effect_named(id)?;
+        if effects.contains(&effect) {
+            return wrong(format!("--tell: {id} is there twice"));
         }
+        effects.push(effect);
     }
     if effects.len() < 2 {
         return wrong("--tell: two laws at least, as in --tell stribeck,presliding_hysteresis".to_owned());

@@ -88,6 +88,10 @@ pub(super) fn plant<'m>(
         Parameters::Base(..) => Err(Failure::Input(
             "--residue, --ripple and --elastic need standard parameters: simulate a robot with nominal values".to_owned(),
         )),
+        Parameters::Standard(_) if !arguments.effect.is_empty() && more => Err(Failure::Input(
+            "--effect goes without --residue, --ripple and --elastic; torque_ripple is an --effect too".to_owned(),
+        )),
+        Parameters::Standard(_) if !arguments.effect.is_empty() => world.plant("").map_err(failed),
         Parameters::Standard(standard) => {
             let mut residue = Residue::typical(robot, standard, arguments.residue);
             let whole = Residue::typical(robot, standard, 1.0);

@@ -3,6 +3,7 @@
 use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::explanation::standard_model::StandardModelFit;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
+use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::{Design, RowAt};
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::free::values;
@@ -10,25 +11,30 @@ use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{BINS, LEAST_DIFFERENCES, LEAST_MISMATCH, ORDERED_BY_VARIABLE};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{Abscissa, Variable};
+use crate::effects::{Abscissa, EffectKind, Place, Variable};
 use crate::model::{JointIndex, JointKind};
 
-/// The variable that reveals a term, at a row of its first joint.
-fn abscissa(model: &ExtendedModel<'_>, joint: usize, term: &Accepted, r: &RowAt) -> f64 {
-    let s = &model.context.signals[r.signal];
-    let torques = &model.context.torques[r.signal];
-    match term.effect.properties().abscissa {
-        Abscissa::Speed => s.dq[joint][r.centre],
-        Abscissa::Position => s.q[joint][r.centre],
-        Abscissa::Acceleration => s.ddq[joint][r.centre],
-        Abscissa::Load => torques.rigid[joint][r.centre],
-        Abscissa::ModelTorque => torques.total[joint][r.centre],
-        Abscissa::HeardTorque => torques.total[term.place.law_of().unwrap_or(joint)][r.centre],
-        Abscissa::Time => s.time(r.centre),
-        Abscissa::SinceReversal => since_reversal(s, joint, r.centre),
+/// The variable that reveals a law with these numbers, on a joint at a sample of a motion.
+pub(in crate::diagnosis) fn abscissa(
+    context: &Context<'_>,
+    (effect, place, shape): (EffectKind, Place, &[f64]),
+    joint: usize,
+    (signal, t): (usize, usize),
+) -> f64 {
+    let s = &context.signals[signal];
+    let torques = &context.torques[signal];
+    match effect.properties().abscissa {
+        Abscissa::Speed => s.dq[joint][t],
+        Abscissa::Position => s.q[joint][t],
+        Abscissa::Acceleration => s.ddq[joint][t],
+        Abscissa::Load => torques.rigid[joint][t],
+        Abscissa::ModelTorque => torques.total[joint][t],
+        Abscissa::HeardTorque => torques.total[place.law_of().unwrap_or(joint)][t],
+        Abscissa::Time => s.time(t),
+        Abscissa::SinceReversal => since_reversal(s, joint, t),
         Abscissa::WaveAngle => {
-            let order = term.shape.first().copied().unwrap_or(1.0);
-            (order * s.q[joint][r.centre]).rem_euclid(2.0 * std::f64::consts::PI)
+            let order = shape.first().copied().unwrap_or(1.0);
+            (order * s.q[joint][t]).rem_euclid(2.0 * std::f64::consts::PI)
         }
     }
 }
@@ -78,7 +84,11 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
             let sign = along(&design.rows[r]);
             let at = match &over {
                 Some(of_motion) => of_motion[design.rows[r].signal][design.rows[r].centre],
-                None => abscissa(model, joint, term, &design.rows[r]),
+                None => {
+                    let row = &design.rows[r];
+                    let law = (term.effect, term.place, term.shape.as_slice());
+                    abscissa(&model.context, law, joint, (row.signal, row.centre))
+                }
             };
             (at, sign * (residual[r] + law), sign * law)
         })

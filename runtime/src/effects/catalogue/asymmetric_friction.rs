@@ -15,6 +15,11 @@ const WORDS: Words = Words {
     revealed_by: "joint speed",
     experiment: "constant-speed strokes at several speeds, the same in both directions",
     source: "Armstrong-Helouvry 1991",
+    symbols: &[(
+        "half_difference",
+        "half of the difference between the viscous friction of the two directions",
+    )],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -14,6 +14,12 @@ const WORDS: Words = Words {
     revealed_by: "load torque",
     experiment: "slow reversals of the load at rest, with the motor locked: the free travel of the link is the play",
     source: "Nordin and Gutman 2002",
+    symbols: &[
+        ("gap", "play, the whole free travel"),
+        ("k", "stiffness of the transmission"),
+        ("d", "damping of the transmission"),
+    ],
+    put_in: "a transmission with play between motor and link",
 };
 
 /// How it is looked for and drawn.

@@ -15,6 +15,11 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "slow motions of the first joint over its full travel with the arm stretched out",
     source: "Khalil and Dombre 2002",
+    symbols: &[
+        ("tilt_1", "turn of gravity about the first axis across it"),
+        ("tilt_2", "the same about the second axis"),
+    ],
+    put_in: "another direction of `gravity` in the robot's YAML than in the one that the recording names",
 };
 
 /// How it is looked for and drawn.

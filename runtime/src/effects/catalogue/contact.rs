@@ -11,6 +11,8 @@ const WORDS: Words = Words {
     revealed_by: "time",
     experiment: "move the same path without the obstacle",
     source: "De Luca and Mattone 2005; Haddadin, De Luca and Albu-Schaeffer 2017",
+    symbols: &[("largest_force", "largest force")],
+    put_in: "nothing of the robot: it belongs to one recording",
 };
 
 /// How it is looked for and drawn.

@@ -11,6 +11,14 @@ const WORDS: Words = Words {
     revealed_by: "speed of the neighbouring joint",
     experiment: "move the two joints at the same time with all four combinations of directions",
     source: "Gautier and Briot 2012, equations (25) and (26)",
+    symbols: &[
+        ("ratio", "turns of the motor per turn of joint a"),
+        ("viscous", "viscous friction of the motor at the joint's side"),
+        ("coulomb", "Coulomb friction of the motor"),
+        ("inertia", "inertia of the rotor"),
+        ("v", "speed of the motor"),
+    ],
+    put_in: "`coupled_friction` in the robot's YAML, which the one that the recording names has not",
 };
 
 /// How it is looked for and drawn.

@@ -19,6 +19,18 @@ const WORDS: Words = Words {
     revealed_by: "load torque",
     experiment: "lifting and lowering the outstretched arm at low speed, with and without a payload",
     source: "Giberti, Cinquemani and Legnani 2010; Hamon, Gautier and Garrec 2011",
+    symbols: &[
+        ("efficiency_driving", "part of the power that arrives where the motor drives the load"),
+        ("efficiency_driven", "part of the power that arrives where the load drives the motor"),
+        ("load", "torque of inertia and gravity on the joint"),
+        ("gravity", "torque of gravity alone"),
+        ("link load", "load without that of the rotor's inertia"),
+        ("load_of_gravity_alone", "there where the load is that of gravity alone"),
+        ("load_without_rotor", "there where the load is that of the links alone"),
+        ("fast_torque", "standard deviation of the torques in the gear that are faster than the signals"),
+        ("fast", "those torques: the mean over all that they may be counts"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

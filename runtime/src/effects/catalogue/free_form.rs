@@ -11,6 +11,8 @@ const WORDS: Words = Words {
     revealed_by: "the variables that it depends on",
     experiment: "motions in which the variables named go different ways: one held while the other sweeps its range",
     source: "Hastie and Tibshirani 1986; Eilers and Marx 1996 (additive models of splines)",
+    symbols: &[("swing", "difference between the highest and the lowest torque of the curves")],
+    put_in: "a torque of any law",
 };
 
 /// How it is looked for and drawn: after everything else, over its own variables.

@@ -14,6 +14,13 @@ const WORDS: Words = Words {
     revealed_by: "time",
     experiment: "the same motion repeated for several minutes from a cold start",
     source: "Bittencourt et al. 2010; Simoni et al. 2015",
+    symbols: &[
+        ("viscous", "viscous friction that fades"),
+        ("coulomb", "Coulomb friction that fades"),
+        ("tau", "time constant"),
+        ("t", "time in the motion"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -14,6 +14,14 @@ const WORDS: Words = Words {
     revealed_by: "friction torque of the baseline",
     experiment: "repeat the baseline motion at the same temperature",
     source: "Bittencourt and Gunnarsson 2012",
+    symbols: &[
+        ("factor", "friction now, in multiples of that of the baseline"),
+        ("viscous_change", "change of the viscous friction"),
+        ("coulomb_change", "change of the Coulomb friction"),
+        ("Fv", "viscous friction of the baseline"),
+        ("Fc", "Coulomb friction of the baseline"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -15,6 +15,11 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "motions that fold and stretch the arm at different speeds",
     source: "Hollerbach, Khalil and Gautier 2016",
+    symbols: &[
+        ("error_d", "real length less the d of the table"),
+        ("error_r", "real length less the r of the table"),
+    ],
+    put_in: "another d or r in the robot's YAML than in the one that the recording names",
 };
 
 /// How it is looked for and drawn.

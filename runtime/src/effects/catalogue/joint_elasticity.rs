@@ -13,6 +13,12 @@ const WORDS: Words = Words {
     revealed_by: "frequency",
     experiment: "steps in acceleration with the arm folded and stretched out; an accelerometer on the link",
     source: "Spong 1987; Albu-Schaeffer and Hirzinger 2001",
+    symbols: &[
+        ("k", "stiffness of the transmission"),
+        ("d", "damping of the transmission"),
+        ("frequency", "frequency of the ringing with the motor held"),
+    ],
+    put_in: "a transmission that is a spring between motor and link",
 };
 
 /// How it is looked for and drawn.

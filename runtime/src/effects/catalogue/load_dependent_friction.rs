@@ -16,6 +16,17 @@ const WORDS: Words = Words {
     revealed_by: "load torque",
     experiment: "the same strokes at low speed with the arm stretched out and folded, or with and without a payload",
     source: "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2011",
+    symbols: &[
+        ("mu", "coefficient of friction"),
+        ("load", "torque of inertia and gravity on the joint"),
+        ("gravity", "torque of gravity alone"),
+        ("link load", "load without that of the rotor's inertia"),
+        ("load_of_gravity_alone", "there where the load is that of gravity alone"),
+        ("load_without_rotor", "there where the load is that of the links alone"),
+        ("fast_torque", "standard deviation of the torques in the gear that are faster than the signals"),
+        ("fast", "those torques: the mean over all that they may be counts"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -15,6 +15,12 @@ const WORDS: Words = Words {
     revealed_by: "joint speed",
     experiment: "constant-speed strokes at eight or more speeds up to the limit, both directions, on a warmed-up joint",
     source: "Waiboer, Aarts and Jonker 2005; Simoni et al. 2015",
+    symbols: &[
+        ("f", "friction at the speed v0 beyond the linear part"),
+        ("v0", "top speed of the recording"),
+        ("p", "power of the speed"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

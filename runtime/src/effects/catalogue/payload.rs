@@ -1,7 +1,8 @@
 //! A rigid body added at the flange.
 
 use crate::effects::{
-    Abscissa, BodyOnLink, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Words, body_detail,
+    Abscissa, BODY_SYMBOLS, BodyOnLink, Effect, Form, Properties, Quantities, SmoothingWindow, Sought, Words,
+    body_detail,
 };
 use crate::model::Robot;
 
@@ -14,6 +15,8 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "slow and fast motions of the last three joints with the arm stretched out",
     source: "Khalil, Gautier and Lemoine 2007; Swevers, Verdonck and De Schutter 2007",
+    symbols: BODY_SYMBOLS,
+    put_in: "more mass, first moments and inertias of the last link in `nominal: parameters` of the robot's YAML",
 };
 
 /// How it is looked for and drawn.

@@ -16,6 +16,12 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "slow strokes over the full travel in both directions",
     source: "Armstrong-Helouvry 1991; Bittencourt and Gunnarsson 2012",
+    symbols: &[
+        ("amplitude", "half of the swing of the friction level"),
+        ("wave_number", "waves per unit of position, times 2 pi"),
+        ("phase", "where the level is highest"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -14,6 +14,14 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "slow strokes over the full travel in both directions",
     source: "Wang et al. 2019 (cable torques of a master arm)",
+    symbols: &[
+        ("swing", "difference between the highest and the lowest torque"),
+        ("centre", "middle of the travel"),
+        ("half_travel", "half of the travel"),
+        ("p1", "factors of the polynomials"),
+        ("P1", "Legendre polynomials of degree 1 and on"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

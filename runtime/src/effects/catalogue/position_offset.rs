@@ -15,6 +15,8 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "slow motion of the joints below and above it, with the arm stretched out",
     source: "Hollerbach, Khalil and Gautier 2016",
+    symbols: &[("offset", "real position less the recorded one")],
+    put_in: "`position: {offset: [...]}` in the recording YAML",
 };
 
 /// How it is looked for and drawn.

@@ -15,6 +15,11 @@ const WORDS: Words = Words {
     revealed_by: "distance since reversal",
     experiment: "small slow reversals of growing amplitude around several positions",
     source: "Dahl 1968; Canudas de Wit et al. 1995; Al-Bender, Lampaert and Swevers 2005",
+    symbols: &[
+        ("level", "part of the Coulomb friction that builds up"),
+        ("distance", "travel after a reversal over which it does"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -16,6 +16,13 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "slow strokes over the full travel in both directions",
     source: "Khalil and Dombre 2002, section on balancing springs",
+    symbols: &[
+        ("k", "stiffness"),
+        ("lever_x", "torque of the spring through a lever, in phase"),
+        ("lever_y", "the same, a quarter turn on"),
+        ("ratio", "length of the lever in parts of the distance to its anchor"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

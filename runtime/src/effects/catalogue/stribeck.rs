@@ -16,6 +16,11 @@ const WORDS: Words = Words {
     revealed_by: "joint speed",
     experiment: "slow constant-speed strokes in both directions at several speeds between a hundredth and a fifth of the top speed",
     source: "Stribeck 1902; Armstrong-Helouvry, Dupont and Canudas de Wit 1994",
+    symbols: &[
+        ("fs", "friction at rest beyond the Coulomb level"),
+        ("vs", "speed at which a third of it is left"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -15,6 +15,8 @@ const WORDS: Words = Words {
     revealed_by: "rate of change of the torque",
     experiment: "any fast motion; compare with a tap on the arm seen in both channels",
     source: "Janot, Vandanjon and Gautier 2014",
+    symbols: &[("delay", "by how much the torque channel is later than the positions")],
+    put_in: "a torque channel that is written later than the positions",
 };
 
 /// How it is looked for and drawn.

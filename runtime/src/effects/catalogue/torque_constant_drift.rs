@@ -18,6 +18,15 @@ const WORDS: Words = Words {
     revealed_by: "time",
     experiment: "the same motion repeated from a cold start until the motors are warm, with the arm stretched out",
     source: "Krishnan 2010 on magnets that weaken with temperature",
+    symbols: &[
+        (
+            "factor_at_end",
+            "recorded torque at the end for the same real torque, in multiples of that at the start",
+        ),
+        ("duration", "duration of the recording"),
+        ("tau", "time constant"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

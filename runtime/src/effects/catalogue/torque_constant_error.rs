@@ -14,6 +14,8 @@ const WORDS: Words = Words {
     revealed_by: "model torque",
     experiment: "the same motion with a known load, or with a payload of known mass",
     source: "Gautier and Briot 2014 on drive gains",
+    symbols: &[("factor", "recorded torque in multiples of the real one")],
+    put_in: "`torque: {gain: [...]}` in the recording YAML",
 };
 
 /// How it is looked for and drawn.

@@ -14,6 +14,8 @@ const WORDS: Words = Words {
     revealed_by: "model torque of the other joint",
     experiment: "moving the neighbour alone, fast and slowly, while this joint stands still",
     source: "Khosla and Kanade 1985 on what a joint's torque may hold; sensors: Hirzinger et al. 2002",
+    symbols: &[("k", "part of the other joint's torque"), ("heard_joint", "number of the other joint")],
+    put_in: "a torque channel to which a part of another one is added",
 };
 
 /// How it is looked for and drawn.

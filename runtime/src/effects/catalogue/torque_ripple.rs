@@ -15,6 +15,13 @@ const WORDS: Words = Words {
     revealed_by: "joint position",
     experiment: "slow constant-speed strokes over at least ten periods, at two speeds",
     source: "Gan and Qiu 2004; Holtz and Springob 1996",
+    symbols: &[
+        ("amplitude", "half of the swing of the torque"),
+        ("order", "waves per unit of position, times 2 pi; per joint turn on a revolute joint"),
+        ("order_per_motor_turn", "waves per turn of the motor"),
+        ("phase", "phase of the wave where q is 0"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

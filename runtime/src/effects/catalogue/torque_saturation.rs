@@ -15,6 +15,14 @@ const WORDS: Words = Words {
     revealed_by: "model torque",
     experiment: "strokes with the highest accelerations, and the same motion at a third of them",
     source: "Krishnan 2010",
+    symbols: &[
+        ("droop_at_most_torque", "part of the largest torque that is missing there"),
+        ("most_torque", "largest torque of the recording"),
+        ("exponent", "power of the torque with which it droops"),
+        ("knee", "part of the largest torque from which it droops"),
+        ("torque", "torque of the standard model"),
+    ],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn.

@@ -11,6 +11,8 @@ const WORDS: Words = Words {
     revealed_by: "the variables of the law",
     experiment: "motions that sweep the variables of the law, one held while the other goes its range",
     source: "the user",
+    symbols: &[],
+    put_in: "the law as a torque of the joint",
 };
 
 /// How it is looked for and drawn: where the user says so, over its own first variable.

@@ -15,6 +15,8 @@ const WORDS: Words = Words {
     revealed_by: "acceleration",
     experiment: "slow and fast runs of one path; a stopwatch",
     source: "Khalil and Dombre 2002",
+    symbols: &[("rate_error", "real sampling rate over the declared one, less 1")],
+    put_in: "another `rate` in the recording YAML",
 };
 
 /// How it is looked for and drawn.

@@ -31,10 +31,29 @@ pub(super) trait Format {
         None
     }
 
+    /// What is known of the stamps in the wanted column `slot`.
+    fn stamps(&self, slot: usize) -> Stamps {
+        let _ = slot;
+        Stamps::Numbers
+    }
+
     /// What of the file was passed over, for a person; complete at the end of the file.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
+}
+
+/// What a file says of its stamps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stamps {
+    /// Their type says their unit.
+    #[cfg_attr(not(feature = "parquet"), allow(dead_code, reason = "Parquet alone says units"))]
+    In(&'static str),
+    /// They are whole numbers of some unit.
+    #[cfg_attr(not(feature = "parquet"), allow(dead_code, reason = "Parquet alone has types"))]
+    Whole,
+    /// Nothing.
+    Numbers,
 }
 
 /// What is wanted of a file.
@@ -46,6 +65,16 @@ pub(super) struct Wanted<'a> {
     /// The topic of a log.
     #[cfg_attr(not(feature = "mcap"), allow(dead_code, reason = "logs alone have topics"))]
     pub topic: Option<&'a str>,
+    /// Of a log the path of the names that elements of lists have, where it is not the usual one.
+    #[cfg_attr(not(feature = "mcap"), allow(dead_code, reason = "logs alone have lists with names"))]
+    pub names: Option<&'a str>,
+    /// Whether a row that lacks some signals of a log, or some columns of a Parquet file, is handed out with NaN in their
+    /// places.
+    #[cfg_attr(
+        not(any(feature = "mcap", feature = "parquet")),
+        allow(dead_code, reason = "texts tell what they lack")
+    )]
+    pub partial: bool,
 }
 
 /// What a log holds, by its first messages.
@@ -80,24 +109,6 @@ pub fn is_log(path: &Path) -> bool {
 
 pub(super) fn extension(path: &Path) -> String {
     path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_ascii_lowercase())
-}
-
-/// As [`open`], but a row that lacks some signals of a log, or some columns of a Parquet file, is handed out with NaN in
-/// their places.
-pub(super) fn open_partial(
-    path: &Path,
-    file: &str,
-    wanted: &Wanted<'_>,
-) -> Result<Box<dyn Format>, RecordingError> {
-    #[cfg(feature = "mcap")]
-    if is_log(path) {
-        return Ok(Box::new(mcap::McapReader::open(path, file, wanted)?.partial()));
-    }
-    #[cfg(feature = "parquet")]
-    if extension(path) == "parquet" {
-        return Ok(Box::new(parquet::ParquetReader::open(path, file, wanted.columns)?.partial()));
-    }
-    open(path, file, wanted)
 }
 
 #[cfg(feature = "mcap")]
@@ -135,7 +146,7 @@ pub(super) fn survey(_: &Path, file: &str, _: Option<&str>) -> Result<Survey, Re
 
 #[cfg(feature = "parquet")]
 fn open_parquet(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
-    Ok(Box::new(parquet::ParquetReader::open(path, file, wanted.columns)?))
+    Ok(Box::new(parquet::ParquetReader::open(path, file, wanted.columns, wanted.partial)?))
 }
 
 #[cfg(feature = "parquet")]

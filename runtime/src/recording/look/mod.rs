@@ -90,7 +90,8 @@ impl Plan {
 /// A file that cannot be read, or has nothing in it that could be looked at.
 pub fn look(path: &Path, file: &str, topic: Option<&str>) -> Result<Contents, RecordingError> {
     let plan = plan(path, file, topic)?;
-    let wanted = Wanted { columns: &plan.columns, layout: &plan.layout, topic: plan.topic.as_deref() };
+    let (columns, layout, topic) = (&plan.columns, &plan.layout, plan.topic.as_deref());
+    let wanted = Wanted { columns, layout, topic, names: None, partial: true };
     let mut contents = Contents {
         file: file.into(),
         format: plan.format,
@@ -106,7 +107,7 @@ pub fn look(path: &Path, file: &str, topic: Option<&str>) -> Result<Contents, Re
     if plan.columns.is_empty() {
         return Ok(contents);
     }
-    let mut source = formats::open_partial(path, file, &wanted)?;
+    let mut source = formats::open(path, file, &wanted)?;
     let mut rows = Rows::new(plan.columns.len());
     source.read(&mut rows, AT_ONCE)?;
     let time = roles::time_of(&plan.names, &rows);
@@ -127,7 +128,8 @@ pub fn look(path: &Path, file: &str, topic: Option<&str>) -> Result<Contents, Re
     }
     contents.wrong.extend(source.notes());
     contents.time = time.map(|k| plan.names[k].clone());
-    contents.signals = watched.into_iter().map(|signal| signal.finish(time.is_some())).collect();
+    let finish = |(signal, name): (Watched, &String)| signal.finish(time.is_some(), roles::role_of(name));
+    contents.signals = watched.into_iter().zip(&plan.names).map(finish).collect();
     roles::doubts(&mut contents);
     Ok(contents)
 }

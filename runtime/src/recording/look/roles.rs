@@ -87,6 +87,11 @@ fn role(name: &str) -> Option<(Role, String)> {
     Some((role, words.join(" ")))
 }
 
+/// What a name says that a signal measures.
+pub(super) fn role_of(name: &str) -> Option<Role> {
+    role(name).map(|(role, _)| role)
+}
+
 /// The columns of a recording, by their names.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Channels {
@@ -111,7 +116,13 @@ pub fn channels(names: &[String]) -> Channels {
         let Some((role, key)) = role(name) else { continue };
         let numbered = key.split(' ').any(|word| word.parse::<u32>().is_ok());
         let stem: Vec<&str> = key.split(' ').filter(|word| word.parse::<u32>().is_err()).collect();
-        let family = if numbered { stem.join(" ") } else { String::new() };
+        // The elements of a list in a message are a family of their own.
+        let list = name.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
+        let family = match list {
+            Some((list, _)) => list.to_owned(),
+            None if numbered => stem.join(" "),
+            None => String::new(),
+        };
         families.entry((role, family)).or_default().push((name.clone(), key));
     }
     let of = |role: Role, joints: Option<&[String]>| {
@@ -226,6 +237,19 @@ mod tests {
 
     fn of(names: &[&str]) -> Channels {
         channels(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn elements_of_a_list_belong_together() {
+        let found = of(&[
+            "actual.positions[a]",
+            "actual.positions[b]",
+            "actual.effort[a]",
+            "actual.effort[b]",
+            "load",
+        ]);
+        assert_eq!(found.position, ["actual.positions[a]", "actual.positions[b]"]);
+        assert_eq!(found.torque, ["actual.effort[a]", "actual.effort[b]"]);
     }
 
     #[test]

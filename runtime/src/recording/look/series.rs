@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::roles::Role;
+
 /// What is known of a signal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Series {
@@ -27,7 +29,8 @@ pub struct Series {
     pub repeated: u64,
     /// Values whose time is before that of the one before them.
     pub backwards: u64,
-    /// Share of the time in which it moves with less than 2 % of its fastest speed.
+    /// Share of the time in which its joint moves with less than 2 % of its fastest speed; `None` for a signal that does not
+    /// tell, as a torque.
     pub standstill: Option<f64>,
 }
 
@@ -123,8 +126,9 @@ impl Watched {
         self.median = Some(median);
     }
 
-    /// What is known at the end; without a time there is no rate.
-    pub fn finish(mut self, timed: bool) -> Series {
+    /// What is known at the end; without a time there is no rate. `role` is what the signal measures, as far as its name
+    /// says it.
+    pub fn finish(mut self, timed: bool, role: Option<Role>) -> Series {
         if self.median.is_none() {
             self.count_gaps();
         }
@@ -140,7 +144,12 @@ impl Watched {
             (series.gaps, series.largest_gap) = (0, None);
         }
         let speed = |pair: &[[f64; 2]]| ((pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).abs();
-        let speeds: Vec<f64> = self.kept.windows(2).map(speed).filter(|v| v.is_finite()).collect();
+        let speeds: Vec<f64> = match role {
+            // A joint that stands needs a constant torque, and a constant torque may move it.
+            Some(Role::Torque | Role::Current) => Vec::new(),
+            Some(Role::Velocity) => self.kept.iter().map(|[_, value]| value.abs()).collect(),
+            _ => self.kept.windows(2).map(speed).filter(|v| v.is_finite()).collect(),
+        };
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
         if fastest > 0.0 {
             let still = speeds.iter().filter(|v| **v < STILL * fastest).count();
@@ -164,11 +173,26 @@ mod tests {
         }
         watched.take(39.0, f64::NAN);
         watched.take(39.0, 20.0);
-        let series = watched.finish(true);
+        let series = watched.finish(true, Some(Role::Position));
         assert!((series.rate.unwrap_or(0.0) - 500.0).abs() < 1e-6);
         assert_eq!((series.count, series.missing, series.gaps, series.backwards), (20_001, 1, 1, 1));
         assert!(series.largest_gap.is_some_and(|[gap, after]| (gap - 0.302).abs() < 1e-9 && after < 30.0));
         assert!(series.standstill.is_some_and(|share| (0.4..0.6).contains(&share)), "{series:?}");
         assert_eq!((series.low, series.high > 20.0), (0.5, true));
+    }
+
+    #[test]
+    fn speeds_and_positions_tell_of_a_standstill_and_torques_do_not() {
+        let share = |role: Role, value: fn(u32) -> f64| {
+            let mut watched = Watched::new("x");
+            (0..1000).for_each(|k| watched.take(0.01 * f64::from(k), value(k)));
+            watched.finish(true, Some(role)).standstill
+        };
+        let moves_late = |k: u32| if k < 500 { 0.0 } else { 1.0 + f64::from(k % 7) };
+        assert!(share(Role::Velocity, moves_late).is_some_and(|share| (share - 0.5).abs() < 0.01));
+        assert_eq!(share(Role::Velocity, |_| 1.0), Some(0.0), "a constant speed is no standstill");
+        assert!(share(Role::Position, |_| 1.0).is_none_or(|share| share == 1.0));
+        assert_eq!(share(Role::Torque, moves_late), None);
+        assert_eq!(share(Role::Current, moves_late), None);
     }
 }

@@ -25,14 +25,15 @@ impl Limits {
         }
         let n = robot.joints();
         let limits = &robot.limits;
-        for (what, list) in [
+        let needed = [
             ("position", &limits.position),
             ("velocity", &limits.velocity),
             ("acceleration", &limits.acceleration),
-        ] {
-            if list.len() != n {
-                return Err(SimulationError::NoLimits { robot: robot.name.to_string(), what });
-            }
+        ];
+        let missing: Vec<&str> =
+            needed.iter().filter(|(_, list)| list.len() != n).map(|(key, _)| *key).collect();
+        if !missing.is_empty() {
+            return Err(SimulationError::NoLimits { robot: robot.name.to_string(), missing, joints: n });
         }
         let symmetric = |list: &[[f64; 2]]| list.iter().map(|x| share * x[1].min(-x[0])).collect();
         let inner = |x: &[f64; 2]| {

@@ -24,4 +24,4 @@ pub use motion::ExcitingMotion;
 pub use point_to_point::{PointToPointMotion, Profile};
 pub use settings::{ExcitationSettings, MotionKind};
 #[cfg(feature = "diagnosis")]
-pub use tell::{TellError, TellPlan, TellSettings, Told, tell};
+pub use tell::{TellError, TellPlan, TellSettings, Told, tell, typical_law};

@@ -8,7 +8,7 @@ use super::settings::ExcitationSettings;
 use super::strokes::{Candidate, family};
 use crate::diagnosis::{DiagnosisError, Distances, Question, distances, typical_laws};
 use crate::effects::{EffectKind, EffectTerm};
-use crate::model::Model;
+use crate::model::{Model, Robot};
 use crate::parallel;
 use crate::signal::Motion;
 use crate::simulation::{Reference, SimulationError};
@@ -86,20 +86,11 @@ pub enum TellError {
 pub fn tell(model: &dyn Model, chi: Option<&[f64]>, settings: &TellSettings) -> Result<TellPlan, TellError> {
     let robot = model.robot();
     let limits = Limits::of(robot, settings.share, settings.reach)?;
-    let noise = match &robot.nominal {
-        Some(nominal) if nominal.torque_noise.len() == robot.joints() => nominal.torque_noise.to_vec(),
-        _ => vec![1.0; robot.joints()],
-    };
+    let noise = nominal_noise(robot);
     let known = chi.map_or_else(|| vec![0.0; robot.base.len()], <[f64]>::to_vec);
-    let ordinary = {
-        let (share, reach, seed) = (settings.share, settings.reach, settings.seed);
-        let search =
-            ExcitationSettings { share, reach, seed, starts: 1, evaluations: 200, ..Default::default() };
-        excite(model, chi, &search, &|_| {})?.motions.swap_remove(0)
-    };
+    let ordinary = ordinary(model, chi, (settings.share, settings.reach), settings.seed)?;
     let usual = looked_at(&ordinary);
-    let level = coulomb(model, &known, settings.joint);
-    let size = (SHARE * level).max(NOISES * noise[settings.joint]);
+    let size = size_of(model, (&known, &noise), settings.joint);
     let typical = typical_laws((model, &known), settings.joint, &settings.effects, size, &usual)?;
     let of = |(law, effect): (Option<EffectTerm>, &EffectKind)| law.ok_or(TellError::NoLaw(effect.id()));
     let laws: Vec<EffectTerm> =
@@ -125,6 +116,47 @@ pub fn tell(model: &dyn Model, chi: Option<&[f64]>, settings: &TellSettings) -> 
     }
     let ordinary = told(Candidate { what: "an ordinary exciting motion".to_owned(), motion: ordinary })?;
     Ok(TellPlan { size, noise: noise[settings.joint], laws, ordinary, candidates })
+}
+
+/// A law of a joint (0-based) as it may be in a robot with the base parameters `chi`: of the middle of its shapes for an
+/// ordinary motion within the limits, and as large there as `size`, N.m or N, or as [`tell`] takes laws to be.
+///
+/// # Errors
+/// [`TellError`], among them a robot without limits.
+pub fn typical_law(
+    model: &dyn Model,
+    chi: &[f64],
+    (effect, joint): (EffectKind, usize),
+    size: Option<f64>,
+) -> Result<EffectTerm, TellError> {
+    let usual = ordinary(model, Some(chi), (1.0, 1.0), 0)?;
+    let size = size.unwrap_or_else(|| size_of(model, (chi, &nominal_noise(model.robot())), joint));
+    let mut laws = typical_laws((model, chi), joint, &[effect], size, &looked_at(&usual))?;
+    laws.pop().flatten().ok_or(TellError::NoLaw(effect.id()))
+}
+
+/// Noise of the torques, 1 sigma, as the robot says.
+fn nominal_noise(robot: &Robot) -> Vec<f64> {
+    match &robot.nominal {
+        Some(nominal) if nominal.torque_noise.len() == robot.joints() => nominal.torque_noise.to_vec(),
+        _ => vec![1.0; robot.joints()],
+    }
+}
+
+/// How large laws are taken to be.
+fn size_of(model: &dyn Model, (chi, noise): (&[f64], &[f64]), joint: usize) -> f64 {
+    (SHARE * coulomb(model, chi, joint)).max(NOISES * noise[joint])
+}
+
+/// A motion that nobody would choose for a law.
+fn ordinary(
+    model: &dyn Model,
+    chi: Option<&[f64]>,
+    (share, reach): (f64, f64),
+    seed: u64,
+) -> Result<ExcitingMotion, SimulationError> {
+    let search = ExcitationSettings { share, reach, seed, starts: 1, evaluations: 200, ..Default::default() };
+    Ok(excite(model, chi, &search, &|_| {})?.motions.swap_remove(0))
 }
 
 /// Coulomb friction of a joint, N.m or N.

@@ -213,7 +213,8 @@ fn a_robot_without_limits_and_settings_out_of_range_are_refused() {
     let (model, chi) = arm();
     let good = settings(FOURIER, 1, Identification::Idim);
     let refused = excite(&model, Some(&chi), &good, &|_| {}).unwrap_err();
-    assert!(refused.to_string().contains("position limits"), "{refused}");
+    let told = "no position, velocity and acceleration limits";
+    assert!(refused.to_string().contains(told), "{refused}");
     let (model, chi) = limited_arm();
     for bad in [
         ExcitationSettings { sets: 6, ..good.clone() },

@@ -36,6 +36,20 @@ DYNAMIC = (
     + "=" * 80
     + "\nMSG: control_msgs/InterfaceValue\nstring[] interface_names\nfloat64[] values\n"
 )
+POINT = "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\nbuiltin_interfaces/Duration time_from_start\n"
+CONTROLLER = (
+    "std_msgs/Header header\nstring[] joint_names\ntrajectory_msgs/JointTrajectoryPoint desired\n"
+    "trajectory_msgs/JointTrajectoryPoint actual\ntrajectory_msgs/JointTrajectoryPoint error  # desired - actual\n"
+    "string multi_dof_joint_names\nuint8 OK=1\nuint8[3] flags\nfloat32 load"
+    + HEADER
+    + "=" * 80
+    + "\nMSG: trajectory_msgs/JointTrajectoryPoint\n"
+    + POINT
+    + "=" * 80
+    + "\nMSG: builtin_interfaces/Duration\nint32 sec\nuint32 nanosec\n"
+)
+CONTROLLER_TYPE = "control_msgs/msg/JointTrajectoryControllerState"
+encode_controller = serialize_dynamic(CONTROLLER_TYPE, CONTROLLER)[CONTROLLER_TYPE]
 TYPE = "sensor_msgs/msg/JointState"
 encode = serialize_dynamic(TYPE, JOINT_STATE)[TYPE]
 DYNAMIC_TYPE = "control_msgs/msg/DynamicJointState"
@@ -156,6 +170,20 @@ def mcap():
 
     write("dynamic.mcap", [(k, dynamic(k)) for k in range(ROWS)], topic="/dynamic_joint_states", kind=DYNAMIC_TYPE,
           text=DYNAMIC, compression=CompressionType.ZSTD)
+    def controller(k):
+        q, dq, u = row(k)
+        point = lambda q, dq, u: dict(positions=q, velocities=dq, accelerations=[], effort=u,
+                                      time_from_start=dict(sec=0, nanosec=0))
+        # Joints change their places from message to message.
+        order = (1, 0) if k % 2 else (0, 1)
+        pick = lambda values: [values[j] for j in order]
+        nothing = point([9.0] * 3, [], [])
+        return encode_controller(dict(
+            header=header(k, "base" + "x" * (k % 5)), joint_names=[("elbow", "shoulder")[j] for j in order], desired=nothing,
+            actual=point(pick(q), pick(dq), pick(u)), error=nothing, multi_dof_joint_names="ab", flags=[1, 2, 3], load=k / 8))
+
+    write("controller.mcap", [(k, controller(k)) for k in range(ROWS)], topic="/arm_controller/state", kind=CONTROLLER_TYPE,
+          text=CONTROLLER, compression=CompressionType.ZSTD)
     write("json.mcap", [(0, b"{}")], topic="/chatter", kind="std_msgs/msg/String", text="string data", encoding="json")
 
     bag = HERE / "bag"
@@ -177,7 +205,7 @@ def parquet():
     names = ["t", "q1", "q2", "dq1", "dq2", "u1", "u2"]
     columns = [time] + [column(c, j) for c in range(3) for j in range(2)]
     table = pa.table([pa.array(values) for values in columns], names=names)
-    for codec in ("snappy", "zstd", "lz4", "none", "gzip"):
+    for codec in ("snappy", "zstd", "lz4", "none", "gzip", "brotli"):
         pq.write_table(table, HERE / f"{codec}.parquet", compression=codec, row_group_size=16)
     pq.write_table(table, HERE / "pages_v2.parquet", compression="zstd", data_page_version="2.0", use_dictionary=False,
                    data_page_size=64, column_encoding={"t": "BYTE_STREAM_SPLIT"})
@@ -187,6 +215,9 @@ def parquet():
     torque = [None if k == 7 else float("nan") if k == 8 else x for k, x in enumerate(columns[5])]
     other = other.set_column(5, "u1", pa.array(torque)).append_column("task", pa.array(["lift"] * ROWS))
     pq.write_table(other, HERE / "types.parquet", compression="zstd")
+    # Whole milliseconds without a unit, from an epoch.
+    whole = [EPOCH * 1000 + k * 10 for k in range(ROWS)]
+    pq.write_table(table.set_column(0, "t", pa.array(whole, pa.int64())), HERE / "whole.parquet", compression="snappy")
     states = [q + u for q, _, u in rows]
     lists = {
         "timestamp": pa.array(time, pa.float32()),

@@ -1,6 +1,8 @@
 //! CDR, the encoding of ROS 2 messages (OMG DDS-XTypes 1.3, 7.4): numbers aligned to their size, counted from the byte
 //! behind the four of the encapsulation header.
 
+use super::definition::Number;
+
 /// Why a message cannot be decoded.
 pub(super) type Fault = &'static str;
 
@@ -29,7 +31,8 @@ impl<'a> Cdr<'a> {
         Ok(Self { body, at: 0, little, widest })
     }
 
-    fn take(&mut self, length: usize) -> Result<&'a [u8], Fault> {
+    /// The next bytes.
+    pub fn take(&mut self, length: usize) -> Result<&'a [u8], Fault> {
         let end = self.at.checked_add(length).ok_or(SHORT)?;
         let taken = self.body.get(self.at..end).ok_or(SHORT)?;
         self.at = end;
@@ -44,6 +47,60 @@ impl<'a> Cdr<'a> {
         self.align(4);
         let bytes = self.take(4)?.try_into().map_err(|_| SHORT)?;
         Ok(if self.little { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) })
+    }
+
+    /// A time as the headers of messages have it, ns.
+    pub fn stamp(&mut self) -> Result<i64, Fault> {
+        let (seconds, nanoseconds) = (self.u32()? as i32, self.u32()?);
+        Ok(i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds))
+    }
+
+    /// A number of any kind.
+    pub fn number(&mut self, kind: Number) -> Result<f64, Fault> {
+        let size = size_of(kind);
+        self.align(size.min(self.widest));
+        let bytes = self.take(size)?;
+        let mut wide = [0; 8];
+        match self.little {
+            true => wide[..size].copy_from_slice(bytes),
+            false => bytes.iter().rev().zip(&mut wide).for_each(|(byte, place)| *place = *byte),
+        }
+        let whole = u64::from_le_bytes(wide);
+        Ok(match kind {
+            Number::Bool => f64::from(u8::from(whole != 0)),
+            Number::U8 | Number::U16 | Number::U32 | Number::U64 => whole as f64,
+            Number::I8 => f64::from(whole as u8 as i8),
+            Number::I16 => f64::from(whole as u16 as i16),
+            Number::I32 => f64::from(whole as u32 as i32),
+            Number::I64 => whole as i64 as f64,
+            Number::F32 => f64::from(f32::from_bits(whole as u32)),
+            Number::F64 => f64::from_bits(whole),
+        })
+    }
+
+    /// So many numbers of a kind, one after another.
+    pub fn numbers(&mut self, kind: Number, count: usize, mut take: impl FnMut(f64)) -> Result<(), Fault> {
+        self.fits(kind, count)?;
+        for _ in 0..count {
+            take(self.number(kind)?);
+        }
+        Ok(())
+    }
+
+    /// Passes over so many numbers of a kind.
+    pub fn pass_over(&mut self, kind: Number, count: usize) -> Result<(), Fault> {
+        self.fits(kind, count)?;
+        if count > 0 {
+            self.align(size_of(kind).min(self.widest));
+            self.take(size_of(kind) * count)?;
+        }
+        Ok(())
+    }
+
+    /// That the message is long enough for so many numbers.
+    fn fits(&self, kind: Number, count: usize) -> Result<(), Fault> {
+        let left = self.body.len().saturating_sub(self.at);
+        if count > left / size_of(kind) { Err(SHORT) } else { Ok(()) }
     }
 
     /// The number of elements of a sequence whose elements have at least `least` bytes each.
@@ -84,6 +141,16 @@ impl<'a> Cdr<'a> {
     /// The bytes from a position up to here.
     pub fn since(&self, from: usize) -> &'a [u8] {
         self.body.get(from..self.at).unwrap_or_default()
+    }
+}
+
+/// Bytes of a number.
+fn size_of(kind: Number) -> usize {
+    match kind {
+        Number::Bool | Number::I8 | Number::U8 => 1,
+        Number::I16 | Number::U16 => 2,
+        Number::I32 | Number::U32 | Number::F32 => 4,
+        Number::I64 | Number::U64 | Number::F64 => 8,
     }
 }
 

@@ -23,14 +23,14 @@ pub(super) struct Merge {
 }
 
 impl Merge {
-    pub fn new(columns: usize) -> Self {
+    pub fn new(columns: usize, partial: bool) -> Self {
         Self {
             row: vec![f64::NAN; columns],
             waiting: VecDeque::new(),
             seen: vec![0; columns],
             complete: 0,
             incomplete: 0,
-            partial: false,
+            partial,
         }
     }
 
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn parts_of_one_stamp_are_put_together_and_other_joints_are_passed_over() {
-        let (mut merge, mut rows) = (Merge::new(3), Rows::new(3));
+        let (mut merge, mut rows) = (Merge::new(3, false), Rows::new(3));
         let mut message = |line, stamp, signals: &[(usize, f64)], rows: &mut Rows| {
             merge.begin();
             signals.iter().for_each(|&(slot, value)| merge.put(slot, value));

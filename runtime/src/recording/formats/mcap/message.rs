@@ -9,6 +9,8 @@ pub(super) enum Kind {
     JointState,
     /// Names, and for each a list of interfaces with values.
     DynamicJointState,
+    /// Any other, by its definition: which of those of the log.
+    Defined(usize),
 }
 
 /// Signals of a joint in a JointState, in the order of the message.
@@ -35,9 +37,9 @@ pub(super) struct Signal {
     pub slot: usize,
 }
 
-/// Decodes messages; the names of the one before are remembered, as they seldom change.
-pub(super) struct Decoder {
-    signals: Vec<Signal>,
+/// Decodes messages that tell of joints; the names of the one before are remembered, as they seldom change.
+pub(super) struct Joints {
+    pub signals: Vec<Signal>,
     /// Bytes of the names of the message before.
     names: Vec<u8>,
     /// Signals in it: list of the message, place in the list, column.
@@ -46,29 +48,26 @@ pub(super) struct Decoder {
     pub seen: Vec<String>,
 }
 
+/// A message of another type than those that tell of joints.
+const OTHER: Fault = "its type does not tell of joints";
 /// Most names that are remembered for a message to a person.
 const MOST_SEEN: usize = 200;
 
-impl Decoder {
+impl Joints {
     pub fn new(signals: Vec<Signal>) -> Self {
         Self { signals, names: Vec::new(), plan: Vec::new(), seen: Vec::new() }
-    }
-
-    /// Columns of the wanted signals.
-    pub fn slots(&self) -> impl Iterator<Item = &Signal> {
-        self.signals.iter()
     }
 
     /// The header stamp of a message, ns; what is wanted of it is handed to `take` as column and value. Values that are
     /// not finite are what drivers send where they know nothing.
     pub fn read(&mut self, kind: Kind, data: &[u8], take: &mut impl FnMut(usize, f64)) -> Result<i64, Fault> {
         let mut cdr = Cdr::new(data)?;
-        let (seconds, nanoseconds) = (cdr.u32()? as i32, cdr.u32()?);
-        let stamp = i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds);
+        let stamp = cdr.stamp()?;
         cdr.text()?;
         match kind {
             Kind::JointState => self.joint_state(&mut cdr, take)?,
             Kind::DynamicJointState => self.dynamic(&mut cdr, take)?,
+            Kind::Defined(_) => return Err(OTHER),
         }
         Ok(stamp)
     }
@@ -135,7 +134,7 @@ impl Decoder {
 /// on.
 pub(super) fn signals(kind: Kind, data: &[u8], all: &mut Vec<String>) -> Result<i64, Fault> {
     let mut cdr = Cdr::new(data)?;
-    let (seconds, nanoseconds) = (cdr.u32()? as i32, cdr.u32()?);
+    let stamp = cdr.stamp()?;
     cdr.text()?;
     let mut joints = Vec::new();
     for _ in 0..cdr.count(4)? {
@@ -165,8 +164,9 @@ pub(super) fn signals(kind: Kind, data: &[u8], all: &mut Vec<String>) -> Result<
                 fields.iter().enumerate().for_each(|(k, field)| add(joint, field, values.get(k)));
             }
         }
+        Kind::Defined(_) => return Err(OTHER),
     }
-    Ok(i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds))
+    Ok(stamp)
 }
 
 /// Notes the name of a joint.

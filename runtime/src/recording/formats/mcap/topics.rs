@@ -5,6 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use super::container::{Fields, Found, Records, op};
+use super::definition::Definition;
 use crate::recording::look::Topic;
 
 /// A channel as its record says it.
@@ -28,10 +29,41 @@ impl Channel {
     }
 }
 
-/// Number and name of a schema.
-pub(super) fn schema(body: &[u8]) -> Option<(u16, String)> {
-    let mut fields = Fields(body);
-    Some((fields.u16()?, fields.text()?))
+/// A schema as its record says it.
+#[derive(Debug, Clone)]
+pub(super) struct Schema {
+    pub name: String,
+    /// How the definition is written: `ros2msg` of most ROS 2 packages.
+    encoding: String,
+    /// The definition; empty where it is not needed.
+    text: Vec<u8>,
+}
+
+impl Schema {
+    /// The schema of a record with its number; its definition only where it is wanted.
+    pub fn read(body: &[u8], definition: bool) -> Option<(u16, Self)> {
+        let mut fields = Fields(body);
+        let (id, name) = (fields.u16()?, fields.text()?);
+        let encoding = fields.text().unwrap_or_default();
+        let length = fields.u32().unwrap_or(0) as usize;
+        let text = if definition { fields.take(length).unwrap_or_default().to_vec() } else { Vec::new() };
+        Some((id, Self { name, encoding, text }))
+    }
+
+    /// What messages of it hold.
+    ///
+    /// # Errors
+    /// Why that cannot be said.
+    pub fn definition(&self) -> Result<Definition, String> {
+        if self.encoding != "ros2msg" {
+            return Err(format!(
+                "its definition is written in `{}`; that of ROS 2 messages, `ros2msg`, is read",
+                self.encoding
+            ));
+        }
+        let text = std::str::from_utf8(&self.text).map_err(|_| "its definition is no text".to_owned())?;
+        Definition::parse(&self.name, text)
+    }
 }
 
 /// What is known of a file's channels.
@@ -45,7 +77,9 @@ struct Channels {
 impl Channels {
     fn take(&mut self, op: u8, body: &[u8]) {
         match op {
-            op::SCHEMA => self.schemas.extend(schema(body)),
+            op::SCHEMA => {
+                self.schemas.extend(Schema::read(body, false).map(|(id, schema)| (id, schema.name)));
+            }
             op::CHANNEL => self.channels.extend(Channel::read(body).map(|channel| (channel.id, channel))),
             op::MESSAGE => {
                 if let Some(id) = Fields(body).u16() {

@@ -148,6 +148,11 @@ impl Column {
         Ok(())
     }
 
+    /// Whether its numbers are whole.
+    pub fn is_whole(&self) -> bool {
+        matches!(self.descriptor.physical_type(), Type::INT32 | Type::INT64)
+    }
+
     /// Numbers of the longest list of the rows that were read last.
     pub fn longest_list(&self) -> usize {
         let (mut longest, mut index) = (0, 0);

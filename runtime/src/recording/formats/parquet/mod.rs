@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 
-use super::Format;
+use super::{Format, Stamps};
 use crate::recording::names::{listed, meant};
 use crate::recording::{self, Reason, RecordingError, Rows};
 use crate::regular_file;
@@ -44,7 +44,13 @@ pub(super) struct ParquetReader {
 }
 
 impl ParquetReader {
-    pub fn open(path: &Path, file: &str, wanted: &[recording::Column]) -> Result<Self, RecordingError> {
+    /// Opens a file; with `partial` rows that lack numbers are handed out too.
+    pub fn open(
+        path: &Path,
+        file: &str,
+        wanted: &[recording::Column],
+        partial: bool,
+    ) -> Result<Self, RecordingError> {
         let error = |message: String| RecordingError::File { file: file.into(), message };
         let metadata = metadata(path, file)?;
         let leaves = leaves(&metadata);
@@ -67,15 +73,9 @@ impl ParquetReader {
         }
         let path = path.to_path_buf();
         let mut reader =
-            Self { file: file.into(), path, metadata, columns, group: 0, left: 0, row: 0, partial: false };
+            Self { file: file.into(), path, metadata, columns, group: 0, left: 0, row: 0, partial };
         reader.check_lists()?;
         Ok(reader)
-    }
-
-    /// Hands out rows that lack numbers too.
-    pub fn partial(mut self) -> Self {
-        self.partial = true;
-        self
     }
 
     fn error(&self, leaf: &Leaf, message: &str) -> RecordingError {
@@ -129,6 +129,16 @@ impl Format for ParquetReader {
         &self.file
     }
 
+    fn stamps(&self, slot: usize) -> Stamps {
+        let holds = |column: &&Column| column.elements.iter().any(|(_, of)| *of == slot);
+        let Some(column) = self.columns.iter().find(holds) else { return Stamps::Numbers };
+        match column.leaf.unit {
+            Some(unit) => Stamps::In(unit),
+            None if column.is_whole() => Stamps::Whole,
+            None => Stamps::Numbers,
+        }
+    }
+
     fn read(&mut self, rows: &mut Rows, most: usize) -> Result<usize, RecordingError> {
         let mut done = 0;
         while done < most && self.next_group()? {
@@ -180,7 +190,7 @@ pub(in crate::recording) fn parquet_columns(
         }
         let first = [recording::Column::Name(format!("{}[0]", leaf.name))];
         // A list without numbers has none to name.
-        let Ok(mut reader) = ParquetReader::open(path, file, &first) else { continue };
+        let Ok(mut reader) = ParquetReader::open(path, file, &first, false) else { continue };
         reader.read(&mut Rows::new(1), AT_ONCE)?;
         let longest = reader.columns.first().map_or(0, Column::longest_list);
         names.extend((0..longest.min(MOST_NAMED)).map(|k| format!("{}[{k}]", leaf.name)));

@@ -1,4 +1,4 @@
-//! Pages of a column, unpacked. Snappy, LZ4 and zstd in Rust: the `parquet` crate's own zstd is C.
+//! Pages of a column, unpacked. All codecs in Rust: the `parquet` crate's own zstd is C.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -33,10 +33,11 @@ impl Pages {
     /// Places that cannot be in a file, a codec that is not read, what the system says.
     pub fn open(path: &Path, column: &ColumnChunkMetaData) -> std::result::Result<Self, String> {
         let codec = column.compression();
-        use Compression::{LZ4_RAW, SNAPPY, UNCOMPRESSED, ZSTD};
-        if !matches!(codec, UNCOMPRESSED | SNAPPY | LZ4_RAW | ZSTD(_)) {
+        use Compression::{BROTLI, GZIP, LZ4_RAW, SNAPPY, UNCOMPRESSED, ZSTD};
+        if !matches!(codec, UNCOMPRESSED | SNAPPY | LZ4_RAW | ZSTD(_) | GZIP(_) | BROTLI(_)) {
             return Err(format!(
-                "its pages are packed with {}; snappy, zstd, lz4 (raw) or none is read: write it again with one of them",
+                "its pages are packed with {}; snappy, zstd, lz4 (raw), gzip, brotli or none is read. Write it again: python -c \
+                 \"import pyarrow.parquet as p; p.write_table(p.read_table('in.parquet'), 'out.parquet', compression='zstd')\"",
                 codec.to_string().split('(').next().unwrap_or_default()
             ));
         }
@@ -104,6 +105,14 @@ impl Pages {
                 out.resize(size, 0);
                 let count = lz4_flex::block::decompress_into(packed, &mut out[plain..]).map_err(other)?;
                 out.truncate(plain + count);
+            }
+            Compression::GZIP(_) => {
+                let decoder = flate2::read::MultiGzDecoder::new(packed);
+                decoder.take((size - plain) as u64 + 1).read_to_end(&mut out)?;
+            }
+            Compression::BROTLI(_) => {
+                let decoder = brotli_decompressor::Decompressor::new(packed, 1 << 12);
+                decoder.take((size - plain) as u64 + 1).read_to_end(&mut out)?;
             }
             _ => {
                 let decoder = ruzstd::decoding::StreamingDecoder::new(packed).map_err(other)?;
