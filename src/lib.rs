@@ -6,7 +6,9 @@
 
 pub mod arguments;
 pub mod commands;
+pub mod compared;
 pub mod errors;
+pub mod estimated;
 pub mod failure;
 pub mod models;
 pub mod motions;
@@ -14,6 +16,7 @@ pub mod near_bodies;
 pub mod output;
 pub mod pages;
 pub mod paper_tables;
+pub mod provenance;
 pub mod ranges;
 pub mod recorded;
 pub mod recording_files;

@@ -24,6 +24,8 @@ pub struct Measured {
     pub title: String,
     /// How the robot is found again: its name, or the path of its YAML.
     pub robot: String,
+    /// Names of the joints in the log, where the manifest says them.
+    pub joints: Vec<String>,
     /// Side of the gear that was recorded.
     pub side: Side,
     /// Its motions as measured, within the window that was asked for.
@@ -49,6 +51,8 @@ pub struct Recorded {
     pub title: String,
     /// How the robot is found again: its name, or the path of its YAML.
     pub robot: String,
+    /// Names of the joints in the log, where the manifest says them.
+    pub joints: Vec<String>,
     /// Side of the gear that was recorded.
     pub side: Side,
     /// Its motions: filtered, differentiated, on a uniform grid.
@@ -80,7 +84,12 @@ impl Recorded {
 
 /// A robot and the title of its recording, on one line.
 pub fn heading(robot: &Robot, title: &str) -> String {
-    if title.is_empty() { robot.name.to_string() } else { format!("{}: {title}", robot.name) }
+    titled(&robot.name, title)
+}
+
+/// The name of a robot and a title, where there is one.
+pub fn titled(robot: &str, title: &str) -> String {
+    if title.is_empty() { robot.to_owned() } else { format!("{robot}: {title}") }
 }
 
 /// Reads a recording.
@@ -113,7 +122,8 @@ pub fn measure_as(
     }
     let rows = LeftOut { rows: recording.rows, too_short: Vec::new() };
     let title = on_one_line(&manifest.title);
-    Ok(Measured { dynamics, title, robot, side: manifest.side, trajectories, rows })
+    let (joints, side) = (manifest.joints, manifest.side);
+    Ok(Measured { dynamics, title, robot, joints, side, trajectories, rows })
 }
 
 /// Prepares the motions of a recording.
@@ -121,7 +131,7 @@ pub fn measure_as(
 /// # Errors
 /// [`Failure::Data`] where no motion can be prepared.
 pub fn prepared(measured: Measured, options: &Source, sampling: &Sampling) -> Result<Recorded, Failure> {
-    let Measured { dynamics, title, robot, side, trajectories, mut rows } = measured;
+    let Measured { dynamics, title, robot, joints: names, side, trajectories, mut rows } = measured;
     let joints = dynamics.model().robot().joints();
     let failed = |error: SignalError| signal_failure(&options.recording, &error);
     let (preparation, settings) =
@@ -129,7 +139,7 @@ pub fn prepared(measured: Measured, options: &Source, sampling: &Sampling) -> Re
     let (motions, too_short) = prepare_all(&trajectories, &preparation).map_err(failed)?;
     rows.too_short = too_short.iter().map(SignalError::to_string).collect();
     let speeds = contradicting_speeds(&trajectories, &preparation);
-    Ok(Recorded { dynamics, title, robot, side, motions, rows, speeds, settings })
+    Ok(Recorded { dynamics, title, robot, joints: names, side, motions, rows, speeds, settings })
 }
 
 /// [`measure`] and [`prepared`].
@@ -176,8 +186,8 @@ pub fn read_observed(
     })?;
     let ObservedRecording { observations, motions, whole, settings, rows, speeds, left_out } = observed;
     let rows = LeftOut { rows, too_short: left_out };
-    let (title, side) = (on_one_line(&manifest.title), manifest.side);
-    let recorded = Recorded { dynamics, title, robot, side, motions, rows, speeds, settings };
+    let (title, side, joints) = (on_one_line(&manifest.title), manifest.side, manifest.joints);
+    let recorded = Recorded { dynamics, title, robot, joints, side, motions, rows, speeds, settings };
     Ok(Observed { recorded, observations, whole })
 }
 

@@ -78,7 +78,7 @@ const WORK: [(&str, f64); 9] = [
 ];
 
 /// Options whose value is no number of a range: files, names, joints of the robot, and a seed, which may be any.
-const OTHERS: [&str; 32] = [
+const OTHERS: [&str; 33] = [
     "--svg",
     "--effect",
     "--format",
@@ -96,6 +96,7 @@ const OTHERS: [&str; 32] = [
     "--out",
     "--json",
     "--report",
+    "--residuals",
     "--robot",
     "--method",
     "--baseline",

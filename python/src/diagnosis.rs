@@ -12,7 +12,6 @@ use dynid::failure::Failure;
 use dynid::output::write;
 use dynid::pages::diagnosis::{Extras, page, summary};
 use dynid::recorded::{Measured, left_out_words};
-use dynid::words::joint_number;
 use dynid_runtime::confirmation::diagnose_and_confirm;
 use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings};
 use dynid_runtime::recording::Trajectory;
@@ -216,8 +215,7 @@ impl Work {
         let extras = Extras {
             fitted: fitted(&measured, &diagnosis, &options),
             tested: test.as_ref().map(|(test, at)| tested(test, at, &diagnosis)).transpose()?,
-            forward: None,
-            joints: (0..model.robot().joints()).map(|j| joint_number(model.robot(), j)).collect(),
+            ..Extras::of(model.robot())
         };
         Ok(Diagnosed { diagnosis, extras })
     }

@@ -245,9 +245,9 @@ impl Work {
             .map_err(|error| observe_failure(path, &error))?;
         let ObservedRecording { observations, motions, settings, speeds, left_out, .. } = observed;
         let rows = LeftOut { too_short: left_out, ..measured.rows };
-        let (title, robot, side) = (measured.title, measured.robot, measured.side);
-        let recorded =
-            Recorded { dynamics: measured.dynamics, title, robot, side, motions, rows, speeds, settings };
+        let (title, robot, joints, side) = (measured.title, measured.robot, measured.joints, measured.side);
+        let dynamics = measured.dynamics;
+        let recorded = Recorded { dynamics, title, robot, joints, side, motions, rows, speeds, settings };
         let [observation, ..] = observations.as_slice() else {
             return Err(Failure::Data("nothing was observed".to_owned()));
         };

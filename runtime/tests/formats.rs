@@ -308,3 +308,27 @@ fn what_a_parquet_file_lacks_is_told_with_what_it_has() {
     let _ = std::fs::remove_dir_all(&folder);
     assert!(errors[0].contains("no Parquet file") && errors[1].contains("no MCAP file"), "{errors:?}");
 }
+
+#[test]
+fn a_log_says_when_it_began_and_which_files_were_read() {
+    let manifest = |text: &str| Manifest::parse(&folder().join("recording.yaml"), text.as_bytes()).unwrap();
+    for file in ["chunked.mcap", "big_endian.mcap", "bag", "zstd.mcap"] {
+        assert_eq!(manifest(&LOG.replace("FILE", file)).begun(), Some(1_700_000_000), "{file}");
+    }
+    // Nothing is made up where nothing is said.
+    assert_eq!(manifest(&LOG.replace("FILE", "unstamped.mcap")).begun(), None);
+    assert_eq!(manifest(&TABLE.replace("FILE", "none.parquet")).begun(), None);
+    let files = |text: &str| -> Vec<String> {
+        manifest(text)
+            .data_files()
+            .into_iter()
+            .map(|(name, path)| {
+                assert!(path.is_file());
+                name
+            })
+            .collect()
+    };
+    assert_eq!(files(&TABLE.replace("FILE", "none.parquet")), ["none.parquet"]);
+    let bag = files(&LOG.replace("FILE", "bag"));
+    assert!(bag.len() > 1 && bag.iter().all(|name| name.starts_with("bag/")), "{bag:?}");
+}

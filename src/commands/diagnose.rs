@@ -1,6 +1,7 @@
 //! `dynid diagnose REC`: which physics is missing, where, and does adding it help on held-out motion?
 
 pub mod compare;
+mod extras;
 pub mod mistakes;
 mod reference;
 
@@ -13,19 +14,21 @@ use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, di
 use dynid_runtime::estimation::choose_bandwidth;
 use dynid_runtime::law_file;
 use dynid_runtime::model::JointIndex;
-use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, NamedParameter, difference, doubt};
+use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, difference};
 use dynid_runtime::signal::{Preparation, SpeedFault, contradicting_speeds};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
 use crate::arguments::{DiagnosisOptions, Source};
+use crate::compared::residual_file;
 use crate::errors::prediction_failure;
+use crate::estimated::named;
 use crate::failure::Failure;
 use crate::output::{Bar, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
 use crate::speeds::{and_of_speeds, speed_words};
-use crate::words::{capital, joint_number};
-use compare::{Test, fitted, tested};
+use crate::words::capital;
+use compare::{Test, tested};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
@@ -60,6 +63,9 @@ pub(super) struct Arguments {
     /// Write a page with the verdict, the plots and the numbers
     #[arg(long)]
     report: Option<PathBuf>,
+    /// Write states, torques and residuals row by row: a table (.csv, .parquet) or messages (.mcap)
+    #[arg(long, value_name = "FILE", value_parser = residual_file)]
+    residuals: Option<PathBuf>,
     /// Write the result for other programs; `-` is standard output
     #[arg(long)]
     json: Option<PathBuf>,
@@ -69,7 +75,7 @@ pub(super) struct Arguments {
 const QUICK: f64 = 30.0;
 
 /// Diagnoses, prints, saves.
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure> {
     let source = &arguments.recording;
     let measured = measure(source)?;
     let model = measured.dynamics.model();
@@ -115,15 +121,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let speeds: Vec<SpeedFault> = speeds.into_iter().filter(moves).collect();
     diagnosis.verdict.extend(speed_words(&speeds, robot).iter().map(|words| format!("{}.", capital(words))));
-    let extras = Extras {
-        fitted: fitted(&measured, &diagnosis, &arguments.sampling),
-        tested: match (&test, &arguments.test) {
-            (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
-            _ => None,
-        },
-        forward: simulated(&measured, &diagnosis, arguments.closed_loop),
-        joints: (0..model.robot().joints()).map(|j| joint_number(model.robot(), j)).collect(),
+    let tested = match (&test, &arguments.test) {
+        (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
+        _ => None,
     };
+    let extras = extras::of(arguments, words, &measured, &diagnosis, tested)?;
     hand_out(arguments, &measured, &diagnosis, &extras)
 }
 
@@ -142,6 +144,15 @@ fn hand_out(
     }
     if let Some(path) = &arguments.out {
         write_json(path, &improved(measured, diagnosis, extras))?;
+    }
+    if let Some(path) = &arguments.residuals {
+        let Some(compared) = extras.compared() else {
+            return Err(Failure::Data(format!(
+                "{}: too short for rows of 25 Hz bandwidth, of which --residuals are",
+                arguments.recording.recording.display()
+            )));
+        };
+        compared.write(path, &measured.joints)?;
     }
     if let Some(path) = &arguments.report {
         write(path, &page(&measured.title, diagnosis, extras, &left_out_words(&measured.rows)))?;
@@ -229,23 +240,7 @@ impl Progress for Bar {
 /// The model with the findings, in the form that `validate` and `simulate` read.
 fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Identified {
     let robot = measured.dynamics.model().robot();
-    let estimated = &diagnosis.model;
-    let parameters = robot
-        .base
-        .iter()
-        .zip(estimated.chi.iter().zip(&estimated.sigma))
-        .map(|(base, (&value, &sigma))| NamedParameter {
-            name: base.name.to_string(),
-            value,
-            sigma: Some(sigma).filter(|s| s.is_finite() && *s > 0.0),
-            relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
-            sigma_white: None,
-            correction: None,
-            doubt: doubt(robot, &base.name, value, Some(sigma).filter(|s| s.is_finite())),
-            sigma_blocks: None,
-            unit: base.unit.to_string(),
-        })
-        .collect();
+    let parameters = named(robot, &diagnosis.model);
     let own = || EvaluatedRows {
         samples: measured.trajectories.iter().map(|t| t.time.len()).sum(),
         rows_left_out: None,
@@ -254,7 +249,7 @@ fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Iden
         errors: diagnosis.after.clone(),
         noise: None,
     };
-    let mut rows = extras.fitted.as_ref().and_then(|e| EvaluatedRows::evaluated(e, 1)).unwrap_or_else(own);
+    let mut rows = extras.evaluation().and_then(|e| EvaluatedRows::evaluated(e, 1)).unwrap_or_else(own);
     rows.rows_left_out = Some(measured.rows.rows.left_out);
     Identified {
         effects: diagnosis.terms(),
@@ -278,7 +273,7 @@ pub fn for_programs(diagnosis: &Diagnosis, extras: &Extras) -> Result<serde_json
     let Some(object) = value.as_object_mut() else { return Ok(value) };
     object.remove("series");
     object.remove("spectra");
-    if let Some(evaluation) = &extras.fitted {
+    if let Some(evaluation) = extras.evaluation() {
         for (key, prediction) in ["before", "after"].into_iter().zip(&evaluation.predictions) {
             let mut errors = serde_json::json!(prediction.errors);
             errors["band"] = evaluation.band.into();

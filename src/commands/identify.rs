@@ -5,6 +5,7 @@ mod load;
 mod method;
 mod payload;
 mod physical;
+mod rows;
 mod simulated;
 
 use std::path::{Path, PathBuf};
@@ -12,15 +13,17 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dynid_runtime::estimation::observe::{Equations, Observation};
 use dynid_runtime::estimation::{Estimate, EstimateSettings, Method, estimate};
+use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
 use dynid_runtime::prediction::observed_errors;
 use dynid_runtime::report::{percent, significant};
 
 use crate::arguments::{Sampling, Source};
+use crate::compared::residual_file;
 use crate::failure::Failure;
-use crate::output::{print, table, write, write_json};
+use crate::output::{print, table, write_json};
 use crate::ranges;
-use crate::recorded::{self, Recorded, left_out_words, observe_failure};
+use crate::recorded::{self, Recorded, left_out_words};
 use crate::speeds::{and_of_speeds, speed_words};
 use crate::verdict;
 use crate::words::joint_number;
@@ -74,13 +77,16 @@ pub(super) struct Arguments {
     /// Write a page with the parameters, and the torques measured and predicted
     #[arg(long)]
     report: Option<PathBuf>,
+    /// Write states, torques and residuals row by row: a table (.csv, .parquet) or messages (.mcap)
+    #[arg(long, value_name = "FILE", value_parser = residual_file)]
+    residuals: Option<PathBuf>,
     /// Write the result for other programs; `-` is standard output
     #[arg(long)]
     json: Option<PathBuf>,
 }
 
 /// Identifies, prints, saves.
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, line: &[String]) -> Result<(), Failure> {
     if let Some(loaded) = &arguments.load.loaded {
         return gains::run(arguments, loaded);
     }
@@ -110,10 +116,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.out {
         write_json(path, &identified)?;
     }
-    if let Some(path) = &arguments.report {
-        let page = crate::pages::identification::page(&recorded, whole, &identified)
-            .map_err(|error| observe_failure(&arguments.recording.recording, &error))?;
-        write(path, &page)?;
+    if arguments.report.is_some() || arguments.residuals.is_some() {
+        rows::write(arguments, line, &recorded, whole, &identified)?;
     }
     Ok(())
 }
@@ -249,7 +253,7 @@ fn summary(
     text
 }
 
-fn parameters(robot: &dynid_runtime::model::Robot, identified: &Identified, relations: bool) -> String {
+fn parameters(robot: &Robot, identified: &Identified, relations: bool) -> String {
     let essential = identified.essential_parameters.as_ref();
     let simulated = identified.simulated.as_ref();
     let rows = identified

@@ -79,7 +79,9 @@ pub fn run() -> ExitCode {
         Err(said) => return told_by_the_parser(&said),
     };
     // What was printed may have been lost even where the command did what it was asked for.
-    match execute(cli.command).and_then(|()| finished()) {
+    let words: Vec<String> =
+        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    match execute(cli.command, &words).and_then(|()| finished()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             complain(&failure.to_string());
@@ -110,7 +112,8 @@ fn told_by_the_parser(said: &clap::Error) -> ExitCode {
     }
 }
 
-fn execute(command: Command) -> Result<(), Failure> {
+/// Runs a command; `words` are those that it was given, for the pages.
+fn execute(command: Command, words: &[String]) -> Result<(), Failure> {
     match command {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Robots => robots::run(),
@@ -119,8 +122,8 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Paper(arguments) => paper::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Challenge(arguments) => challenge::run(&arguments),
-        Command::Diagnose(arguments) => diagnose::run(&arguments),
-        Command::Identify(arguments) => identify::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments, words),
+        Command::Identify(arguments) => identify::run(&arguments, words),
         Command::Export(arguments) => export::run(&arguments),
         Command::Import(arguments) => import::run(&arguments),
         Command::Init(arguments) => init::run(&arguments),
@@ -128,7 +131,7 @@ fn execute(command: Command) -> Result<(), Failure> {
         Command::Completions(arguments) => shell::completions(&arguments),
         Command::Man => shell::manual(),
         Command::Show(arguments) => show::run(&arguments),
-        Command::Validate(arguments) => validate::run(&arguments),
+        Command::Validate(arguments) => validate::run(&arguments, words),
     }
 }
 
@@ -136,5 +139,6 @@ fn execute(command: Command) -> Result<(), Failure> {
 fn execute_words(words: &[&str]) -> Result<(), Failure> {
     let line = std::iter::once("dynid").chain(words.iter().copied());
     let cli = Cli::try_parse_from(line).map_err(|error| Failure::Input(error.to_string()))?;
-    execute(cli.command)
+    let words: Vec<String> = words.iter().map(ToString::to_string).collect();
+    execute(cli.command, &words)
 }

@@ -4,14 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::model_file::{EvaluatedRows, Identified};
-use dynid_runtime::prediction::{Evaluation, Predictor, Prepared, evaluate};
+use dynid_runtime::prediction::{Evaluation, Predictor, Prepared, evaluate, row_states};
 use dynid_runtime::recording::Manifest;
 use dynid_runtime::report::{percent, significant};
 
 use crate::arguments::{ComparisonOptions, Source};
+use crate::compared::{Compared, residual_file};
 use crate::errors::{band_words, noise_words, prediction_failure};
 use crate::failure::Failure;
-use crate::output::{print, table, warn, write_json};
+use crate::output::{print, table, warn, write, write_json};
+use crate::pages::validation::page;
+use crate::provenance::Provenance;
 use crate::recorded::{Measured, heading, left_out_words, measure_as, recording_failure};
 use crate::robots::found_again;
 use crate::saved::{known_parameters, read_model, robot_for};
@@ -25,13 +28,19 @@ pub(super) struct Arguments {
     recording: Source,
     #[command(flatten)]
     comparison: ComparisonOptions,
+    /// Write a page with the torques, measured and predicted, and what the model leaves
+    #[arg(long)]
+    report: Option<PathBuf>,
+    /// Write states, torques and residuals row by row: a table (.csv, .parquet) or messages (.mcap)
+    #[arg(long, value_name = "FILE", value_parser = residual_file)]
+    residuals: Option<PathBuf>,
     /// Write the result for other programs; `-` is standard output
     #[arg(long)]
     json: Option<PathBuf>,
 }
 
 /// Predicts, prints, saves.
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure> {
     let identified = read_model(&arguments.model)?;
     let (mut measured, prepared) = recording(arguments, &identified)?;
     measured.rows.too_short = prepared.too_short.iter().map(ToString::to_string).collect();
@@ -40,6 +49,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let predictor = Predictor { chi: &chi, effects: &identified.effects, delay: identified.delay };
     let evaluation = evaluate(model, &[predictor], &prepared.motions, &prepared.settings, &[])
         .map_err(|error| prediction_failure(&arguments.recording.recording, &error))?;
+    if arguments.report.is_some() || arguments.residuals.is_some() {
+        let states = row_states(model, &chi, &prepared.motions, &prepared.settings)
+            .map_err(|error| prediction_failure(&arguments.recording.recording, &error))?;
+        let models = &["predicted"];
+        let compared = Compared { robot: model.robot(), evaluation: &evaluation, states: &states, models };
+        if let Some(path) = &arguments.residuals {
+            compared.write(path, &measured.joints)?;
+        }
+        if let Some(path) = &arguments.report {
+            let mut from = Provenance::of(words);
+            from.file(&arguments.model)?;
+            from.recording(&arguments.recording.recording, arguments.recording.robot.as_deref())?;
+            let heading = heading(model.robot(), &measured.title);
+            let mut notes = notes(arguments, &identified, &measured, &prepared, &evaluation);
+            notes.extend(noise_words(&evaluation));
+            write(path, &page(&heading, &identified, compared, &notes, &from))?;
+        }
+    }
     if let Some(path) = &arguments.json {
         if let Some(mut rows) = EvaluatedRows::evaluated(&evaluation, 0) {
             rows.rows_left_out = Some(measured.rows.rows.left_out);
@@ -71,6 +98,27 @@ fn recording(arguments: &Arguments, identified: &Identified) -> Result<(Measured
     Ok((measured, prepared))
 }
 
+/// What was left out, which rows count, and what the model has beside its parameters.
+fn notes(
+    arguments: &Arguments,
+    identified: &Identified,
+    measured: &Measured,
+    prepared: &Prepared,
+    evaluation: &Evaluation,
+) -> Vec<String> {
+    let mut notes = left_out_words(&measured.rows);
+    notes.push(band_words(evaluation, prepared, arguments.comparison.band));
+    if !identified.effects.is_empty() {
+        let names: Vec<&str> = identified.effects.iter().map(|term| term.id()).collect();
+        notes.push(format!("effects in the model: {}", names.join(", ")));
+    }
+    if identified.delay != 0.0 {
+        let delay = significant(1e3 * identified.delay, 3);
+        notes.push(format!("delay of the torques in the model: {delay} ms"));
+    }
+    notes
+}
+
 fn summary(
     arguments: &Arguments,
     identified: &Identified,
@@ -80,21 +128,8 @@ fn summary(
 ) -> String {
     let robot = measured.dynamics.model().robot();
     let mut text = format!("{}\n", heading(robot, &measured.title));
-    for line in left_out_words(&measured.rows) {
+    for line in notes(arguments, identified, measured, prepared, evaluation) {
         text.push_str(&format!("{line}\n"));
-    }
-    let asked = arguments.comparison.band;
-    text.push_str(&band_words(evaluation, prepared, asked));
-    text.push('\n');
-    if !identified.effects.is_empty() {
-        let names: Vec<&str> = identified.effects.iter().map(|term| term.id()).collect();
-        text.push_str(&format!("effects in the model: {}\n", names.join(", ")));
-    }
-    if identified.delay != 0.0 {
-        text.push_str(&format!(
-            "delay of the torques in the model: {} ms\n",
-            significant(1e3 * identified.delay, 3)
-        ));
     }
     let Some(prediction) = evaluation.predictions.first() else { return text };
     let errors = &prediction.errors;

@@ -10,6 +10,7 @@ use std::path::Path;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table};
 
+pub use file::Fill;
 pub use terminal::{complain, finished, on_one_line, print, shown, warn};
 pub use together::Together;
 
@@ -45,8 +46,15 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
         terminal::to_standard_output(&format!("{text}\n"));
         return finished();
     }
-    file::replace(path, &mut |out: &mut dyn Write| out.write_all(text.as_bytes()))
-        .map_err(|error| file_failure("write it", path, &error))
+    fill(path, &mut |out: &mut dyn Write| out.write_all(text.as_bytes()))
+}
+
+/// Replaces a file as a whole by what `fill` writes.
+///
+/// # Errors
+/// [`Failure::Input`] naming the path; what the file held before is still there then.
+pub fn fill(path: &Path, fill: Fill<'_>) -> Result<(), Failure> {
+    file::replace(path, fill).map_err(|error| file_failure("write it", path, &error))
 }
 
 /// Makes a folder, before long work that would be lost without it.

@@ -1,36 +1,53 @@
 //! The report of `identify`: the parameters, and the torques measured and predicted.
 
-use dynid_runtime::estimation::observe::{Equations, ObserveError, ObserveSettings, Rows, observe};
 use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{Identified, NamedParameter};
-use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
+use dynid_runtime::report::{Page, percent, significant};
 
+use super::parameters::{Prior, parameters, relations};
+use super::provenance::provenance;
+use super::residuals::residuals;
+use super::torques::torques;
+use crate::compared::Compared;
+use crate::provenance::Provenance;
 use crate::recorded::{Recorded, left_out_words};
 use crate::words::joint_number;
 
-/// The whole page. Where the recording is too long for its motions to be the whole of it, the torques are those of
-/// the first pieces.
-///
-/// # Errors
-/// What the observation refuses.
-pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result<String, ObserveError> {
-    let model = recorded.dynamics.model();
-    let robot = model.robot();
-    let settings = ObserveSettings { keep_rows: true, ..recorded.settings.clone() };
-    let observation = observe(model, &recorded.motions, Equations::Torque, None, &settings, None)?;
-    let chi = identified.chi(robot).unwrap_or_else(|_| vec![0.0; robot.base.len()]);
+/// What a page of an identification is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct Told<'a> {
+    /// What was identified.
+    pub identified: &'a Identified,
+    /// The rows that are drawn.
+    pub compared: Compared<'a>,
+    /// Whether they are those of the whole recording; of a longer one they are those of its first pieces.
+    pub whole: bool,
+    /// What was known of the parameters beforehand.
+    pub prior: Option<&'a Prior>,
+    /// Where all of it comes from.
+    pub from: &'a Provenance,
+}
 
-    let mut page = Page::new(&format!("{}: {}", robot.name, recorded.title));
+/// The whole page.
+pub fn page(recorded: &Recorded, told: Told<'_>) -> String {
+    let (robot, identified) = (told.compared.robot, told.identified);
+    let mut page = Page::new(&recorded.heading());
     page.verdict(&verdict(robot, identified));
     page.list(left_out_words(&recorded.rows));
     page.list(doubts(identified));
     page.list(&identified.warnings);
+    page.heading("Base parameters");
+    parameters(&mut page, robot, &identified.base_parameters, told.prior);
+    page.note(
+        "sigma is for errors that last, as the residuals show it, and holds what noise of the encoders may have taken away: \
+         value ± 1.96 sigma contains the truth in 95 of 100 recordings. The white one is for errors that are independent from \
+         row to row.",
+    );
+    page.details("What is regrouped into each base parameter", |page| relations(page, robot));
+    more_of_parameters(&mut page, identified);
     page.heading("Torques, measured and predicted");
-    for rows in observation.rows.iter().flatten() {
-        let name = &observation.trajectories[rows.trajectory];
-        page.plot(&torque_plot(robot, rows, &chi, name, observation.trajectories.len() > 1));
-    }
-    if !whole {
+    torques(&mut page, told.compared);
+    if !told.whole {
         page.note(
             "The recording is long: only its beginning is drawn. The parameters are those of all of it.",
         );
@@ -39,13 +56,20 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
         "Both are seen through the same filter of {} Hz bandwidth. Gaps are rows that were left out.",
         significant(identified.band, 3)
     ));
-    page.heading("Base parameters");
-    page.table(&["parameter", "value", "sigma", "sigma %", "sigma, white", "<unit"], &parameters(identified));
-    page.note(
-        "sigma is for errors that last, as the residuals show it, and holds what noise of the encoders may have taken away: \
-         value ± 1.96 sigma contains the truth in 95 of 100 recordings. The white one is for errors that are independent from \
-         row to row.",
-    );
+    page.heading("What the model leaves");
+    residuals(&mut page, told.compared);
+    page.details("Rows used and left out", |page| {
+        page.table(
+            &["trajectory", "joint", "used", "standstill", "fixed", "window", "ends"],
+            &rows(identified),
+        );
+    });
+    provenance(&mut page, told.from);
+    page.to_html()
+}
+
+/// Beside another method's values, and which are essential.
+fn more_of_parameters(page: &mut Page, identified: &Identified) {
     if let Some(simulated) = &identified.simulated {
         page.subheading(&format!("Beside {}", simulated.compared_with));
         page.table(
@@ -64,19 +88,9 @@ pub fn page(recorded: &Recorded, whole: bool, identified: &Identified) -> Result
             "{} parameters are enough for an error of {}. Cancelled: {}.",
             essential.parameters.len(),
             percent(essential.relative_error),
-            essential.cancelled.join(", ")
+            if essential.cancelled.is_empty() { "none".to_owned() } else { essential.cancelled.join(", ") }
         ));
     }
-    page.details("What is regrouped into each base parameter", |page| {
-        page.table(&["parameter", "<relation"], &relations(robot));
-    });
-    page.details("Rows used and left out", |page| {
-        page.table(
-            &["trajectory", "joint", "used", "standstill", "fixed", "window", "ends"],
-            &rows(identified),
-        );
-    });
-    Ok(page.to_html())
 }
 
 fn verdict(robot: &Robot, identified: &Identified) -> String {
@@ -90,30 +104,6 @@ fn verdict(robot: &Robot, identified: &Identified) -> String {
         identified.method,
         percent(identified.relative_error)
     )
-}
-
-fn torque_plot(robot: &Robot, rows: &Rows, chi: &[f64], trajectory: &str, several: bool) -> Plot {
-    let predicted = rows.predict(chi);
-    let curve = |values: &[f64]| -> Vec<(f64, f64)> {
-        rows.time
-            .iter()
-            .zip(values)
-            .zip(&rows.used)
-            .map(|((&t, &v), &used)| (t, if used { v } else { f64::NAN }))
-            .collect()
-    };
-    let mut title = format!("Joint {}", joint_number(robot, rows.equation));
-    if several {
-        title.push_str(&format!(", {trajectory}"));
-    }
-    Plot::new(title, "time, s", "torque, N.m or N")
-        .with("measured", Role::Measured, SeriesKind::Line, curve(&rows.y))
-        .with("predicted", Role::After, SeriesKind::Line, curve(&predicted))
-        .with("difference", Role::Law, SeriesKind::Line, curve(&rows.residual(chi)))
-}
-
-fn parameters(identified: &Identified) -> Vec<Vec<String>> {
-    identified.base_parameters.iter().map(crate::commands::parameter_cells).collect()
 }
 
 /// The values beside those that the simulation began with.
@@ -136,10 +126,6 @@ fn beside(identified: &Identified, values: &[f64]) -> Vec<Vec<String>> {
 fn doubts(identified: &Identified) -> Vec<String> {
     let told = |p: &NamedParameter| p.doubt.as_ref().map(|doubt| format!("! {} is {doubt}", p.name));
     identified.base_parameters.iter().filter_map(told).collect()
-}
-
-fn relations(robot: &Robot) -> Vec<Vec<String>> {
-    robot.base.iter().map(|p| vec![p.name.to_string(), p.relation.to_string()]).collect()
 }
 
 fn rows(identified: &Identified) -> Vec<Vec<String>> {

@@ -153,6 +153,14 @@ fn exclude(plan: &mut RowPlan, motion: &Motion, windows: &[(&str, [f64; 2])]) ->
     count
 }
 
+/// A signal at the full rate, at the rows of a plan.
+pub(super) fn decimated(signal: &[f64], plan: &RowPlan) -> Vec<f64> {
+    let from = plan.grid.first.saturating_sub(plan.decimator.support());
+    let mut out = vec![0.0; plan.grid.count];
+    plan.decimator.decimate_run(&signal[from.min(signal.len())..], &mut out);
+    out
+}
+
 fn joint_rows(
     trajectory: usize,
     joint: usize,
@@ -160,12 +168,7 @@ fn joint_rows(
     plan: &RowPlan,
     predicted: &[&[f64]],
 ) -> JointRows {
-    let from = plan.grid.first.saturating_sub(plan.decimator.support());
-    let decimated = |signal: &[f64]| {
-        let mut out = vec![0.0; plan.grid.count];
-        plan.decimator.decimate_run(&signal[from.min(signal.len())..], &mut out);
-        out
-    };
+    let decimated = |signal: &[f64]| decimated(signal, plan);
     JointRows {
         trajectory,
         joint,

@@ -13,12 +13,16 @@ mod errors;
 mod evaluate;
 mod noise;
 mod predictor;
+mod states;
+mod trend;
 
 pub use crate::diagnosis::Errors;
 pub use comparison::{Comparison, Prepared};
 pub use errors::{above_noise, observed_errors};
 pub use evaluate::{Evaluation, JointRows, Prediction, evaluate};
 pub use predictor::{PredictionError, Predictor};
+pub use states::{StateRows, row_states};
+pub use trend::binned_means;
 
 #[cfg(test)]
 mod tests;

@@ -221,3 +221,25 @@ fn the_error_of_a_joint_without_torque_is_undefined() {
     assert_eq!(errors.per_joint[1], None);
     assert_eq!(serde_json::to_value(errors).unwrap()["per_joint"][1], serde_json::Value::Null);
 }
+
+#[test]
+fn states_stand_at_the_rows_of_an_evaluation_and_the_load_is_what_friction_leaves() {
+    let model = arm();
+    let truth = chi(&model);
+    let motions = [swinging(&model, &truth, 0.0, 0.0)];
+    let evaluation = evaluate(&model, &[standard(&truth)], &motions, &settings(25.0), &[]).unwrap();
+    let states = row_states(&model, &truth, &motions, &settings(25.0)).unwrap();
+    assert_eq!(states.len(), evaluation.rows.len());
+    for (rows, state) in evaluation.rows.iter().zip(&states) {
+        assert_eq!((rows.trajectory, rows.joint), (state.trajectory, state.joint));
+        for (k, t) in rows.time.iter().enumerate() {
+            let exact = [(2.1 * t).sin(), (3.4 * t).cos()][rows.joint];
+            assert!((state.position[k] - exact).abs() < 1e-3, "{} {exact}", state.position[k]);
+            let dry = 1.5 * state.speed[k] + 2.0 * state.speed[k].signum();
+            let left = rows.measured[k] - state.load[k] - dry;
+            // Next to a reversal the filter rings.
+            assert!(!rows.used[k] || state.speed[k].abs() < 1.0 || left.abs() < 0.1, "{left}");
+        }
+    }
+    assert!(row_states(&model, &[1.0], &motions, &settings(25.0)).is_err());
+}

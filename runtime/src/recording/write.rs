@@ -3,9 +3,13 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
+use std::path::Path;
 
 use super::{Trajectory, formats};
 use crate::model::{JointIndex, JointKind, Robot};
+
+/// Named columns of equal length.
+pub type Columns<'a> = Vec<(String, &'a [f64])>;
 
 /// Writes the rows of a motion as CSV with the columns that [`manifest_text`] names. Numbers are written so that they
 /// are read back exactly.
@@ -13,20 +17,32 @@ use crate::model::{JointIndex, JointKind, Robot};
 /// # Errors
 /// What `out` says.
 pub fn write_rows(trajectory: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
-    let n = trajectory.position.len();
-    let names = |letter: &str| (1..=n).map(|j| format!(",{letter}{j}")).collect::<String>();
-    let velocity = trajectory.velocity.as_ref();
-    let velocity_names = velocity.map_or(String::new(), |_| names("dq"));
-    writeln!(out, "t{}{velocity_names}{}", names("q"), names("tau"))?;
+    write_columns(&columns_of(trajectory), out)
+}
+
+/// The columns of a motion: t, q, dq where speeds were recorded, tau.
+pub(super) fn columns_of(motion: &Trajectory) -> Columns<'_> {
+    let velocity = motion.velocity.as_deref().unwrap_or_default();
+    let mut columns: Columns<'_> = vec![("t".into(), &motion.time)];
+    for (letter, channel) in [("q", &motion.position[..]), ("dq", velocity), ("tau", &motion.torque[..])] {
+        columns.extend((1..).zip(channel).map(|(j, values)| (format!("{letter}{j}"), &values[..])));
+    }
+    columns
+}
+
+/// Writes columns as CSV.
+fn write_columns(columns: &Columns<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+    writeln!(out, "{}", names.join(","))?;
     let mut line = String::new();
-    for (k, t) in trajectory.time.iter().enumerate() {
+    for k in 0..columns.first().map_or(0, |(_, values)| values.len()) {
         line.clear();
-        let channels =
-            trajectory.position.iter().chain(velocity.into_iter().flatten()).chain(&trajectory.torque);
-        // Writing to a String cannot fail.
-        let _ = write!(line, "{t}");
-        for channel in channels {
-            let _ = write!(line, ",{}", channel[k]);
+        for (place, (_, values)) in columns.iter().enumerate() {
+            if place > 0 {
+                line.push(',');
+            }
+            // Writing to a String cannot fail.
+            let _ = write!(line, "{}", values[k]);
         }
         writeln!(out, "{line}")?;
     }
@@ -62,9 +78,65 @@ impl DataFormat {
     pub fn write(self, motion: &Trajectory, joints: &[String], out: &mut dyn Write) -> io::Result<()> {
         match self {
             Self::Csv => write_rows(motion, out),
-            Self::Parquet => formats::write_parquet(motion, out),
-            Self::Mcap => formats::write_mcap(motion, joints, out),
+            Self::Parquet => formats::write_parquet(&columns_of(motion), out),
+            Self::Mcap => {
+                let none = Vec::new();
+                let velocity = motion.velocity.as_ref().unwrap_or(&none);
+                let states = vec![&motion.position[..], velocity, &motion.torque];
+                let fields = JointFields::States(states);
+                formats::write_mcap(&[JointLog::new("/joint_states", &motion.time, fields)], joints, out)
+            }
         }
+    }
+
+    /// The format that the end of a file's name stands for.
+    pub fn of_file(path: &Path) -> Option<Self> {
+        [Self::Csv, Self::Parquet, Self::Mcap].into_iter().find(|f| formats::extension(path) == f.extension())
+    }
+
+    /// Writes columns as a table, or the same as messages in MCAP; `joints` are the names of the joints in a log.
+    ///
+    /// # Errors
+    /// What `out` says; a format that this build does not have.
+    pub fn write_table(
+        self,
+        columns: &Columns<'_>,
+        logs: &[JointLog<'_>],
+        joints: &[String],
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        match self {
+            Self::Csv => write_columns(columns, out),
+            Self::Parquet => formats::write_parquet(columns, out),
+            Self::Mcap => formats::write_mcap(logs, joints, out),
+        }
+    }
+}
+
+/// Signals of all joints, `[j][t]`, as the messages of a log carry them.
+#[derive(Debug, Clone)]
+pub enum JointFields<'a> {
+    /// Position, velocity and effort of a `sensor_msgs/msg/JointState`; what is empty is not told.
+    States(Vec<&'a [Vec<f64>]>),
+    /// Accelerations, for which there is no message: `dynid_msgs/msg/JointAcceleration`, which the file describes.
+    Accelerations(&'a [Vec<f64>]),
+}
+
+/// One topic of a log.
+#[derive(Debug, Clone)]
+pub struct JointLog<'a> {
+    /// Its name.
+    pub topic: String,
+    /// Times of the messages, s, from 0 on.
+    pub time: &'a [f64],
+    /// What they carry.
+    pub fields: JointFields<'a>,
+}
+
+impl<'a> JointLog<'a> {
+    /// A topic with a message at each time.
+    pub fn new(topic: impl Into<String>, time: &'a [f64], fields: JointFields<'a>) -> Self {
+        Self { topic: topic.into(), time, fields }
     }
 }
 

@@ -24,6 +24,11 @@ impl Axis {
         Self { low: low - margin, high: high + margin, from, to }
     }
 
+    /// Least and largest value.
+    pub(super) fn range(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
     /// Pixel of a value.
     pub(super) fn pixel(&self, value: f64) -> f64 {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)

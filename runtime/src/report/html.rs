@@ -1,4 +1,5 @@
-//! One self-contained HTML page: opens from disk, reads on a phone, prints.
+//! One self-contained HTML page: opens from disk, reads on a phone, prints. A page with pictures has a script with which
+//! a reader explores them; without it the page is the same to read.
 
 use std::fmt::Write as _;
 
@@ -6,18 +7,21 @@ use super::escape::escape;
 use super::plot::Plot;
 
 const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = concat!(include_str!("picture.js"), include_str!("hand.js"));
 
 /// A page that grows from top to bottom. Every text given to it is escaped.
 #[derive(Debug, Clone)]
 pub struct Page {
     title: String,
     body: String,
+    has_pictures: bool,
 }
 
 impl Page {
     /// An empty page.
     pub fn new(title: &str) -> Self {
-        Self { title: escape(title), body: format!("<h1>{}</h1>", escape(title)) }
+        let title = escape(title);
+        Self { body: format!("<h1>{title}</h1>"), title, has_pictures: false }
     }
 
     /// The sentence that a reader in a hurry must see.
@@ -45,19 +49,29 @@ impl Page {
         self.element("p class=\"note\"", "p", text)
     }
 
-    /// A plot.
-    pub fn plot(&mut self, plot: &Plot) -> &mut Self {
-        self.body.push_str(&plot.to_html());
+    /// Words that are meant to the letter, such as a command.
+    pub fn literal(&mut self, text: &str) -> &mut Self {
+        let _ = write!(self.body, "<p><code>{}</code></p>", escape(text));
         self
     }
 
-    /// A list of sentences.
+    /// A plot.
+    pub fn plot(&mut self, plot: &Plot) -> &mut Self {
+        self.body.push_str(&plot.to_html());
+        self.has_pictures = true;
+        self
+    }
+
+    /// A list of sentences; nothing where there are none.
     pub fn list<S: AsRef<str>>(&mut self, items: impl IntoIterator<Item = S>) -> &mut Self {
-        self.body.push_str("<ul>");
+        let before = self.body.len();
         for item in items {
             self.element("li", "li", item.as_ref());
         }
-        self.body.push_str("</ul>");
+        if self.body.len() > before {
+            self.body.insert_str(before, "<ul>");
+            self.body.push_str("</ul>");
+        }
         self
     }
 
@@ -91,10 +105,11 @@ impl Page {
 
     /// The whole document.
     pub fn to_html(&self) -> String {
+        let script = if self.has_pictures { format!("<script>\n{SCRIPT}</script>\n") } else { String::new() };
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>{}</main>\n</body>\n</html>\n",
+             <title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>{}</main>\n{script}</body>\n</html>\n",
             self.title, self.body
         )
     }
@@ -110,14 +125,19 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::{Role, SeriesKind};
 
     #[test]
     fn a_page_needs_nothing_from_elsewhere() {
         let mut page = Page::new("tx40 <b>");
         page.verdict("done").table(&["joint", "error"], &[vec!["1".into(), "2 %".into()]]);
-        let html = page.to_html();
+        assert!(!page.to_html().contains("<script"));
+        let points = vec![(0.0, 1.0), (1.0, 2.0)];
+        page.plot(&Plot::new("</script>", "x", "y").with("a", Role::After, SeriesKind::Line, points));
+        let html = page.to_html().replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
         assert!(html.contains("tx40 &lt;b&gt;"));
-        for outside in ["http:", "https:", "src=", "@import", "<script"] {
+        assert_eq!((html.matches("<script").count(), html.matches("</script>").count()), (2, 2));
+        for outside in ["http:", "https:", "src=", "href=", "@import", "url(\"", "fetch(", "import("] {
             assert!(!html.contains(outside), "{outside}");
         }
     }

@@ -16,13 +16,15 @@ mod escape;
 mod html;
 mod numbers;
 mod plot;
+mod samples;
 mod series;
 mod sheet;
+mod thin;
 
 pub use alone::alone;
 pub use escape::escape;
 pub use html::Page;
 pub use numbers::{falls_or_rises, percent, significant};
-pub use plot::Plot;
+pub use plot::{Over, Plot};
 pub use series::{Band, Role, Series, SeriesKind};
 pub use sheet::{Panel, Sheet};

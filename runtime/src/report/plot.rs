@@ -1,9 +1,11 @@
-//! Plots as inline SVG: no script, no font and no file from elsewhere.
+//! Plots as inline SVG: no font and no file from elsewhere. The samples beside them are for the script of a page; without
+//! it a plot is whole.
 
 use std::fmt::Write as _;
 
 use super::axis::Axis;
 use super::escape::escape;
+use super::samples::samples;
 use super::series::{Band, Role, Series, SeriesKind, draw_series};
 
 const WIDTH: f64 = 720.0;
@@ -27,9 +29,23 @@ pub struct Plot {
     pub series: Vec<Series>,
     /// Shaded intervals.
     pub bands: Vec<Band>,
+    /// The same curves over other variables, one of which the reader chooses.
+    pub over: Vec<Over>,
+}
+
+/// The curves of a plot over another variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Over {
+    /// Name and unit of x.
+    pub x: String,
+    /// The points of each series, in their order.
+    pub points: Vec<Vec<(f64, f64)>>,
 }
 
 impl Plot {
+    /// Name of a time axis. Those of a page show the same interval.
+    pub const TIME: &str = "time, s";
+
     /// An empty plot.
     pub fn new(title: impl Into<String>, x: impl Into<String>, y: impl Into<String>) -> Self {
         Self {
@@ -39,6 +55,7 @@ impl Plot {
             height: 260.0,
             series: Vec::new(),
             bands: Vec::new(),
+            over: Vec::new(),
         }
     }
 
@@ -54,7 +71,15 @@ impl Plot {
         self
     }
 
-    /// A `figure` element with an inline SVG and a legend. Points that are not finite are not drawn.
+    /// The plot with its series over one more variable, which a reader may choose; without a script it is drawn as it
+    /// stands.
+    pub fn over(mut self, x: impl Into<String>, points: Vec<Vec<(f64, f64)>>) -> Self {
+        self.over.push(Over { x: x.into(), points });
+        self
+    }
+
+    /// A `figure` element with an inline SVG, a legend, and the samples for the script of a page. Points that are not
+    /// finite are not drawn.
     pub fn to_html(&self) -> String {
         let mut out = String::new();
         let _ = write!(out, "<figure><figcaption>{}</figcaption>", escape(&self.title));
@@ -62,31 +87,54 @@ impl Plot {
         if self.series.len() > 1 {
             out.push_str("<p class=\"legend\">");
             for series in self.series.iter().filter(|s| !s.label.is_empty()) {
+                let dots = if series.kind == SeriesKind::Points { " dots" } else { "" };
                 let _ = write!(
                     out,
-                    "<span class=\"key {}\">{}</span> ",
+                    "<span class=\"key {}{dots}\">{}</span> ",
                     series.role.class(),
                     escape(&series.label)
                 );
             }
             out.push_str("</p>");
         }
-        out.push_str("</figure>");
+        // Text in a script element ends at the first tag.
+        let samples = samples(self).to_string().replace('<', "\\u003c");
+        let _ = write!(out, "<script type=\"application/json\">{samples}</script></figure>");
         out
+    }
+
+    /// Name of x in a view: 0 as it is drawn, then over the other variables.
+    pub(super) fn name_of_x(&self, view: usize) -> &str {
+        view.checked_sub(1).and_then(|v| self.over.get(v)).map_or(&self.x, |over| &over.x)
+    }
+
+    /// x and y axis of a view.
+    pub(super) fn axes(&self, view: usize) -> [Axis; 2] {
+        let over = view.checked_sub(1).and_then(|v| self.over.get(v));
+        let points: Vec<&[(f64, f64)]> = match over {
+            Some(over) => over.points.iter().map(Vec::as_slice).collect(),
+            None => self.series.iter().map(|s| s.points.as_slice()).collect(),
+        };
+        let each = || points.iter().copied().flatten();
+        let edges = self.bands.iter().flat_map(|b| [b.from, b.to]).filter(|_| over.is_none());
+        let stems = self.series.iter().any(|s| s.kind == SeriesKind::Stems);
+        [
+            Axis::covering(each().map(|p| p.0).chain(edges), LEFT, WIDTH - RIGHT),
+            Axis::covering(each().map(|p| p.1).chain(stems.then_some(0.0)), self.height - BOTTOM, TOP),
+        ]
     }
 
     /// The SVG alone. Its classes are coloured by the page; without a page the lines are black.
     pub fn to_svg(&self) -> String {
-        let points = || self.series.iter().flat_map(|s| s.points.iter());
-        let edges = self.bands.iter().flat_map(|b| [b.from, b.to]);
-        let stems = self.series.iter().any(|s| s.kind == SeriesKind::Stems);
-        let x = Axis::covering(points().map(|p| p.0).chain(edges), LEFT, WIDTH - RIGHT);
-        let y = Axis::covering(points().map(|p| p.1).chain(stems.then_some(0.0)), self.height - BOTTOM, TOP);
+        let [x, y] = self.axes(0);
         let mut out = String::new();
         let _ = write!(
             out,
-            "<svg viewBox=\"0 0 {WIDTH} {}\" role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\">",
+            "<svg viewBox=\"0 0 {WIDTH} {}\" data-frame=\"{LEFT} {TOP} {} {}\" role=\"img\" aria-label=\"{}\" \
+             xmlns=\"http://www.w3.org/2000/svg\"><g class=\"bands\">",
             self.height,
+            WIDTH - RIGHT,
+            self.height - BOTTOM,
             escape(&self.title)
         );
         for band in &self.bands {
@@ -98,16 +146,19 @@ impl Plot {
                 self.height - BOTTOM - TOP
             );
         }
+        out.push_str("</g>");
         self.draw_axes(&mut out, &x, &y);
+        out.push_str("<g class=\"curves\">");
         for series in &self.series {
             draw_series(&mut out, series, &x, &y);
         }
-        out.push_str("</svg>");
+        out.push_str("</g></svg>");
         out
     }
 
     fn draw_axes(&self, out: &mut String, x: &Axis, y: &Axis) {
         let floor = self.height - BOTTOM;
+        out.push_str("<g class=\"ticks x\">");
         for (value, label) in x.ticks(7) {
             let at = x.pixel(value);
             let _ = write!(
@@ -116,6 +167,7 @@ impl Plot {
                 floor + 17.0
             );
         }
+        out.push_str("</g><g class=\"ticks y\">");
         for (value, label) in y.ticks(5) {
             let at = y.pixel(value);
             let _ = write!(
@@ -128,7 +180,7 @@ impl Plot {
         }
         let _ = write!(
             out,
-            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" class=\"name\">{}</text>",
+            "</g><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" class=\"name x\">{}</text>",
             0.5 * (LEFT + WIDTH - RIGHT),
             self.height - 6.0,
             escape(&self.x)
@@ -144,18 +196,7 @@ impl Plot {
 
 #[cfg(test)]
 mod tests {
-    use super::super::series::{MOST_POINTS, thinned};
     use super::*;
-
-    #[test]
-    fn a_long_line_keeps_its_extremes() {
-        let mut points: Vec<(f64, f64)> = (0..100_000).map(|k| (k as f64, (k as f64 * 0.01).sin())).collect();
-        points[54_321].1 = 7.0;
-        let thin = thinned(&points);
-        assert!(thin.len() <= MOST_POINTS + 2);
-        assert!(thin.contains(&(54_321.0, 7.0)));
-        assert!(thin.windows(2).all(|w| w[0].0 < w[1].0));
-    }
 
     #[test]
     fn a_gap_interrupts_the_line_and_words_are_escaped() {

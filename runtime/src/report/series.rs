@@ -3,12 +3,11 @@
 use std::fmt::Write as _;
 
 use super::axis::Axis;
+use super::thin::{MOST_POINTS, thinned};
 
-/// More points than this in a line are thinned to their extremes per pixel: the picture stays the same.
-pub(super) const MOST_POINTS: usize = 1400;
-
-/// Up to so many points are drawn large.
+/// Up to so many points are drawn large, from so many on small.
 const FEW: usize = 120;
+const MANY: usize = 400;
 
 /// What a series stands for; decides its colour on screen and its dash in print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,7 +97,11 @@ pub(super) fn draw_series(out: &mut String, series: &Series, x: &Axis, y: &Axis)
                 let _ = write!(path, "M{:.1} {:.1}h0", x.pixel(point.0), y.pixel(point.1));
             }
             // A few means stand out; a cloud does not hide what is in it.
-            let few = if series.points.len() <= FEW { " few" } else { "" };
+            let few = match series.points.len() {
+                count if count <= FEW => " few",
+                count if count < MANY => "",
+                _ => " many",
+            };
             let _ = write!(
                 out,
                 "<path class=\"dots{few} {class}\" fill=\"none\" stroke=\"currentColor\" stroke-linecap=\"round\" d=\"{path}\"/>"
@@ -116,25 +119,4 @@ pub(super) fn draw_series(out: &mut String, series: &Series, x: &Axis, y: &Axis)
             );
         }
     }
-}
-
-/// Where a line has more points than pixels: the lowest and the highest point of each run, in their order.
-pub(super) fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    if points.len() <= MOST_POINTS {
-        return points.to_vec();
-    }
-    let run = points.len().div_ceil(MOST_POINTS / 2);
-    let mut kept = Vec::with_capacity(MOST_POINTS + 2);
-    for chunk in points.chunks(run) {
-        let by_y = |a: &usize, b: &usize| chunk[*a].1.total_cmp(&chunk[*b].1);
-        let low = (0..chunk.len()).min_by(by_y);
-        let high = (0..chunk.len()).max_by(by_y);
-        if let (Some(low), Some(high)) = (low, high) {
-            kept.push(chunk[low.min(high)]);
-            if low != high {
-                kept.push(chunk[low.max(high)]);
-            }
-        }
-    }
-    kept
 }

@@ -4,23 +4,25 @@ use std::path::Path;
 
 use dynid_runtime::diagnosis::Diagnosis;
 use dynid_runtime::model::Model;
-use dynid_runtime::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate};
+use dynid_runtime::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate, row_states};
 
 use crate::arguments::DiagnosisOptions;
 use crate::errors::prediction_failure;
 use crate::failure::Failure;
-use crate::pages::diagnosis::Tested;
+use crate::pages::diagnosis::{Fitted, Tested};
 use crate::recorded::Measured;
 
 /// The errors on the recording itself, but for windows in which something pushed the robot. `None` where it is too
 /// short for the rows of the comparison.
-pub fn fitted(measured: &Measured, diagnosis: &Diagnosis, options: &DiagnosisOptions) -> Option<Evaluation> {
+pub fn fitted(measured: &Measured, diagnosis: &Diagnosis, options: &DiagnosisOptions) -> Option<Fitted> {
     let model = measured.dynamics.model();
     let comparison = options.comparison(model.robot().joints());
     let prepared = comparison.prepare(&measured.trajectories).ok()?;
     let pushed = diagnosis.findings.iter().flat_map(|f| &f.contacts);
     let windows: Vec<(&str, [f64; 2])> = pushed.map(|w| (w.motion.as_str(), w.window)).collect();
-    before_and_after(model, diagnosis, &prepared, &windows).ok()
+    let evaluation = before_and_after(model, diagnosis, &prepared, &windows).ok()?;
+    let states = row_states(model, &diagnosis.model.chi, &prepared.motions, &prepared.settings).ok()?;
+    Some(Fitted { evaluation, states })
 }
 
 /// A test recording, ready to be predicted.

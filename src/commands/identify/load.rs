@@ -20,7 +20,7 @@ const INERTIA: [&str; 6] = ["XX", "XY", "XZ", "YY", "YZ", "ZZ"];
 #[derive(Debug, Args)]
 pub(super) struct LoadArguments {
     /// A recording of the same robot with a payload on its last link: gains of the drives, by total least squares
-    #[arg(long, conflicts_with_all = ["method", "planned", "physical", "base", "out", "report", "payload_only"])]
+    #[arg(long, conflicts_with_all = ["method", "planned", "physical", "base", "out", "report", "residuals", "payload_only"])]
     pub loaded: Option<PathBuf>,
     /// What is known of that payload: a YAML with some of mass, centre and inertia
     #[arg(long, requires = "loaded")]
@@ -29,7 +29,7 @@ pub(super) struct LoadArguments {
     #[arg(long, requires = "payload_only")]
     pub reference: Option<PathBuf>,
     /// Only the payload that the robot of the recording carries: mass, centre and inertia
-    #[arg(long, requires = "reference", conflicts_with_all = ["method", "planned", "physical", "base", "out", "report"])]
+    #[arg(long, requires = "reference", conflicts_with_all = ["method", "planned", "physical", "base", "out", "report", "residuals"])]
     pub payload_only: bool,
 }
 

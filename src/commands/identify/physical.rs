@@ -64,6 +64,15 @@ pub(super) fn make_physical(
     Ok(words)
 }
 
+/// The standard parameters of a prior, where it has those of the robot's own frames; `None` for a URDF, whose bodies are
+/// taken in its own.
+///
+/// # Errors
+/// [`Failure::Input`] for a prior of another robot.
+pub(super) fn standard_of(path: &Path, robot: &Robot) -> Result<Option<Vec<f64>>, Failure> {
+    if is_urdf(path) { Ok(None) } else { nominal_of(path, robot).map(Some) }
+}
+
 fn nominal(robot: &Robot) -> Option<Vec<f64>> {
     robot.nominal.as_ref().map(|nominal| nominal.standard.to_vec())
 }

@@ -144,7 +144,7 @@ fn torques(series: &TorqueSeries, finding: &Finding) -> Plot {
     let curve = |values: &[f64]| with_gaps(&series.time, values.iter().copied());
     let mut plot = Plot::new(
         format!("Torque of joint {}, {}", series.joint, series.motion),
-        "time, s",
+        Plot::TIME,
         format!("torque, {}", unit(finding)),
     )
     .with("measured", Role::Measured, SeriesKind::Line, curve(&series.measured))
@@ -158,7 +158,7 @@ fn residuals(series: &TorqueSeries, finding: &Finding) -> Plot {
     let left = |model: &[f64]| with_gaps(&series.time, series.measured.iter().zip(model).map(|(y, m)| y - m));
     let mut plot = Plot::new(
         format!("What the model leaves of it, {}", series.motion),
-        "time, s",
+        Plot::TIME,
         format!("residual, {}", unit(finding)),
     )
     .with("before", Role::Before, SeriesKind::Line, left(&series.before))

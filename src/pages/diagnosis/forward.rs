@@ -4,6 +4,7 @@ use dynid_runtime::diagnosis::Diagnosis;
 use dynid_runtime::report::{Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
 use super::extras::Extras;
+use crate::words::joint_number;
 use dynid_runtime::simulation::replay::ClosedLoop;
 
 /// Recorded and simulated torques.
@@ -57,13 +58,14 @@ fn first_motion(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras, run: &C
         run.first.time.iter().copied().zip(rest).collect()
     };
     let first = &run.first;
-    let place = |number: String| extras.joints.iter().position(|known| *known == number);
+    let place =
+        |number: String| (0..extras.robot.joints()).find(|&j| joint_number(&extras.robot, j) == number);
     if let Some(j) = numbers.find_map(place).filter(|&j| j < first.recorded.len()) {
         page.plot(
             &Plot::new(
                 format!("{}: recorded less simulated torque, first motion", extras.joint(j)),
-                "time, s",
-                "N.m or N",
+                Plot::TIME,
+                "residual, N.m or N",
             )
             .with(
                 "without the findings",

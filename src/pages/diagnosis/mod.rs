@@ -6,6 +6,6 @@ mod forward;
 mod page;
 mod summary;
 
-pub use extras::{Extras, Tested};
+pub use extras::{Extras, Fitted, Tested};
 pub use page::page;
 pub use summary::summary;

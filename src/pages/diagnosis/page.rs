@@ -8,15 +8,17 @@ use super::extras::Extras;
 use super::finding::found;
 use super::forward::forward;
 use crate::errors::noise_words;
+use crate::pages::parameters::{parameters, relations};
+use crate::pages::provenance::provenance;
+use crate::pages::residuals::residuals;
+use crate::recorded::titled;
 use crate::words::{capital, joint_words, side_words, small_words, standing_words};
 
 /// The whole page.
 pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {
-    let mut page = Page::new(&format!("{}: {title}", diagnosis.robot));
+    let mut page = Page::new(&titled(&diagnosis.robot, title));
     page.verdict(&diagnosis.verdict.join(" "));
-    if !notes.is_empty() {
-        page.list(notes);
-    }
+    page.list(notes);
     errors(&mut page, diagnosis, extras);
     for finding in &diagnosis.findings {
         found(&mut page, diagnosis, finding);
@@ -30,6 +32,15 @@ pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String
     standing(&mut page, diagnosis);
     small(&mut page, diagnosis);
     unexplained(&mut page, diagnosis, extras);
+    page.heading("Parameters with the findings in the model");
+    let known = extras
+        .prior
+        .as_ref()
+        .map_or_else(String::new, |p| format!(", beside those of the {}", prior_words(p.name)));
+    page.details(&format!("All {} base parameters{known}", extras.robot.base.len()), |page| {
+        parameters(page, &extras.robot, &extras.parameters(diagnosis), extras.prior.as_ref());
+        relations(page, &extras.robot);
+    });
     page.heading("How this was done");
     page.paragraph(&format!(
         "{} equations; {} candidate effects at places with all of their shapes were tried. Every candidate was \
@@ -42,7 +53,13 @@ pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String
             significant(1e3 * diagnosis.delay, 3)
         ));
     }
+    provenance(&mut page, &extras.from);
     page.to_html()
+}
+
+/// What a prior is, in a sentence.
+fn prior_words(name: &str) -> &str {
+    if name == "nominal" { "robot's table" } else { name }
 }
 
 /// Which rows, their band, and the errors before and after on them.
@@ -52,7 +69,7 @@ pub(crate) fn error_rows(diagnosis: &Diagnosis, extras: &Extras) -> Vec<Vec<Stri
         [what, band(evaluation)].into_iter().chain(errors).collect()
     };
     let mut rows = Vec::new();
-    match &extras.fitted {
+    match extras.evaluation() {
         Some(evaluation) => rows.push(evaluated("fitted motion".to_owned(), evaluation)),
         None => rows.push(vec![
             "fitted motion".to_owned(),
@@ -115,7 +132,7 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
     if let Some(test) = &extras.tested {
         evaluated(page, "test recording", &test.evaluation);
     }
-    if let Some(evaluation) = &extras.fitted {
+    if let Some(evaluation) = extras.evaluation() {
         page.details("Each joint on the fitted motion", |page| evaluated(page, "fitted motion", evaluation));
     }
     if !held.by_motion.is_empty() {
@@ -197,6 +214,10 @@ fn unexplained(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
         "{} of the squared error that remains on held-out motion is more than noise.",
         percent(diagnosis.unexplained.share)
     ));
+    if let Some(compared) = extras.compared() {
+        residuals(page, compared);
+        return;
+    }
     page.details("What remains, joint by joint", |page| {
         for (j, curve) in diagnosis.unexplained.curves.iter().enumerate() {
             let points = curve.x.iter().copied().zip(curve.residual.iter().copied()).collect();

@@ -7,7 +7,7 @@ use super::extras::Extras;
 use super::page::error_rows;
 use crate::errors::noise_words;
 use crate::output::table;
-use crate::recorded::{Measured, left_out_words};
+use crate::recorded::{Measured, left_out_words, titled};
 
 use crate::words::{
     capital, confidence_words, effect_words, joint_words, part_words, side_words, small_words, standing_words,
@@ -15,7 +15,7 @@ use crate::words::{
 
 /// The verdict, the errors and the findings for a terminal.
 pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> String {
-    let mut text = format!("{}: {}\n", diagnosis.robot, measured.title);
+    let mut text = format!("{}\n", titled(&diagnosis.robot, &measured.title));
     for line in left_out_words(&measured.rows) {
         text.push_str(&format!("{line}\n"));
     }
@@ -26,7 +26,7 @@ pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> S
     text.push('\n');
     let header = ["<relative error of the torques", "<band", "before", "after"];
     text.push_str(&table(&header, error_rows(diagnosis, extras)));
-    let fitted = extras.fitted.iter().map(|evaluation| ("fitted motion", evaluation));
+    let fitted = extras.evaluation().into_iter().map(|evaluation| ("fitted motion", evaluation));
     let tested = extras.tested.iter().map(|t| ("test recording", &t.evaluation));
     for (which, evaluation) in fitted.chain(tested) {
         if let Some(words) = noise_words(evaluation) {

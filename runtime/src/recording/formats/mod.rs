@@ -9,8 +9,10 @@ mod parquet;
 use std::io::{self, Write};
 use std::path::Path;
 
-#[cfg(not(all(feature = "mcap", feature = "parquet")))]
-use super::Trajectory;
+#[cfg(not(feature = "parquet"))]
+use super::Columns;
+#[cfg(not(feature = "mcap"))]
+use super::JointLog;
 use super::look::Topic;
 use super::npy::NpyReader;
 use super::table::TableReader;
@@ -115,7 +117,17 @@ fn open_log(path: &Path, file: &str, wanted: &Wanted<'_>) -> Result<Box<dyn Form
 }
 
 #[cfg(feature = "mcap")]
-pub(super) use mcap::{survey, write as write_mcap};
+pub(super) use mcap::{begun, files_of, survey, write as write_mcap};
+
+#[cfg(not(feature = "mcap"))]
+pub(super) fn begun(_: &Path, _: &str, _: Option<&str>) -> Option<i64> {
+    None
+}
+
+#[cfg(not(feature = "mcap"))]
+pub(super) fn files_of(_: &Path, _: &str) -> Result<Vec<std::path::PathBuf>, RecordingError> {
+    Ok(Vec::new())
+}
 
 #[cfg(not(feature = "mcap"))]
 fn open_log(_: &Path, file: &str, _: &Wanted<'_>) -> Result<Box<dyn Format>, RecordingError> {
@@ -123,7 +135,7 @@ fn open_log(_: &Path, file: &str, _: &Wanted<'_>) -> Result<Box<dyn Format>, Rec
 }
 
 #[cfg(not(feature = "mcap"))]
-pub(super) fn write_mcap(_: &Trajectory, _: &[String], _: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write_mcap(_: &[JointLog<'_>], _: &[String], _: &mut dyn Write) -> io::Result<()> {
     Err(io::Error::other(left_out("an MCAP file", "mcap").to_string()))
 }
 
@@ -146,7 +158,7 @@ fn open_parquet(_: &Path, file: &str, _: &Wanted<'_>) -> Result<Box<dyn Format>,
 }
 
 #[cfg(not(feature = "parquet"))]
-pub(super) fn write_parquet(_: &Trajectory, _: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write_parquet(_: &Columns<'_>, _: &mut dyn Write) -> io::Result<()> {
     Err(io::Error::other(left_out("a Parquet file", "parquet").to_string()))
 }
 

@@ -29,7 +29,7 @@ struct Information {
 ///
 /// # Errors
 /// A folder without MCAP files; a format that only can be converted, with how.
-pub(super) fn files_of(path: &Path, file: &str) -> Result<Vec<PathBuf>, RecordingError> {
+pub(in crate::recording) fn files_of(path: &Path, file: &str) -> Result<Vec<PathBuf>, RecordingError> {
     let error = |message: String| RecordingError::File { file: file.into(), message };
     if !path.is_dir() {
         return match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {

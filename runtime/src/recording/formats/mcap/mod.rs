@@ -6,6 +6,7 @@
 //! used, as an epoch in nanoseconds does not fit a double.
 
 mod bag;
+mod begun;
 mod cdr;
 mod chunk;
 mod container;
@@ -28,6 +29,8 @@ use std::path::PathBuf;
 use crate::recording::RecordingError;
 use crate::recording::look::Topic;
 use crate::recording::names::meant;
+pub(in crate::recording) use bag::files_of;
+pub(in crate::recording) use begun::begun;
 use container::Records;
 use message::Kind;
 pub(super) use reader::McapReader;

@@ -1,17 +1,21 @@
-//! A motion as an MCAP file with `sensor_msgs/msg/JointState` on `/joint_states`.
+//! Signals of joints as an MCAP file: a topic each, `sensor_msgs/msg/JointState` or an own message for accelerations.
 
 use std::io::{self, Write};
 
 use super::container::{MAGIC, op};
-use crate::recording::Trajectory;
+use crate::recording::{JointFields, JointLog};
 
 const HEADER: u8 = 1;
 const SUMMARY_OFFSETS: u64 = 0;
 /// Stamps begin here, s: a stamp of 0 means that there is none.
 const EPOCH: u64 = 1_000_000_000;
 
-const JOINT_STATE: &str = "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n\
-    ================================================================================\n\
+/// Numbers of the two types.
+const STATES: u16 = 1;
+const ACCELERATIONS: u16 = 2;
+
+const JOINT_STATE: &str = "float64[] position\nfloat64[] velocity\nfloat64[] effort\n";
+const HEADER_TYPES: &str = "================================================================================\n\
     MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n\
     ================================================================================\n\
     MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
@@ -40,9 +44,10 @@ fn text(body: &mut Vec<u8>, text: &str) {
     body.extend(text.bytes());
 }
 
-/// Writes the rows of a motion; `joints` are the names of its joints. Stamps are rounded to nanoseconds.
+/// Writes topics, their messages in the order of time; `joints` are the names of the joints. Stamps are rounded to
+/// nanoseconds.
 pub(in crate::recording) fn write(
-    motion: &Trajectory,
+    logs: &[JointLog<'_>],
     joints: &[String],
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -52,20 +57,22 @@ pub(in crate::recording) fn write(
     text(&mut header, "ros2");
     text(&mut header, "dynid");
     out.record(HEADER, &header)?;
-    let (schema, channel) = (schema(), channel());
-    out.record(op::SCHEMA, &schema)?;
-    out.record(op::CHANNEL, &channel)?;
+    describe(&mut out, logs)?;
+    let mut messages: Vec<(u64, usize, usize)> = Vec::new();
+    for (channel, log) in logs.iter().enumerate() {
+        messages.extend(log.time.iter().enumerate().map(|(k, t)| (stamp(*t), channel, k)));
+    }
+    messages.sort_by_key(|message| message.0);
     let mut body = Vec::new();
-    for (k, t) in motion.time.iter().enumerate() {
-        message(&mut body, motion, joints, (k, stamp(*t)));
+    for &(stamp, channel, k) in &messages {
+        message(&mut body, (channel as u16 + 1, &logs[channel].fields), joints, (k, stamp));
         out.record(op::MESSAGE, &body)?;
     }
     // Without a checksum of the data.
     out.record(op::DATA_END, &[0; 4])?;
     let summary = out.at;
-    out.record(op::SCHEMA, &schema)?;
-    out.record(op::CHANNEL, &channel)?;
-    out.record(op::STATISTICS, &statistics(motion))?;
+    describe(&mut out, logs)?;
+    out.record(op::STATISTICS, &statistics(logs, &messages))?;
     let mut footer = Vec::new();
     footer.extend(summary.to_le_bytes());
     footer.extend(SUMMARY_OFFSETS.to_le_bytes());
@@ -74,47 +81,74 @@ pub(in crate::recording) fn write(
     out.bytes(MAGIC)
 }
 
+/// Writes the types that occur and the topics.
+fn describe(out: &mut Out<'_>, logs: &[JointLog<'_>]) -> io::Result<()> {
+    for kind in kinds(logs) {
+        let (name, of_type) = match kind {
+            STATES => ("sensor_msgs/msg/JointState", JOINT_STATE),
+            _ => ("dynid_msgs/msg/JointAcceleration", "float64[] acceleration\n"),
+        };
+        let mut body = kind.to_le_bytes().to_vec();
+        text(&mut body, name);
+        text(&mut body, "ros2msg");
+        text(&mut body, &format!("std_msgs/Header header\nstring[] name\n{of_type}{HEADER_TYPES}"));
+        out.record(op::SCHEMA, &body)?;
+    }
+    for (channel, log) in logs.iter().enumerate() {
+        let mut body = [(channel as u16 + 1).to_le_bytes(), kind(&log.fields).to_le_bytes()].concat();
+        text(&mut body, &log.topic);
+        text(&mut body, "cdr");
+        // No metadata.
+        body.extend([0; 4]);
+        out.record(op::CHANNEL, &body)?;
+    }
+    Ok(())
+}
+
+/// The number of the type of some signals.
+fn kind(fields: &JointFields<'_>) -> u16 {
+    match fields {
+        JointFields::States(_) => STATES,
+        JointFields::Accelerations(_) => ACCELERATIONS,
+    }
+}
+
+/// The types that occur.
+fn kinds(logs: &[JointLog<'_>]) -> Vec<u16> {
+    let used = |wanted: &u16| logs.iter().any(|log| kind(&log.fields) == *wanted);
+    [STATES, ACCELERATIONS].into_iter().filter(used).collect()
+}
+
 /// Nanoseconds of a time in s.
 fn stamp(time: f64) -> u64 {
     EPOCH * 1_000_000_000 + (time.max(0.0) * 1e9).round() as u64
 }
 
-fn schema() -> Vec<u8> {
-    let mut body = 1_u16.to_le_bytes().to_vec();
-    text(&mut body, "sensor_msgs/msg/JointState");
-    text(&mut body, "ros2msg");
-    text(&mut body, JOINT_STATE);
-    body
-}
-
-fn channel() -> Vec<u8> {
-    let mut body = [1_u16.to_le_bytes(), 1_u16.to_le_bytes()].concat();
-    text(&mut body, "/joint_states");
-    text(&mut body, "cdr");
-    // No metadata.
-    body.extend([0; 4]);
-    body
-}
-
-fn statistics(motion: &Trajectory) -> Vec<u8> {
-    let count = motion.time.len() as u64;
-    let mut body = count.to_le_bytes().to_vec();
-    body.extend(1_u16.to_le_bytes());
+fn statistics(logs: &[JointLog<'_>], messages: &[(u64, usize, usize)]) -> Vec<u8> {
+    let mut body = (messages.len() as u64).to_le_bytes().to_vec();
+    body.extend((kinds(logs).len() as u16).to_le_bytes());
     // Channels, attachments, metadata, chunks.
-    [1_u32, 0, 0, 0].iter().for_each(|number| body.extend(number.to_le_bytes()));
-    let [first, last] = [motion.time.first(), motion.time.last()].map(|t| stamp(t.copied().unwrap_or(0.0)));
+    [logs.len() as u32, 0, 0, 0].iter().for_each(|number| body.extend(number.to_le_bytes()));
+    let [first, last] = [messages.first(), messages.last()].map(|m| m.map_or(stamp(0.0), |m| m.0));
     body.extend(first.to_le_bytes());
     body.extend(last.to_le_bytes());
-    body.extend(10_u32.to_le_bytes());
-    body.extend(1_u16.to_le_bytes());
-    body.extend(count.to_le_bytes());
+    body.extend((10 * logs.len() as u32).to_le_bytes());
+    for (channel, log) in logs.iter().enumerate() {
+        body.extend((channel as u16 + 1).to_le_bytes());
+        body.extend((log.time.len() as u64).to_le_bytes());
+    }
     body
 }
 
-/// The body of the record of row `k`.
-fn message(body: &mut Vec<u8>, motion: &Trajectory, joints: &[String], (k, stamp): (usize, u64)) {
+/// The body of the record of message `k` of a channel.
+fn message(
+    body: &mut Vec<u8>,
+    (channel, fields): (u16, &JointFields<'_>),
+    joints: &[String],
+    (k, stamp): (usize, u64),
+) {
     body.clear();
-    body.extend(1_u16.to_le_bytes());
+    body.extend(channel.to_le_bytes());
     body.extend((k as u32).to_le_bytes());
     body.extend(stamp.to_le_bytes());
     body.extend(stamp.to_le_bytes());
@@ -134,8 +168,11 @@ fn message(body: &mut Vec<u8>, motion: &Trajectory, joints: &[String], (k, stamp
     align(body, 4);
     body.extend((joints.len() as u32).to_le_bytes());
     joints.iter().for_each(|joint| string(body, joint));
-    let none = Vec::new();
-    for channel in [&motion.position, motion.velocity.as_ref().unwrap_or(&none), &motion.torque] {
+    let lists: &[&[Vec<f64>]] = match fields {
+        JointFields::States(lists) => lists,
+        JointFields::Accelerations(list) => &[list],
+    };
+    for channel in lists {
         align(body, 4);
         body.extend((channel.len() as u32).to_le_bytes());
         if !channel.is_empty() {

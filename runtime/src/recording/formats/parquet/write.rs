@@ -1,4 +1,4 @@
-//! A motion as a Parquet file with the columns of the CSV.
+//! Columns as a Parquet file.
 
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -10,26 +10,20 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use crate::recording::Trajectory;
+use crate::recording::Columns;
 
 /// Rows of a group.
 const GROUP: usize = 100_000;
 
-/// Writes the rows of a motion, as doubles that are not packed.
-pub(in crate::recording) fn write(motion: &Trajectory, out: &mut dyn Write) -> io::Result<()> {
+/// Writes columns as doubles that are not packed.
+pub(in crate::recording) fn write(columns: &Columns<'_>, out: &mut dyn Write) -> io::Result<()> {
     // The writer wants something that it owns and can send.
     let mut bytes = Vec::new();
-    rows(motion, &mut bytes).map_err(io::Error::other)?;
+    rows(columns, &mut bytes).map_err(io::Error::other)?;
     out.write_all(&bytes)
 }
 
-fn rows(motion: &Trajectory, out: &mut Vec<u8>) -> Result<()> {
-    let n = motion.position.len();
-    let velocity = motion.velocity.as_deref().unwrap_or_default();
-    let mut columns: Vec<(String, &[f64])> = vec![("t".into(), &motion.time)];
-    for (letter, channel) in [("q", &motion.position[..]), ("dq", velocity), ("tau", &motion.torque[..])] {
-        columns.extend((1..=n).zip(channel).map(|(j, values)| (format!("{letter}{j}"), &values[..])));
-    }
+fn rows(columns: &Columns<'_>, out: &mut Vec<u8>) -> Result<()> {
     let field = |(name, _): &(String, &[f64])| {
         let double = Type::primitive_type_builder(name, Physical::DOUBLE);
         double.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
@@ -39,7 +33,7 @@ fn rows(motion: &Trajectory, out: &mut Vec<u8>) -> Result<()> {
     let properties =
         WriterProperties::builder().set_dictionary_enabled(false).set_created_by("dynid".into()).build();
     let mut writer = SerializedFileWriter::new(out, schema, Arc::new(properties))?;
-    for first in (0..motion.time.len()).step_by(GROUP) {
+    for first in (0..columns.first().map_or(0, |(_, values)| values.len())).step_by(GROUP) {
         let mut group = writer.next_row_group()?;
         let mut values = columns.iter().map(|(_, values)| &values[first..(first + GROUP).min(values.len())]);
         while let (Some(mut column), Some(values)) = (group.next_column()?, values.next()) {
