@@ -131,6 +131,15 @@ fn friction_that_falls_from_rest_is_named_stribeck() {
     assert_only(&diagnosis, EffectKind::Stribeck, &[2]);
     assert_within_four_sigma(&diagnosis, "fs", 3.0);
     assert_within_four_sigma(&diagnosis, "vs", 0.3);
+    // Its picture is the law, not a mean of it over what lies between two points of the residual.
+    let finding = &diagnosis.findings[0];
+    let [fs, vs] = ["fs", "vs"].map(|name| finding.parameters[name].value);
+    let fine = &finding.curve.as_ref().expect("a picture").fine;
+    assert!(fine.x.len() > 100, "{}", fine.x.len());
+    for (x, torque) in fine.x.iter().zip(&fine.torque).filter(|(x, _)| x.abs() > 0.05) {
+        let law = fs * (-(x / vs).powi(2)).exp() * x.signum();
+        assert!((torque - law).abs() < 0.01 * fs, "{torque} instead of {law} at {x} rad/s");
+    }
 }
 
 #[test]

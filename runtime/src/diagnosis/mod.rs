@@ -104,9 +104,9 @@ mod stages;
 pub use error::{DiagnosisError, SingularDesign};
 pub use experiment::{Distances, Question, distances, typical_laws};
 pub use outcome::{
-    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, HeldOut, Mismatch, NotJudged,
-    OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling, SearchOutcome, Small,
-    Standing, StopReason, TorqueSeries, Unexplained, WithoutIt,
+    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, FineLaw, HeldOut, Mismatch,
+    NotJudged, OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling,
+    SearchOutcome, Small, Standing, StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
 pub use portrait::{Portrait, imitators, portrait};
 pub use predict::{joint_scales, term_torques};

@@ -323,6 +323,8 @@ pub(super) const ROBUST_ROUNDS: usize = 20;
 /// Mean squared residual, in noise variances, at which the robust weight (Cauchy's) is one half. Judgement:
 /// Cauchy's usual 2.385² for one row, less as all joints of an instant share a weight.
 pub(super) const ROBUST_SCALE: f64 = 3.0;
+/// Points that a law is drawn by, of equal width. Judgement: a picture is some 700 pixels wide.
+pub(super) const FINE_BINS: usize = 300;
 /// Standard deviation of a normal per median absolute deviation. Statistics.
 pub(super) const SIGMA_PER_MAD: f64 = 1.4826;
 /// Least robust standard deviation relative to the joint's largest torque: noise-free recordings. Mechanics.

@@ -84,7 +84,11 @@ fn numbers(page: &mut Page, finding: &Finding, words: Option<&Words>) {
 /// The residual over the variable that reveals the effect, with the law.
 fn revealing(curve: &Curve) -> Plot {
     let points: Vec<(f64, f64)> = curve.x.iter().copied().zip(curve.residual.iter().copied()).collect();
-    let law: Vec<(f64, f64)> = curve.x.iter().copied().zip(curve.law.iter().copied()).collect();
+    let (x, torque) = match curve.fine.is_empty() {
+        true => (&curve.x, &curve.law),
+        false => (&curve.fine.x, &curve.fine.torque),
+    };
+    let law: Vec<(f64, f64)> = x.iter().copied().zip(torque.iter().copied()).collect();
     let bound = |sign: f64| -> Vec<(f64, f64)> {
         let with_error = curve.residual.iter().zip(&curve.error).map(|(r, e)| r + sign * 2.0 * e);
         curve.x.iter().copied().zip(with_error).collect()

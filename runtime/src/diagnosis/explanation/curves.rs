@@ -1,5 +1,6 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
+use crate::diagnosis::explanation::fine_law::fine_law;
 use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::explanation::standard_model::StandardModelFit;
 use crate::diagnosis::outcome::{Curve, Mismatch, TorqueSeries, Unexplained};
@@ -70,30 +71,28 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
     let residual = side.fit.residual(design);
     let properties = term.effect.properties();
     let signals = model.context.signals;
-    let along = |r: &RowAt| {
-        if properties.along_motion { signals[r.signal].dq[joint][r.centre].signum() } else { 1.0 }
+    let along = |signal: usize, t: usize| {
+        if properties.along_motion { signals[signal].dq[joint][t].signum() } else { 1.0 }
     };
     let variable = first_variable(model, term);
     let over: Option<Vec<Vec<f64>>> =
         variable.map(|v| (0..signals.len()).map(|k| values(&model.context, k, v)).collect());
+    let at = |signal: usize, t: usize| match &over {
+        Some(of_motion) => of_motion[signal][t],
+        None => abscissa(&model.context, (term.effect, term.place, &term.shape), joint, (signal, t)),
+    };
     let rows: Vec<(f64, f64, f64)> = design
         .of_joint(joint)
         .filter(|&r| signals[design.rows[r].signal].is_target)
         .map(|r| {
             let law: f64 = dense.iter().zip(&amplitude).map(|(c, a)| a * c[r]).sum();
-            let sign = along(&design.rows[r]);
-            let at = match &over {
-                Some(of_motion) => of_motion[design.rows[r].signal][design.rows[r].centre],
-                None => {
-                    let row = &design.rows[r];
-                    let law = (term.effect, term.place, term.shape.as_slice());
-                    abscissa(&model.context, law, joint, (row.signal, row.centre))
-                }
-            };
-            (at, sign * (residual[r] + law), sign * law)
+            let (signal, t) = (design.rows[r].signal, design.rows[r].centre);
+            let sign = along(signal, t);
+            (at(signal, t), sign * (residual[r] + law), sign * law)
         })
         .collect();
     let mut curve = binned(rows);
+    curve.fine = fine_law(model, (term, &amplitude), joint, at, along);
     let kind = |j: usize| model.context.scales[j].kind;
     let name = match variable {
         Some(variable) => {

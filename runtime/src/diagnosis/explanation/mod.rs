@@ -5,6 +5,7 @@ pub(in crate::diagnosis) mod curves;
 pub(in crate::diagnosis) mod delay;
 pub(in crate::diagnosis) mod explain;
 pub(in crate::diagnosis) mod finding;
+mod fine_law;
 pub(in crate::diagnosis) mod free_form;
 pub(in crate::diagnosis) mod line;
 mod proposal;

@@ -20,6 +20,25 @@ pub struct Curve {
     /// Twice the standard deviation of the law itself; empty where it was not worked out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub band: Vec<f64>,
+    /// The law drawn finely; nothing where the law is its means.
+    #[serde(default, skip_serializing_if = "FineLaw::is_empty")]
+    pub fine: FineLaw,
+}
+
+/// A law over the variable that reveals it, as finely as a picture shows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct FineLaw {
+    /// Variable.
+    pub x: Vec<f64>,
+    /// Torque of the law there.
+    pub torque: Vec<f64>,
+}
+
+impl FineLaw {
+    /// Whether nothing is drawn.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
 }
 
 /// Amplitude over order of a joint's residual: periods per radian (or metre) times 2 pi.

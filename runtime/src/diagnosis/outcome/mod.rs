@@ -4,7 +4,7 @@ mod drawn;
 mod errors;
 mod finding;
 
-pub use drawn::{Curve, OrderSpectrum, TorqueSeries};
+pub use drawn::{Curve, FineLaw, OrderSpectrum, TorqueSeries};
 pub use errors::{Errors, HeldOut, Mismatch, Unexplained};
 pub use finding::{
     Alternative, CannotTell, Finding, NotJudged, OnTest, ParameterValue, Refuted, Removed, Small, Standing,
