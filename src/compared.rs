@@ -127,7 +127,7 @@ impl<'a> Compared<'a> {
             add(name, &|m| &m.signals[k]);
         }
         for (k, name) in self.models.iter().enumerate() {
-            add(&format!("{name}_"), &|m| &m.predicted[k]);
+            add(name, &|m| &m.predicted[k]);
         }
         add("residual", &|m| &m.residual[0]);
         add("used", &|m| &m.used);

@@ -44,7 +44,7 @@ fn the_error_of_each_joint_is_that_of_the_rows_that_are_written() {
         let text = std::fs::read_to_string(folder.path("rows.csv")).unwrap();
         for j in 1..=2 {
             let of = |name: &str| column(&text, &format!("{name}{j}"));
-            let (measured, predicted, left) = (of("tau"), of("predicted_"), of("residual"));
+            let (measured, predicted, left) = (of("tau"), of("predicted"), of("residual"));
             assert!(measured.len() > 100);
             let (mut squares, mut whole) = (0.0, 0.0);
             for (k, used) in of("used").into_iter().enumerate() {
@@ -55,7 +55,7 @@ fn the_error_of_each_joint_is_that_of_the_rows_that_are_written() {
             let (ours, theirs) = ((squares / whole).sqrt(), told[j - 1].as_f64().unwrap());
             assert!((ours - theirs).abs() < 1e-9 * theirs.max(1e-3), "{command}: {ours} {theirs}");
         }
-        assert_eq!(command.starts_with("diagnose"), text.contains("before_1"));
+        assert_eq!(command.starts_with("diagnose"), text.contains("before1"));
     }
 }
 
@@ -66,7 +66,7 @@ fn a_log_of_residuals_is_a_recording_and_holds_what_the_tables_hold() {
         run(&folder, &format!("validate m.json recording.yaml --residuals {file}"));
     }
     let text = std::fs::read_to_string(folder.path("rows.csv")).unwrap();
-    let columns = "time: {rate: 100}\nposition: {columns: [q1, q2]}\ntorque: {columns: [predicted_1, predicted_2], unit: N.m}\n";
+    let columns = "time: {rate: 100}\nposition: {columns: [q1, q2]}\ntorque: {columns: [predicted1, predicted2], unit: N.m}\n";
     folder
         .write("table.yaml", &format!("robot: planar_2r\n{columns}trajectories: [{{file: rows.parquet}}]\n"));
     let log = "robot: planar_2r\njoints: [joint1, joint2]\ntorque: {unit: N.m}\n\
@@ -80,7 +80,7 @@ fn a_log_of_residuals_is_a_recording_and_holds_what_the_tables_hold() {
     let table = read("table.yaml");
     // Where the second motion begins, the arm is elsewhere: the reader cuts there.
     let first = column(&text, "motion").iter().filter(|m| **m == 1.0).count();
-    assert_eq!(table.torque[1], column(&text, "predicted_2")[..first]);
+    assert_eq!(table.torque[1], column(&text, "predicted2")[..first]);
     let log = read("log.yaml");
     assert_eq!(log.torque[0], column(&text, "tau1")[..first]);
     assert_eq!(log.position[1], column(&text, "q2")[..first]);
