@@ -43,19 +43,6 @@ macro_rules! catalogue {
     };
 }
 
-/// A joint of which every scale is one.
-#[cfg(test)]
-pub(super) const PLAIN: super::Scale = super::Scale {
-    speed: 1.0,
-    range: 1.0,
-    centre: 0.0,
-    torque: 1.0,
-    duration: 1.0,
-    gear: 1.0,
-    fast: 0.0,
-    kind: crate::model::JointKind::Revolute,
-};
-
 catalogue! {
     stribeck: Stribeck,
     nonlinear_viscous: NonlinearViscous,

@@ -1,7 +1,7 @@
 //! Whether a term that comes from a file can be evaluated on a robot.
 
 use super::{At, EffectTerm, Form, FreeLaw, JointLaw, Place, Scale};
-use crate::model::{JointKind, JointNumber, Robot};
+use crate::model::{JointNumber, Robot};
 
 /// What of a term cannot be.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -14,16 +14,7 @@ pub struct TermError {
 }
 
 /// A joint on which every law offers all of its shapes.
-const WIDE: Scale = Scale {
-    speed: 1.0,
-    range: 1e3,
-    centre: 0.0,
-    torque: 1.0,
-    duration: 1.0,
-    gear: 1.0,
-    fast: 1.0,
-    kind: JointKind::Revolute,
-};
+const WIDE: Scale = Scale { range: 1e3, fast: 1.0, ..Scale::UNIT };
 
 impl EffectTerm {
     /// Checks that every place, length and number of the term is one that its effect has on this robot.

@@ -165,11 +165,10 @@ impl GearLoad {
 
 #[cfg(test)]
 mod tests {
-    use super::super::catalogue::PLAIN;
     use super::*;
 
     fn scale() -> Scale {
-        Scale { fast: 0.75, ..PLAIN }
+        Scale { fast: 0.75, ..Scale::UNIT }
     }
 
     #[test]
@@ -180,8 +179,9 @@ mod tests {
             assert_eq!(told, (load.part, load.fast.is_some()));
         }
         let at = At { load: 3.0, link: 2.0, gravity: 1.0, sign: 1.0, ..At::default() };
-        let plain = shapes(&PLAIN);
-        let values: Vec<f64> = plain.iter().map(|s| GearLoad::of(s).losses(&PLAIN, &at).driving).collect();
+        let plain = shapes(&Scale::UNIT);
+        let values: Vec<f64> =
+            plain.iter().map(|s| GearLoad::of(s).losses(&Scale::UNIT, &at).driving).collect();
         assert_eq!(values, [1.0, 3.0, 2.0], "none with fast torques where there are none");
     }
 

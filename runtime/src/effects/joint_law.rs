@@ -27,6 +27,20 @@ pub struct Scale {
     pub kind: JointKind,
 }
 
+impl Scale {
+    /// A revolute joint with speed, travel, torque, time and gear of one: shapes are numbers in SI as they stand.
+    pub const UNIT: Self = Self {
+        speed: 1.0,
+        range: 1.0,
+        centre: 0.0,
+        torque: 1.0,
+        duration: 1.0,
+        gear: 1.0,
+        fast: 0.0,
+        kind: JointKind::Revolute,
+    };
+}
+
 /// One joint at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct At {

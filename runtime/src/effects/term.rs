@@ -99,16 +99,20 @@ pub struct TermScale {
 
 impl TermScale {
     /// A revolute joint with speed, travel, torque, time and gear of one: shapes are numbers in SI as they stand.
-    pub const UNIT: Self = Self {
-        speed: 1.0,
-        range: 1.0,
-        centre: 0.0,
-        torque: 1.0,
-        duration: 1.0,
-        gear: 1.0,
-        fast: 0.0,
-        prismatic: false,
-    };
+    pub const UNIT: Self = Self::of(Scale::UNIT);
+
+    const fn of(s: Scale) -> Self {
+        Self {
+            speed: s.speed,
+            range: s.range,
+            centre: s.centre,
+            torque: s.torque,
+            duration: s.duration,
+            gear: s.gear,
+            fast: s.fast,
+            prismatic: matches!(s.kind, JointKind::Prismatic),
+        }
+    }
 
     /// Whether the joint turns or slides.
     pub fn kind(self) -> JointKind {
@@ -118,16 +122,7 @@ impl TermScale {
 
 impl From<Scale> for TermScale {
     fn from(s: Scale) -> Self {
-        Self {
-            speed: s.speed,
-            range: s.range,
-            centre: s.centre,
-            torque: s.torque,
-            duration: s.duration,
-            gear: s.gear,
-            fast: s.fast,
-            prismatic: s.kind == JointKind::Prismatic,
-        }
+        Self::of(s)
     }
 }
 

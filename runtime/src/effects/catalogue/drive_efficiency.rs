@@ -140,9 +140,9 @@ mod tests {
         for (load, sign) in [(3.0, 1.0), (3.0, -1.0), (-2.0, 1.0), (-2.0, -1.0)] {
             let at = At { link: load, sign, ..At::default() };
             let (mut own, mut friction) = ([0.0; 2], [0.0]);
-            DriveEfficiency.law(&super::super::PLAIN, &[1.0], &at, 0.0, &mut own);
+            DriveEfficiency.law(&Scale::UNIT, &[1.0], &at, 0.0, &mut own);
             let simpler = super::super::load_dependent_friction::LoadDependentFriction;
-            simpler.law(&super::super::PLAIN, &[1.0], &at, 0.0, &mut friction);
+            simpler.law(&Scale::UNIT, &[1.0], &at, 0.0, &mut friction);
             assert_eq!(own[0] + own[1], friction[0]);
             assert_eq!((own[0] - own[1]).abs(), load.abs(), "opposite ones are a factor on the load");
         }

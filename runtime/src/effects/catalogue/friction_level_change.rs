@@ -117,16 +117,7 @@ mod tests {
 
     #[test]
     fn a_change_of_both_coefficients_has_the_factor_of_the_friction_at_half_speed() {
-        let scale = Scale {
-            speed: 2.0,
-            range: 1.0,
-            centre: 0.0,
-            torque: 1.0,
-            duration: 1.0,
-            gear: 1.0,
-            fast: 0.0,
-            kind: crate::model::JointKind::Revolute,
-        };
+        let scale = Scale { speed: 2.0, ..Scale::UNIT };
         let shape = [3.0, 1.0];
         assert_eq!(FrictionLevelChange.amplitudes(&shape), 2);
         let found = FrictionLevelChange.parameters(&scale, &shape, &[1.0, -0.2], &[0.0, 0.1]);

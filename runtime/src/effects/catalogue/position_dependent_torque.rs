@@ -157,16 +157,7 @@ mod tests {
 
     #[test]
     fn beyond_the_travel_the_torque_stays() {
-        let scale = Scale {
-            speed: 1.0,
-            range: 2.0,
-            centre: 1.0,
-            torque: 1.0,
-            duration: 1.0,
-            gear: 1.0,
-            fast: 0.0,
-            kind: crate::model::JointKind::Revolute,
-        };
+        let scale = Scale { range: 2.0, centre: 1.0, ..Scale::UNIT };
         let shape = &PositionDependentTorque.shapes(&scale)[0];
         let at = |q: f64| {
             let mut out = [0.0; DEGREE];

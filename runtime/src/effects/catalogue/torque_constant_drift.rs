@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_change_begins_at_nothing_and_ends_at_its_amplitude() {
-        for shape in TorqueConstantDrift.shapes(&super::super::PLAIN) {
+        for shape in TorqueConstantDrift.shapes(&Scale::UNIT) {
             assert_eq!(way(&shape, 0.0), 0.0);
             assert!((way(&shape, shape[1]) - 1.0).abs() < 1e-12);
         }
