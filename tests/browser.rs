@@ -104,7 +104,7 @@ fn values_are_shown_under_the_pointer_and_by_keys() {
         text.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect::<Vec<f64>>());
     let near = |row: &Vec<f64>| row[0] == 1.0 && (row[column("t")] - shown[0]).abs() < 2e-3;
     let row = rows.into_iter().find(near).unwrap_or_else(|| panic!("no row at {shown:?}"));
-    for (value, name) in shown[1..].iter().zip(["tau1", "predicted_1", "residual1"]) {
+    for (value, name) in shown[1..].iter().zip(["tau1", "predicted1", "residual1"]) {
         let truth = row[column(name)];
         assert!((value - truth).abs() < 1e-3 * truth.abs() + 1e-3, "{name}: {value} for {truth}");
     }
