@@ -1,8 +1,9 @@
-//! The parameters of a diagnosis, by name.
+//! Base parameters by name, and as cells of a table.
 
 use dynid_runtime::diagnosis::Estimated;
 use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{NamedParameter, doubt};
+use dynid_runtime::report::significant;
 
 /// Base parameters with their names and units, in the robot's order.
 pub fn named(robot: &Robot, estimated: &Estimated) -> Vec<NamedParameter> {
@@ -20,4 +21,23 @@ pub fn named(robot: &Robot, estimated: &Estimated) -> Vec<NamedParameter> {
             unit: base.unit.to_string(),
         })
         .collect()
+}
+
+/// Name, value, sigma, relative sigma, sigma for white noise and unit as text.
+pub fn cells(p: &NamedParameter) -> Vec<String> {
+    let optional =
+        |value: Option<f64>, digits| value.map_or_else(|| "-".to_owned(), |v| significant(v, digits));
+    vec![
+        p.name.clone(),
+        value(p),
+        optional(p.sigma, 2),
+        optional(p.relative_sigma_percent, 2),
+        optional(p.sigma_white, 2),
+        p.unit.clone(),
+    ]
+}
+
+/// A value, with a mark where no robot can have it.
+pub fn value(p: &NamedParameter) -> String {
+    format!("{}{}", significant(p.value, 4), if p.doubt.is_some() { " !" } else { "" })
 }

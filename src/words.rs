@@ -27,14 +27,6 @@ pub fn effect_words(id: &str) -> String {
     EffectKind::name_of(id).to_owned()
 }
 
-/// The words with a capital letter first.
-pub fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
-}
-
 /// Effects that cannot be told apart.
 pub fn side_words(cannot_tell: &CannotTell) -> Vec<String> {
     let sides = cannot_tell.sides().into_iter().zip(&cannot_tell.between);

@@ -26,8 +26,7 @@ fn revealing(finding: &Finding) -> Option<Panel> {
     let bound = |sign: f64| -> Vec<f64> {
         curve.residual.iter().zip(&curve.error).map(|(r, e)| r + sign * 2.0 * e).collect()
     };
-    let title =
-        EffectKind::from_id(&finding.effect).map_or_else(|| finding.effect.clone(), |k| k.words().title());
+    let title = EffectKind::title_of(&finding.effect);
     let on: Vec<String> = finding.joints.iter().map(ToString::to_string).collect();
     let place = if on.is_empty() { String::new() } else { format!(", joint {}", on.join(" and ")) };
     Some(Panel {

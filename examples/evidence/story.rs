@@ -105,8 +105,7 @@ fn named(text: &mut String, told: &Told<'_>) {
 }
 
 fn finding_words(text: &mut String, finding: &Finding) {
-    let title =
-        EffectKind::from_id(&finding.effect).map_or_else(|| finding.effect.clone(), |k| k.words().title());
+    let title = EffectKind::title_of(&finding.effect);
     let numbers: Vec<String> = finding
         .parameters
         .iter()

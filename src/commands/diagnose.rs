@@ -15,6 +15,7 @@ use dynid_runtime::estimation::choose_bandwidth;
 use dynid_runtime::law_file;
 use dynid_runtime::model::JointIndex;
 use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, difference};
+use dynid_runtime::report::capital;
 use dynid_runtime::signal::{Preparation, SpeedFault, contradicting_speeds};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
 
@@ -27,7 +28,7 @@ use crate::output::{Bar, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
 use crate::speeds::{and_of_speeds, speed_words};
-use crate::words::capital;
+
 use compare::{Test, tested};
 
 /// What to diagnose and where to put it.

@@ -14,12 +14,13 @@ use clap::Args;
 use dynid_runtime::estimation::observe::{Equations, Observation};
 use dynid_runtime::estimation::{Estimate, EstimateSettings, Method, estimate};
 use dynid_runtime::model::Robot;
-use dynid_runtime::model_file::{EvaluatedRows, Identified, NamedParameter};
+use dynid_runtime::model_file::{EvaluatedRows, Identified};
 use dynid_runtime::prediction::observed_errors;
 use dynid_runtime::report::{percent, significant};
 
 use crate::arguments::{Sampling, Source};
 use crate::compared::residual_file;
+use crate::estimated::{cells, value};
 use crate::failure::Failure;
 use crate::output::{print, table, write_json};
 use crate::ranges;
@@ -281,25 +282,6 @@ fn parameters(robot: &Robot, identified: &Identified, relations: bool) -> String
         header.push("<");
     }
     table(&header, rows)
-}
-
-/// Name, value, sigma, relative sigma, sigma for white noise and unit as text.
-pub(crate) fn cells(p: &NamedParameter) -> Vec<String> {
-    let optional =
-        |value: Option<f64>, digits| value.map_or_else(|| "-".to_owned(), |v| significant(v, digits));
-    vec![
-        p.name.clone(),
-        value(p),
-        optional(p.sigma, 2),
-        optional(p.relative_sigma_percent, 2),
-        optional(p.sigma_white, 2),
-        p.unit.clone(),
-    ]
-}
-
-/// A value, with a mark where no robot can have it.
-fn value(p: &NamedParameter) -> String {
-    format!("{}{}", significant(p.value, 4), if p.doubt.is_some() { " !" } else { "" })
 }
 
 /// Which equations were used and which were not.

@@ -17,8 +17,6 @@ mod show;
 mod simulate;
 mod validate;
 
-pub(crate) use identify::cells as parameter_cells;
-
 use clap::{Parser, Subcommand};
 
 use crate::failure::Failure;

@@ -4,6 +4,8 @@ use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{Identified, NamedParameter};
 use dynid_runtime::report::{Page, significant};
 
+use crate::estimated::cells;
+
 /// What was known of the base parameters beforehand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
@@ -41,21 +43,21 @@ pub(super) fn parameters(page: &mut Page, robot: &Robot, found: &[NamedParameter
     let row = |p: &NamedParameter| {
         let at = robot.base.iter().position(|b| b.name == p.name);
         let known = prior.and_then(|prior| *prior.values.get(at?)?);
-        // Without it, the unit, which is the last of the cells.
-        let mut cells = crate::commands::parameter_cells(p);
-        let unit = cells.pop().unwrap_or_default();
+        // The unit, which is the last of the cells, goes to the end.
+        let mut row = cells(p);
+        let unit = row.pop().unwrap_or_default();
         if !has_white {
-            cells.pop();
+            row.pop();
         }
         let number = |value: Option<f64>, digits| value.map_or("-".to_owned(), |v| significant(v, digits));
         if prior.is_some() {
-            cells.push(number(known.map(|k| k.0), 4));
+            row.push(number(known.map(|k| k.0), 4));
         }
         if has_prior_sigma {
-            cells.push(number(known.and_then(|k| k.1), 2));
+            row.push(number(known.and_then(|k| k.1), 2));
         }
-        cells.push(unit);
-        cells
+        row.push(unit);
+        row
     };
     page.table(&header, &found.iter().map(row).collect::<Vec<_>>());
 }

@@ -1,10 +1,9 @@
 //! What models leave of the torques of each joint, over the variable that the reader chooses.
 
 use dynid_runtime::prediction::{JointRows, StateRows, binned_means};
-use dynid_runtime::report::{Page, Plot, Role, SeriesKind};
+use dynid_runtime::report::{Page, Plot, Role, SeriesKind, capital};
 
 use crate::compared::Compared;
-use crate::words::capital;
 
 /// Means over so many bins are drawn through the residuals.
 const BINS: usize = 40;

@@ -1,10 +1,10 @@
 //! Torques over time, measured and as one model predicts them.
 
 use dynid_runtime::prediction::JointRows;
-use dynid_runtime::report::{Page, Plot, Role, SeriesKind};
+use dynid_runtime::report::{Page, Plot, Role, SeriesKind, capital};
 
 use crate::compared::Compared;
-use crate::words::{capital, joint_number};
+use crate::words::joint_number;
 
 /// A picture for each motion and joint: measured, predicted by the last model, and their difference.
 pub(super) fn torques(page: &mut Page, compared: Compared<'_>) {

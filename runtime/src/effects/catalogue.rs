@@ -87,6 +87,11 @@ impl EffectKind {
         Self::from_id(id).map_or(id, |kind| kind.words().name)
     }
 
+    /// The same as a title, with a capital letter first; an id stays what it is.
+    pub fn title_of(id: &str) -> String {
+        Self::from_id(id).map_or_else(|| id.to_owned(), |kind| kind.words().title())
+    }
+
     /// Its name in the JSON.
     pub fn id(self) -> &'static str {
         self.words().id

@@ -3,6 +3,7 @@
 use super::form::Form;
 use super::quantity::Quantities;
 use crate::model::JointKind;
+use crate::report::capital;
 
 /// An effect of the catalogue.
 ///
@@ -52,14 +53,9 @@ pub struct Words {
 impl Words {
     /// Its name with a capital letter first.
     pub fn title(&self) -> String {
-        let mut letters = self.name.chars();
-        letters
-            .next()
-            .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+        capital(self.name)
     }
-}
 
-impl Words {
     /// What a name of its quantities means; quantities that are counted (`amplitude_2`, `p3`) have the meaning of the
     /// first. Empty where there is none of this name.
     pub fn meaning(&self, name: &str) -> &'static str {

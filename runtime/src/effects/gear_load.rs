@@ -44,6 +44,12 @@ pub(super) struct Losses {
     pub driven: f64,
 }
 
+/// First numbers of shapes, by which saved models tell the loads apart.
+const GRAVITY: f64 = 0.0;
+const LINKS: f64 = 1.0;
+const WHOLE_AND_FAST: f64 = 2.0;
+const LINKS_AND_FAST: f64 = 3.0;
+
 /// Sizes of fast torques to try, and the factor by which the search varies them: a drive that reports the mean of what it
 /// has had over two control periods hides half of the noise of a differentiated position.
 const FAST: [f64; 2] = [1.0, 2.5];
@@ -51,9 +57,11 @@ const FAST_STEP: f64 = 1.6;
 
 /// Shapes to try on a joint, the usual load in the middle: those with fast torques where it has some.
 pub(super) fn shapes(scale: &Scale) -> Vec<Vec<f64>> {
-    let mut shapes = vec![vec![0.0], Vec::new(), vec![1.0]];
+    let mut shapes = vec![vec![GRAVITY], Vec::new(), vec![LINKS]];
     if scale.fast > 0.0 {
-        shapes.extend([2.0, 3.0].iter().flat_map(|part| FAST.map(|fast| vec![*part, fast])));
+        shapes.extend(
+            [WHOLE_AND_FAST, LINKS_AND_FAST].iter().flat_map(|part| FAST.map(|fast| vec![*part, fast])),
+        );
     }
     shapes
 }
@@ -74,9 +82,9 @@ impl GearLoad {
     pub(super) fn of(shape: &[f64]) -> Self {
         let part = match shape.first() {
             None => Part::Whole,
-            Some(x) if *x < 0.5 => Part::Gravity,
-            Some(x) if *x < 1.5 => Part::Links,
-            Some(x) if *x < 2.5 => Part::Whole,
+            Some(x) if *x < 0.5 * (GRAVITY + LINKS) => Part::Gravity,
+            Some(x) if *x < 0.5 * (LINKS + WHOLE_AND_FAST) => Part::Links,
+            Some(x) if *x < 0.5 * (WHOLE_AND_FAST + LINKS_AND_FAST) => Part::Whole,
             Some(_) => Part::Links,
         };
         Self { part, fast: shape.get(1).copied() }

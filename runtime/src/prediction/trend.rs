@@ -1,16 +1,16 @@
 //! The mean course of a cloud of points.
 
+use crate::statistics::bins::Bins;
+
 /// Means of points over bins of equally many, from the least x to the largest: x and y of each. Points that are not finite
 /// have no part.
 pub fn binned_means(points: &[(f64, f64)], bins: usize) -> Vec<(f64, f64)> {
-    let mut sorted: Vec<(f64, f64)> =
-        points.iter().copied().filter(|p| p.0.is_finite() && p.1.is_finite()).collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let finite = points.iter().copied().filter(|p| p.0.is_finite() && p.1.is_finite());
     let mean = |bin: &[(f64, f64)]| {
         let n = bin.len() as f64;
         (bin.iter().map(|p| p.0).sum::<f64>() / n, bin.iter().map(|p| p.1).sum::<f64>() / n)
     };
-    sorted.chunks(sorted.len().div_ceil(bins.max(1)).max(1)).map(mean).collect()
+    Bins::over(finite.collect(), bins, |p| p.0).iter().map(mean).collect()
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ mod samples;
 mod series;
 mod sheet;
 mod thin;
+mod words;
 
 pub use alone::alone;
 pub use escape::escape;
@@ -28,3 +29,4 @@ pub use numbers::{falls_or_rises, percent, significant};
 pub use plot::{Over, Plot};
 pub use series::{Band, Role, Series, SeriesKind};
 pub use sheet::{Panel, Sheet};
+pub use words::capital;

@@ -1,4 +1,5 @@
 //! Statistics that identification and diagnosis share.
 
+pub(crate) mod bins;
 pub(crate) mod median;
 pub(crate) mod moderation;

@@ -3,7 +3,7 @@
 use dynid_runtime::diagnosis::Distances;
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::{JointNumber, Model, Robot};
-use dynid_runtime::report::significant;
+use dynid_runtime::report::{capital, significant};
 use dynid_runtime::simulation::excitation::{TellError, TellPlan, TellSettings, Told, tell};
 use dynid_runtime::simulation::{Reference, to_csv};
 
@@ -12,7 +12,7 @@ use crate::commands::effects::effect_named;
 use crate::failure::Failure;
 use crate::motions::{PLAN, PlannedMotion, plan_text, to_svg};
 use crate::output::{Together, print, table};
-use crate::words::{capital, effect_words};
+use crate::words::effect_words;
 
 /// Motions that are printed beside the best.
 const PRINTED: usize = 12;

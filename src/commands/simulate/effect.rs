@@ -2,13 +2,13 @@
 
 use dynid_runtime::effects::{EffectTerm, Form, Place};
 use dynid_runtime::model::{JointIndex, JointNumber, Model};
-use dynid_runtime::report::significant;
+use dynid_runtime::report::{capital, significant};
 use dynid_runtime::simulation::excitation::{TellError, typical_law};
 
 use crate::commands::effects::effect_named;
 use crate::failure::Failure;
 use crate::ranges;
-use crate::words::{capital, effect_words, joint_number};
+use crate::words::{effect_words, joint_number};
 
 /// The law of a joint that a value of the option is for, in a robot with the base parameters `chi`. It depends on the robot
 /// alone, so that recordings with other seeds have the same.

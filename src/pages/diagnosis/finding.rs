@@ -1,17 +1,15 @@
 //! One finding of a diagnosis on its page.
 
 use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueSeries};
-use dynid_runtime::effects::{Abscissa, EffectKind, Words};
+use dynid_runtime::effects::{Abscissa, EffectKind};
 use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
 
-use crate::words::{confidence_words, joint_words, part_words};
+use crate::words::{confidence_words, effect_words, joint_words, part_words};
 
 /// A finding: what it is, where it was seen, what it changed.
 pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
     let effect = EffectKind::from_id(&finding.effect);
-    let words = effect.map(EffectKind::words);
-    let title = words.map_or_else(|| finding.effect.clone(), Words::title);
-    page.heading(&format!("{title} on {}", joint_words(&finding.joints)));
+    page.heading(&format!("{} on {}", EffectKind::title_of(&finding.effect), joint_words(&finding.joints)));
     page.paragraph(&finding.sentence);
     if let Some(formula) = finding.formula() {
         page.paragraph(&format!("Its law: {formula}."));
@@ -40,11 +38,14 @@ pub(super) fn found(page: &mut Page, diagnosis: &Diagnosis, finding: &Finding) {
             }
         });
     }
-    numbers(page, finding, words);
+    numbers(page, finding);
+    if let Some(effect) = effect {
+        page.note(&format!("Literature: {}.", effect.words().source));
+    }
 }
 
 /// The parameters of a finding, what they change, and what was considered instead.
-fn numbers(page: &mut Page, finding: &Finding, words: Option<&Words>) {
+fn numbers(page: &mut Page, finding: &Finding) {
     let parameters: Vec<Vec<String>> = finding
         .parameters
         .iter()
@@ -72,12 +73,11 @@ fn numbers(page: &mut Page, finding: &Finding, words: Option<&Words>) {
         let rows: Vec<Vec<String>> = finding
             .alternatives
             .iter()
-            .map(|a| vec![format!("{} on {}", a.effect, joint_words(&a.joints)), a.why_not.clone()])
+            .map(|a| {
+                vec![format!("{} on {}", effect_words(&a.effect), joint_words(&a.joints)), a.why_not.clone()]
+            })
             .collect();
         page.table(&["effect", "<why not"], &rows);
-    }
-    if let Some(words) = words {
-        page.note(&format!("Literature: {}.", words.source));
     }
 }
 

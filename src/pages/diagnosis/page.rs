@@ -2,7 +2,7 @@
 
 use dynid_runtime::diagnosis::Diagnosis;
 use dynid_runtime::prediction::{Evaluation, Prediction};
-use dynid_runtime::report::{Page, Plot, Role, SeriesKind, percent, significant};
+use dynid_runtime::report::{Page, Plot, Role, SeriesKind, capital, percent, significant};
 
 use super::extras::Extras;
 use super::finding::found;
@@ -12,7 +12,7 @@ use crate::pages::parameters::{parameters, relations};
 use crate::pages::provenance::provenance;
 use crate::pages::residuals::residuals;
 use crate::recorded::titled;
-use crate::words::{capital, joint_words, side_words, small_words, standing_words};
+use crate::words::{joint_words, side_words, small_words, standing_words};
 
 /// The whole page.
 pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {

@@ -1,16 +1,15 @@
 //! What `diagnose` prints.
 
 use dynid_runtime::diagnosis::{Diagnosis, Finding};
-use dynid_runtime::report::{percent, significant};
+use dynid_runtime::report::{capital, percent, significant};
 
 use super::extras::Extras;
 use super::page::error_rows;
 use crate::errors::noise_words;
 use crate::output::table;
 use crate::recorded::{Measured, left_out_words, titled};
-
 use crate::words::{
-    capital, confidence_words, effect_words, joint_words, part_words, side_words, small_words, standing_words,
+    confidence_words, effect_words, joint_words, part_words, side_words, small_words, standing_words,
 };
 
 /// The verdict, the errors and the findings for a terminal.

@@ -14,6 +14,7 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{Abscissa, EffectKind, Place, Variable};
 use crate::model::{JointIndex, JointKind};
+use crate::statistics::bins::Bins;
 
 /// The variable that reveals a law with these numbers, on a joint at a sample of a motion.
 pub(in crate::diagnosis) fn abscissa(
@@ -109,11 +110,9 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
 }
 
 /// Means over bins with equally many rows; (variable, residual, law).
-pub(in crate::diagnosis) fn binned(mut rows: Vec<(f64, f64, f64)>) -> Curve {
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+pub(in crate::diagnosis) fn binned(rows: Vec<(f64, f64, f64)>) -> Curve {
     let mut curve = Curve::default();
-    let size = rows.len().div_ceil(BINS).max(1);
-    for bin in rows.chunks(size) {
+    for bin in Bins::over(rows, BINS, |row| row.0).iter() {
         let n = bin.len() as f64;
         let mean = |f: fn(&(f64, f64, f64)) -> f64| bin.iter().map(f).sum::<f64>() / n;
         let (x, r, l) = (mean(|b| b.0), mean(|b| b.1), mean(|b| b.2));

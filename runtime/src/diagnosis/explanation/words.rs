@@ -4,7 +4,7 @@ use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
 use crate::diagnosis::rules;
 use crate::effects::{EffectKind, FreeLaw, Parameter, Place, Quantities, UserLaw};
 use crate::model::{JointIndex, JointKind, Robot};
-use crate::report::{falls_or_rises, significant};
+use crate::report::{capital, falls_or_rises, significant};
 
 impl Finding {
     /// Its quantities by name.
@@ -124,11 +124,6 @@ fn free_form(robot: &Robot, place: &str, f: &Finding) -> String {
         100.0 * f.held_out_before,
         100.0 * f.held_out_after
     )
-}
-
-fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |c| c.to_uppercase().collect::<String>() + chars.as_str())
 }
 
 /// Unit of the torque of the joint with this number: that of a prismatic joint is a force.

@@ -145,6 +145,11 @@ impl Definition {
         Err("it is empty".into())
     }
 
+    /// Whether a path is a list of texts.
+    pub fn is_list_of_names(&self, path: &Path) -> bool {
+        self.field(path).is_ok_and(|field| field.kind == Type::Text && field.many != Many::One)
+    }
+
     /// Paths of the numbers, `wrench.force.x`, and of their lists, `actual.positions[]`.
     pub fn numbers(&self) -> Vec<String> {
         let mut all = Vec::new();

@@ -180,10 +180,7 @@ impl Plan {
         if !wanted.iter().any(|(_, path, _)| by_name(path)) {
             return Ok(());
         }
-        let is_list = |path: &Path| {
-            let field = self.definition.field(path);
-            field.is_ok_and(|field| field.kind == Type::Text && field.many != Many::One)
-        };
+        let is_list = |path: &Path| self.definition.is_list_of_names(path);
         let found = match names {
             Some(name) => Path::parse(name).filter(|path| is_list(path)),
             None => NAMES.into_iter().filter_map(Path::parse).find(is_list),

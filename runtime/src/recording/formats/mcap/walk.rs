@@ -147,10 +147,9 @@ pub(super) fn signals(
 ) -> Result<(Vec<String>, i64), Fault> {
     let stamp =
         Plan::new(definition.clone(), &[], None).map_or(Ok(0), |mut plan| plan.read(data, &mut |_, _| {}))?;
-    let names = NAMES.into_iter().find(|name| {
-        let list = Path::parse(name).and_then(|path| definition.field(&path).ok().cloned());
-        list.is_some_and(|field| field.kind == Type::Text && field.many != Many::One)
-    });
+    let names = NAMES
+        .into_iter()
+        .find(|name| Path::parse(name).is_some_and(|path| definition.is_list_of_names(&path)));
     let mut all = Vec::new();
     for path in definition.numbers() {
         let Some(stem) = path.strip_suffix("[]") else {
