@@ -244,6 +244,21 @@ pub(super) const REFITS_OF_BENT_COLUMNS: usize = 4;
 pub(super) const MOST_EVALUATIONS: usize = 80;
 /// A refinement ends when its steps are this part of the first ones. Judgement: finer than shapes are known.
 pub(super) const SMALLEST_STEP: f64 = 0.02;
+/// Shapes from which the best of a compliant transmission is looked for, each of another frequency. Times; what is in step
+/// with a motion at one frequency is so again a fifth higher or lower, and six are an octave.
+pub(super) const MOST_STARTS: usize = 6;
+/// Rounds over all laws in which each shape goes to the least squares beside the others. Judgement: the second finds
+/// hardly anything.
+pub(super) const SHARPENING_SWEEPS: usize = 2;
+/// Steps of one law in a round at most, and how often a step that finds nothing is halved. Numerics: Gauss-Newton steps
+/// double the digits each time where they lead anywhere.
+pub(super) const MOST_STEPS: usize = 12;
+pub(super) const HALVINGS: i32 = 5;
+/// Longest step of the logarithm of a number of a shape. Numerics: a derivative says little of twice the number.
+pub(super) const LONGEST_STEP: f64 = 0.5;
+/// What is left has to fall by this part for another step. Numerics: a tenth of a standard deviation, with some thousand
+/// rows, is 1e-6 of the squares.
+pub(super) const LEAST_FALL: f64 = 1e-6;
 
 // ---- Laws over any variables --------------------------------------------------------------------------------------
 

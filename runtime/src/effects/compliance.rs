@@ -91,21 +91,52 @@ const MOST_DAMPING: f64 = 0.25;
 /// Largest rotor that is tried, as a fraction of the least inertia.
 const LARGEST_ROTOR: f64 = 0.95;
 
+/// Ringing is over after so many of its time constants: e^-4 is 2 %.
+const RUNG_OUT: f64 = 4.0;
+
+/// Two responses whose cosine is nearer to 1 than this tell no stretch.
+const LEAST_DETERMINANT: f64 = 1e-3;
+
 /// Steps of the integration between two samples: at least this many a second.
 const STEPS_PER_SECOND: f64 = 2000.0;
 
-/// -M ddx for every sample: the torque on the motor beyond the rigid model.
+/// Stretch of a transmission, motor less link, rad or m, and its rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Motor less link.
+    pub x: f64,
+    /// Its derivative by time.
+    pub dx: f64,
+}
+
+impl Stretch {
+    /// As a load that lasts holds it.
+    pub fn under(load: f64, t: &Transmission) -> Self {
+        let free = if t.play > 0.0 { 0.5 * t.play * load.signum() } else { 0.0 };
+        Self { x: load / t.stiffness + free, dx: 0.0 }
+    }
+}
+
+/// -M ddx for every sample: the torque on the motor beyond the rigid model, from a stretch at the start. Returns the number
+/// of samples before the link is first free within its play.
 ///
 /// `load[t]` and `inertia[t]` belong to the links alone (no rotor). Semi-implicit (symplectic) steps, which neither add
 /// nor take energy; where the step is too long for the spring, implicit ones, which are stable for every stiffness.
-pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, out: &mut [f64]) {
-    let Some(&first) = load.first() else { return };
+pub fn deflection(
+    load: &[f64],
+    inertia: &[f64],
+    rate: f64,
+    t: &Transmission,
+    start: Stretch,
+    out: &mut [f64],
+) -> usize {
+    let Some(&first) = load.first() else { return 0 };
     let steps = (STEPS_PER_SECOND / rate).ceil().max(1.0);
     let h = 1.0 / (rate * steps);
     let half = 0.5 * t.play;
-    let start = if t.play > 0.0 { half * first.signum() } else { 0.0 };
-    let (mut x, mut v) = (first / t.stiffness + start, 0.0);
+    let (mut x, mut v) = (start.x, start.dx);
     let mut before = first;
+    let mut held = load.len();
     for (k, (&now, &m)) in load.iter().zip(inertia).enumerate() {
         let mut sum = 0.0;
         let m_free = 1.0 / m;
@@ -126,6 +157,7 @@ pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, ou
             let new = if stretch != 0.0 || half == 0.0 {
                 kept * v + driven * force - pulled * stretch
             } else {
+                held = held.min(k);
                 v + h * force * m_free
             };
             sum += new - v;
@@ -135,6 +167,57 @@ pub fn deflection(load: &[f64], inertia: &[f64], rate: f64, t: &Transmission, ou
         out[k] = -m * sum / (h * steps);
         before = now;
     }
+    held
+}
+
+/// The stretch at the start of a motion, which may ring from before: that with which the torques at the start are explained
+/// best. `missing[t]` is what the rigid model lacks there; the first `edge` samples of it are not looked at.
+///
+/// As long as the link does not come free of its flank the ringing is linear in the stretch, so that two responses without
+/// a load tell it. Where the motion shows less than a period of it the link starts as its load holds it.
+pub fn stretch_at_start(
+    [load, inertia, missing]: [&[f64]; 3],
+    rate: f64,
+    t: &Transmission,
+    edge: usize,
+) -> Stretch {
+    let rest = Stretch::under(load.first().copied().unwrap_or(0.0), t);
+    let median = inertia.get(inertia.len() / 2).copied().unwrap_or(1.0);
+    let angular = (t.stiffness / median).sqrt();
+    let decay = 0.5 * t.damping / median;
+    let horizon = (RUNG_OUT / decay * rate).min(load.len() as f64) as usize;
+    let mut driven = vec![0.0; horizon];
+    let end = deflection(&load[..horizon], &inertia[..horizon], rate, t, rest, &mut driven).min(horizon);
+    let period = 2.0 * std::f64::consts::PI / angular * rate;
+    if ((end.saturating_sub(edge)) as f64) < period {
+        return rest;
+    }
+    let free = |start: Stretch| {
+        let spring = Transmission { play: 0.0, ..*t };
+        let mut out = vec![0.0; end];
+        deflection(&vec![0.0; end], &inertia[..end], rate, &spring, start, &mut out);
+        out
+    };
+    // Both of the same size as torques.
+    let units = [1.0 / t.stiffness, angular / t.stiffness];
+    let responses = [free(Stretch { x: units[0], dx: 0.0 }), free(Stretch { x: 0.0, dx: units[1] })];
+    let (mut a, mut b) = ([[0.0; 2]; 2], [0.0; 2]);
+    for k in edge..end {
+        let left = missing[k] - driven[k];
+        for i in 0..2 {
+            b[i] += responses[i][k] * left;
+            for (j, response) in responses.iter().enumerate() {
+                a[i][j] += responses[i][k] * response[k];
+            }
+        }
+    }
+    let determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+    if !(determinant > LEAST_DETERMINANT * a[0][0] * a[1][1]) {
+        return rest;
+    }
+    let x = (a[1][1] * b[0] - a[0][1] * b[1]) / determinant;
+    let dx = (a[0][0] * b[1] - a[1][0] * b[0]) / determinant;
+    Stretch { x: rest.x + x * units[0], dx: dx * units[1] }
 }
 
 #[cfg(test)]
@@ -145,10 +228,10 @@ mod tests {
     fn a_constant_load_leaves_nothing_and_a_step_rings_at_the_natural_frequency() {
         let t = Transmission::from_shape(&[10.0, 0.01, 0.0, 0.0], 2.0, 2.0, 1.0, JointKind::Revolute);
         let mut out = vec![0.0; 1000];
-        deflection(&[5.0; 1000], &[2.0; 1000], 500.0, &t, &mut out);
+        deflection(&[5.0; 1000], &[2.0; 1000], 500.0, &t, Stretch::under(5.0, &t), &mut out);
         assert!(out.iter().all(|x| x.abs() < 1e-9));
         let load: Vec<f64> = (0..1000).map(|k| if k < 100 { 0.0 } else { 5.0 }).collect();
-        deflection(&load, &[2.0; 1000], 500.0, &t, &mut out);
+        deflection(&load, &[2.0; 1000], 500.0, &t, Stretch::under(0.0, &t), &mut out);
         let crossings = out[200..950].windows(2).filter(|w| w[0] < 0.0 && w[1] >= 0.0).count();
         assert!((crossings as f64 / 1.5 - 10.0).abs() < 0.7, "{crossings} periods in 1.5 s");
     }
@@ -158,9 +241,29 @@ mod tests {
         let t = Transmission::from_shape(&[40.0, 0.3, 0.0, 0.002], 1.0, 1.0, 1.0, JointKind::Revolute);
         let load: Vec<f64> = (0..2000).map(|k| 10.0 * (k as f64 * 0.01 * 0.63).cos()).collect();
         let mut out = vec![0.0; 2000];
-        deflection(&load, &[1.0; 2000], 500.0, &t, &mut out);
+        deflection(&load, &[1.0; 2000], 500.0, &t, Stretch::under(load[0], &t), &mut out);
         let near: f64 = (0..2000).filter(|&k| load[k].abs() < 5.0).map(|k| out[k] * out[k]).sum();
         let far: f64 = (200..2000).filter(|&k| load[k].abs() > 9.0).map(|k| out[k] * out[k]).sum();
         assert!(near > 20.0 * far, "{near} {far}");
+    }
+
+    #[test]
+    fn ringing_from_before_the_start_is_told_with_and_without_play() {
+        for play in [0.0, 0.01] {
+            let t = Transmission {
+                play,
+                ..Transmission::from_shape(&[6.0, 0.05, 0.0, 0.0], 2.0, 2.0, 1.0, JointKind::Revolute)
+            };
+            let load: Vec<f64> = (0..2000).map(|k| 40.0 + 10.0 * (k as f64 * 0.01).sin()).collect();
+            let inertia = vec![2.0; 2000];
+            let truth = Stretch { x: Stretch::under(40.0, &t).x + 0.003, dx: -0.2 };
+            let mut missing = vec![0.0; 2000];
+            deflection(&load, &inertia, 500.0, &t, truth, &mut missing);
+            let found = stretch_at_start([&load, &inertia, &missing], 500.0, &t, 20);
+            assert!((found.x - truth.x).abs() < 1e-6, "{found:?} {truth:?}");
+            assert!((found.dx - truth.dx).abs() < 1e-4, "{found:?} {truth:?}");
+            let quiet = stretch_at_start([&load[..40], &inertia[..40], &missing[..40]], 500.0, &t, 20);
+            assert_eq!(quiet, Stretch::under(40.0, &t), "less than a period");
+        }
     }
 }

@@ -8,7 +8,7 @@ use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, LONGEST_BLOCK, QUANTITY_STEP}
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::tangents::tangents;
-use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::search::term::{Accepted, Mode};
 use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter};
 use crate::model::JointIndex;
 
@@ -87,7 +87,7 @@ pub(in crate::diagnosis) fn quantified(
         }),
         Form::Compliance(law) => {
             if let Some(j) = term.place.joint() {
-                return transmission(context, law, j, &term.shape, &shape_sigma);
+                return transmission(context, law, j, term, &shape_sigma);
             }
             None
         }
@@ -131,18 +131,25 @@ fn transmission(
     context: &Context<'_>,
     law: &dyn Compliance,
     j: usize,
-    shape: &[f64],
+    term: &Accepted,
     shape_sigma: &[f64],
 ) -> Quantified {
-    let of = |shape: &[f64]| {
+    let of = |shape: &[f64]| -> Vec<Parameter> {
         law.describe(&context.transmission(j, shape))
             .into_iter()
             .map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
             .collect()
     };
+    let mut parameters = propagate(of, &term.shape, shape_sigma);
+    // Shapes that are far from the best and leave hardly more are as likely as their likelihood says.
+    for (i, p) in parameters.iter_mut().enumerate() {
+        let apart = |mode: &Mode| of(&mode.shape).get(i).map_or(0.0, |q| q.value - p.value);
+        let variance: f64 = term.modes.iter().map(|mode| mode.weight * apart(mode).powi(2)).sum();
+        p.sigma = p.sigma.hypot(variance.sqrt());
+    }
     Quantified {
-        parameters: propagate(of, shape, shape_sigma),
-        amplitude: context.transmission(j, shape).amplitude().to_vec(),
+        parameters,
+        amplitude: context.transmission(j, &term.shape).amplitude().to_vec(),
         sigma: vec![0.0; 4],
     }
 }

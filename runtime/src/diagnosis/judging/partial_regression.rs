@@ -137,6 +137,21 @@ impl Regression {
         gains.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
     }
 
+    /// For each value of the first number of a candidate's shapes the shape with the largest in-sample gain over all
+    /// motion; of those the best.
+    pub fn best_of_each(&self, candidate: &Candidate, most: usize) -> Vec<Vec<f64>> {
+        let gains = candidate.trials.iter().map(|trial| (self.gain_of(candidate, trial), &trial.shape));
+        let mut ranked: Vec<(f64, &Vec<f64>)> = gains.filter(|(gain, _)| gain.is_finite()).collect();
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut best: Vec<Vec<f64>> = Vec::new();
+        for (_, shape) in ranked {
+            if best.len() < most && !best.iter().any(|other| other.first() == shape.first()) {
+                best.push(shape.clone());
+            }
+        }
+        best
+    }
+
     /// The inner products of a trial that was residualised over all motion, on each segment alone.
     pub fn by_segment(&self, whole: &Residualised, trial: &Trial) -> BySegment {
         let (joints, segments) = (self.sigma.len(), self.design.segments.len());

@@ -7,8 +7,8 @@ use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rows::user::user_columns;
 use crate::diagnosis::rules::LEAST_LINK_INERTIA;
 use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
-    Transmission, body_columns, deflection, derivable, derivative,
+    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity, Stretch,
+    Transmission, body_columns, deflection, derivable, derivative, stretch_at_start,
 };
 use crate::model::{Link, Model, RecursiveModel};
 use std::sync::{Arc, OnceLock};
@@ -264,8 +264,17 @@ impl<'a> Context<'a> {
             own.iter().map(|m| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9)).collect();
         let load: Vec<f64> =
             links.load[j].iter().zip(&self.signals[signal].ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
+        let (signals, rigid) = (&self.signals[signal], &self.torques[signal].total[j]);
+        let measured = &signals.torque[j];
+        let start = if measured.iter().any(|x| *x != 0.0) {
+            let missing: Vec<f64> = measured.iter().zip(rigid).map(|(tau, model)| tau - model).collect();
+            stretch_at_start([&load, &inertia, &missing], signals.rate, &t, signals.edge_samples)
+        } else {
+            // A motion that nobody has measured.
+            Stretch::under(load.first().copied().unwrap_or(0.0), &t)
+        };
         let mut transmitted_torque = vec![0.0; load.len()];
-        deflection(&load, &inertia, self.signals[signal].rate, &t, &mut transmitted_torque);
+        deflection(&load, &inertia, signals.rate, &t, start, &mut transmitted_torque);
         (0..n)
             .map(|i| {
                 if i == j {

@@ -143,6 +143,7 @@ impl Search<'_> {
             own: vec![joint],
             shows_on: vec![joint],
             shape,
+            modes: Vec::new(),
             fixed: None,
             significance,
             confidence,

@@ -105,6 +105,7 @@ impl Search<'_> {
         Ok(match replacement {
             Some(new) if new.effect == old.effect && new.place == old.place => Some(Accepted {
                 shape: new.shape,
+                modes: new.modes,
                 explained_fraction: new.explained_fraction,
                 rivals: new.rivals,
                 ..old.clone()

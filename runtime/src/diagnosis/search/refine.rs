@@ -3,8 +3,10 @@
 use crate::diagnosis::candidates::candidate::{Candidate, make};
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::judging::regression::Regression;
-use crate::diagnosis::rules::{MOST_EVALUATIONS, SMALLEST_STEP};
+use crate::diagnosis::rules::{MOST_EVALUATIONS, MOST_STARTS, SMALLEST_STEP};
 use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::{Accepted, Mode};
+use crate::diagnosis::search::tuning::Tuning;
 use crate::parallel;
 
 impl Search<'_> {
@@ -65,5 +67,34 @@ impl Search<'_> {
             }
         }
         shape
+    }
+
+    /// The best shape of a compliant transmission, and how near others come to it: what rings is in step with a motion at
+    /// one frequency and again at the next, so that several shapes of the grid are refined.
+    pub(in crate::diagnosis) fn tune(
+        &self,
+        term: &mut Accepted,
+        candidate: &Candidate,
+        regression: &Regression,
+    ) {
+        let mut starts = vec![term.shape.clone()];
+        starts.extend(regression.best_of_each(candidate, MOST_STARTS));
+        let tuned = parallel::map(self.threads, starts.len(), |k| {
+            let shape = self.refined(regression, candidate, &starts[k]);
+            let mut tuning = Tuning::beside(&self.model, &Accepted { shape, ..term.clone() }).ok()?;
+            tuning.run().ok()?;
+            Some((tuning.shape().to_vec(), tuning.squares()))
+        });
+        let mut ends: Vec<(Vec<f64>, f64)> = tuned.into_iter().flatten().collect();
+        ends.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((best, least)) = ends.first().cloned() else { return };
+        // Noise with a memory has fewer squares to tell shapes apart by than it has rows.
+        let memory = 2.0 * term.inflation * term.inflation;
+        let likelihood = |squares: f64| ((least - squares) / memory).exp();
+        let all: f64 = ends.iter().map(|(_, squares)| likelihood(*squares)).sum();
+        term.shape = best;
+        let others = ends.into_iter().skip(1);
+        term.modes =
+            others.map(|(shape, squares)| Mode { shape, weight: likelihood(squares) / all }).collect();
     }
 }

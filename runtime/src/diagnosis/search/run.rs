@@ -39,9 +39,11 @@ impl Search<'_> {
             progress.at(0.87, "pruning");
             let rejected = self.prune(settings)?;
             if rejected.is_empty() {
-                // 4. What is no larger than what nothing explains may be a part of that.
+                // 4. Shapes were found one law after the other.
+                self.model.sharpen()?;
+                // 5. What is no larger than what nothing explains may be a part of that.
                 self.take_out_small()?;
-                // 5. Last, friction that has changed: it is free from the start, and no evidence for anything else.
+                // 6. Last, friction that has changed: it is free from the start, and no evidence for anything else.
                 self.name_friction_changes(settings)?;
                 return Ok(SearchReport { stop, removed: self.rejected.clone() });
             }
@@ -119,6 +121,7 @@ impl Search<'_> {
                 self.refit_and_update()?;
             }
         }
+        self.model.sharpen()?;
         Ok(SearchReport { stop: StopReason::Given, removed: Vec::new() })
     }
 

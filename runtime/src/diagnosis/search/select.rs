@@ -246,7 +246,11 @@ impl Search<'_> {
     pub(in crate::diagnosis) fn accept(&self, winner: &Winner) -> Accepted {
         let mut term = self.as_term(winner);
         let candidate = &self.candidates(winner.window)[winner.index];
-        term.shape = self.refined(self.model.regression(winner.window), candidate, &term.shape);
+        if candidate.fixed.is_some() {
+            self.tune(&mut term, candidate, self.model.regression(winner.window));
+        } else {
+            term.shape = self.refined(self.model.regression(winner.window), candidate, &term.shape);
+        }
         term
     }
 
@@ -259,6 +263,7 @@ impl Search<'_> {
             own: candidate.own.clone(),
             shows_on: winner.verdict.shows_on.clone(),
             shape: candidate.trials[winner.verdict.trial].shape.clone(),
+            modes: Vec::new(),
             fixed: candidate.fixed,
             significance: winner.significance,
             confidence: winner.confidence,

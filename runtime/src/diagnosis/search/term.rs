@@ -12,6 +12,8 @@ pub(in crate::diagnosis) struct Accepted {
     /// Joints that it shows on, where the errors with and without it are compared.
     pub shows_on: Vec<usize>,
     pub shape: Vec<f64>,
+    /// Other shapes in which its search ended, where it has more than one start.
+    pub modes: Vec<Mode>,
     /// The amplitude, where the effect's law leaves none free.
     pub fixed: Option<f64>,
     pub significance: f64,
@@ -22,6 +24,14 @@ pub(in crate::diagnosis) struct Accepted {
     /// Fraction of what held-out motion left open when it was accepted: what its rivals' fractions compare with.
     pub explained_fraction: f64,
     pub rivals: Vec<Rival>,
+}
+
+/// Another shape that leaves hardly more than the best.
+#[derive(Debug, Clone)]
+pub(in crate::diagnosis) struct Mode {
+    pub shape: Vec<f64>,
+    /// Its likelihood as a fraction of all that the search ended in.
+    pub weight: f64,
 }
 
 /// Another explanation of what an accepted effect explains.
