@@ -479,6 +479,9 @@ pub(super) const LINE_COVERED: usize = 3;
 
 /// A parameter is told to have shifted beyond this many standard deviations of the difference. Statistics.
 pub(super) const SHIFTED: f64 = 3.0;
+/// Step of a position, rad or m, over which the derivative of a torque is taken. Numerics: small against a turn, large
+/// against rounding.
+pub(super) const POSITION_STEP: f64 = 1e-4;
 /// Step of a shape, relative to it, over which the derivative of its columns is taken. Mechanics: small against its
 /// standard deviation, large against rounding.
 pub(super) const SHAPE_STEP: f64 = 0.02;

@@ -1,8 +1,10 @@
 //! A link that is driven through a spring, with or without play.
 //!
 //! The encoder sees the motor. With x = q_motor - q_link the link obeys M ddx = load - f(x, dx), where M is the
-//! inertia of the links behind the joint, `load` the torque that they would ask for if they followed the motor
-//! rigidly, and f the torque of spring and damper. The motor is then loaded by M ddx less than the rigid model says.
+//! inertia of the links behind the joint, `load` the torque that they would ask for where they are, and f the torque of
+//! spring and damper. Where they are is x behind the motor: to first order the load is the rigid one less G x, G its
+//! derivative by the position, mostly that of gravity. The motor is then loaded by M ddx + G x less than the rigid model
+//! says.
 
 use crate::model::JointKind;
 
@@ -117,27 +119,38 @@ impl Stretch {
     }
 }
 
-/// -M ddx for every sample: the torque on the motor beyond the rigid model, from a stretch at the start. Returns the number
-/// of samples before the link is first free within its play.
+/// What a transmission drives in one motion.
+#[derive(Debug, Clone, Copy)]
+pub struct LinkSide<'a> {
+    /// Torque of the links, without the rotor, as if they followed the motor rigidly.
+    pub load: &'a [f64],
+    /// Their inertia about the joint.
+    pub inertia: &'a [f64],
+    /// Derivative of their torque by the position.
+    pub stiffness: &'a [f64],
+    /// Samples a second.
+    pub rate: f64,
+}
+
+/// The stretch of a transmission in every sample and -M ddx, from a stretch at the start. Returns the number of samples
+/// before the link is first free within its play.
 ///
-/// `load[t]` and `inertia[t]` belong to the links alone (no rotor). Semi-implicit (symplectic) steps, which neither add
-/// nor take energy; where the step is too long for the spring, implicit ones, which are stable for every stiffness.
+/// Semi-implicit (symplectic) steps, which neither add nor take energy; where the step is too long for the spring,
+/// implicit ones, which are stable for every stiffness.
 pub fn deflection(
-    load: &[f64],
-    inertia: &[f64],
-    rate: f64,
+    link: &LinkSide<'_>,
     t: &Transmission,
     start: Stretch,
-    out: &mut [f64],
+    [stretches, out]: [&mut [f64]; 2],
 ) -> usize {
-    let Some(&first) = load.first() else { return 0 };
-    let steps = (STEPS_PER_SECOND / rate).ceil().max(1.0);
-    let h = 1.0 / (rate * steps);
+    let Some(&first) = link.load.first() else { return 0 };
+    let steps = (STEPS_PER_SECOND / link.rate).ceil().max(1.0);
+    let h = 1.0 / (link.rate * steps);
     let half = 0.5 * t.play;
     let (mut x, mut v) = (start.x, start.dx);
     let mut before = first;
-    let mut held = load.len();
-    for (k, (&now, &m)) in load.iter().zip(inertia).enumerate() {
+    let mut held = link.load.len();
+    for (k, (&now, &m)) in link.load.iter().zip(link.inertia).enumerate() {
         let mut sum = 0.0;
         let m_free = 1.0 / m;
         let stiff = h * h * t.stiffness;
@@ -146,7 +159,7 @@ pub fn deflection(
         let pulled = driven * t.stiffness;
         let slope = (now - before) / steps;
         for step in 1..=steps as usize {
-            let force = before + slope * step as f64;
+            let force = before + slope * step as f64 - link.stiffness[k] * x;
             let stretch = if x > half {
                 x - half
             } else if x < -half {
@@ -164,6 +177,7 @@ pub fn deflection(
             v = new;
             x += h * v;
         }
+        stretches[k] = x;
         out[k] = -m * sum / (h * steps);
         before = now;
     }
@@ -175,34 +189,30 @@ pub fn deflection(
 ///
 /// As long as the link does not come free of its flank the ringing is linear in the stretch, so that two responses without
 /// a load tell it. Where the motion shows less than a period of it the link starts as its load holds it.
-pub fn stretch_at_start(
-    [load, inertia, missing]: [&[f64]; 3],
-    rate: f64,
-    t: &Transmission,
-    edge: usize,
-) -> Stretch {
-    let rest = Stretch::under(load.first().copied().unwrap_or(0.0), t);
-    let median = inertia.get(inertia.len() / 2).copied().unwrap_or(1.0);
+pub fn stretch_at_start(link: &LinkSide<'_>, missing: &[f64], t: &Transmission, edge: usize) -> Stretch {
+    let rest = Stretch::under(link.load.first().copied().unwrap_or(0.0), t);
+    let median = link.inertia.get(link.inertia.len() / 2).copied().unwrap_or(1.0);
     let angular = (t.stiffness / median).sqrt();
     let decay = 0.5 * t.damping / median;
-    let horizon = (RUNG_OUT / decay * rate).min(load.len() as f64) as usize;
-    let mut driven = vec![0.0; horizon];
-    let end = deflection(&load[..horizon], &inertia[..horizon], rate, t, rest, &mut driven).min(horizon);
-    let period = 2.0 * std::f64::consts::PI / angular * rate;
-    if ((end.saturating_sub(edge)) as f64) < period {
+    let horizon = (RUNG_OUT / decay * link.rate).min(link.load.len() as f64) as usize;
+    let respond = |load: &[f64], t: &Transmission, start: Stretch| {
+        let (mut x, mut out) = (vec![0.0; load.len()], vec![0.0; load.len()]);
+        let held = deflection(&LinkSide { load, ..*link }, t, start, [&mut x, &mut out]);
+        out.iter_mut().zip(x.iter().zip(link.stiffness)).for_each(|(out, (x, g))| *out -= g * x);
+        (held, out)
+    };
+    let (held, driven) = respond(&link.load[..horizon], t, rest);
+    let period = 2.0 * std::f64::consts::PI / angular * link.rate;
+    if (held.saturating_sub(edge) as f64) < period {
         return rest;
     }
-    let free = |start: Stretch| {
-        let spring = Transmission { play: 0.0, ..*t };
-        let mut out = vec![0.0; end];
-        deflection(&vec![0.0; end], &inertia[..end], rate, &spring, start, &mut out);
-        out
-    };
+    let spring = Transmission { play: 0.0, ..*t };
     // Both of the same size as torques.
     let units = [1.0 / t.stiffness, angular / t.stiffness];
-    let responses = [free(Stretch { x: units[0], dx: 0.0 }), free(Stretch { x: 0.0, dx: units[1] })];
+    let starts = [Stretch { x: units[0], dx: 0.0 }, Stretch { x: 0.0, dx: units[1] }];
+    let responses = starts.map(|start| respond(&vec![0.0; held], &spring, start).1);
     let (mut a, mut b) = ([[0.0; 2]; 2], [0.0; 2]);
-    for k in edge..end {
+    for k in edge..held {
         let left = missing[k] - driven[k];
         for i in 0..2 {
             b[i] += responses[i][k] * left;
@@ -224,14 +234,21 @@ pub fn stretch_at_start(
 mod tests {
     use super::*;
 
+    fn driven(load: &[f64], m: f64, t: &Transmission, start: Stretch) -> Vec<f64> {
+        let (inertia, stiffness) = (vec![m; load.len()], vec![0.0; load.len()]);
+        let (mut x, mut out) = (vec![0.0; load.len()], vec![0.0; load.len()]);
+        let link = LinkSide { load, inertia: &inertia, stiffness: &stiffness, rate: 500.0 };
+        deflection(&link, t, start, [&mut x, &mut out]);
+        out
+    }
+
     #[test]
     fn a_constant_load_leaves_nothing_and_a_step_rings_at_the_natural_frequency() {
         let t = Transmission::from_shape(&[10.0, 0.01, 0.0, 0.0], 2.0, 2.0, 1.0, JointKind::Revolute);
-        let mut out = vec![0.0; 1000];
-        deflection(&[5.0; 1000], &[2.0; 1000], 500.0, &t, Stretch::under(5.0, &t), &mut out);
+        let out = driven(&[5.0; 1000], 2.0, &t, Stretch::under(5.0, &t));
         assert!(out.iter().all(|x| x.abs() < 1e-9));
         let load: Vec<f64> = (0..1000).map(|k| if k < 100 { 0.0 } else { 5.0 }).collect();
-        deflection(&load, &[2.0; 1000], 500.0, &t, Stretch::under(0.0, &t), &mut out);
+        let out = driven(&load, 2.0, &t, Stretch::under(0.0, &t));
         let crossings = out[200..950].windows(2).filter(|w| w[0] < 0.0 && w[1] >= 0.0).count();
         assert!((crossings as f64 / 1.5 - 10.0).abs() < 0.7, "{crossings} periods in 1.5 s");
     }
@@ -240,11 +257,20 @@ mod tests {
     fn play_is_felt_only_where_the_load_changes_its_sign() {
         let t = Transmission::from_shape(&[40.0, 0.3, 0.0, 0.002], 1.0, 1.0, 1.0, JointKind::Revolute);
         let load: Vec<f64> = (0..2000).map(|k| 10.0 * (k as f64 * 0.01 * 0.63).cos()).collect();
-        let mut out = vec![0.0; 2000];
-        deflection(&load, &[1.0; 2000], 500.0, &t, Stretch::under(load[0], &t), &mut out);
+        let out = driven(&load, 1.0, &t, Stretch::under(load[0], &t));
         let near: f64 = (0..2000).filter(|&k| load[k].abs() < 5.0).map(|k| out[k] * out[k]).sum();
         let far: f64 = (200..2000).filter(|&k| load[k].abs() > 9.0).map(|k| out[k] * out[k]).sum();
         assert!(near > 20.0 * far, "{near} {far}");
+    }
+
+    #[test]
+    fn a_link_that_hangs_deflects_as_spring_and_gravity_together_hold_it() {
+        let t = Transmission::from_shape(&[6.0, 0.2, 0.0, 0.0], 2.0, 2.0, 1.0, JointKind::Revolute);
+        let (load, inertia, stiffness) = (vec![40.0; 3000], vec![2.0; 3000], vec![0.05 * t.stiffness; 3000]);
+        let (mut x, mut out) = (vec![0.0; 3000], vec![0.0; 3000]);
+        let link = LinkSide { load: &load, inertia: &inertia, stiffness: &stiffness, rate: 500.0 };
+        deflection(&link, &t, Stretch::under(40.0, &t), [&mut x, &mut out]);
+        assert!((x[2999] * 1.05 * t.stiffness / 40.0 - 1.0).abs() < 1e-6, "{}", x[2999]);
     }
 
     #[test]
@@ -255,15 +281,18 @@ mod tests {
                 ..Transmission::from_shape(&[6.0, 0.05, 0.0, 0.0], 2.0, 2.0, 1.0, JointKind::Revolute)
             };
             let load: Vec<f64> = (0..2000).map(|k| 40.0 + 10.0 * (k as f64 * 0.01).sin()).collect();
-            let inertia = vec![2.0; 2000];
+            let (inertia, stiffness) = (vec![2.0; 2000], vec![0.0; 2000]);
             let truth = Stretch { x: Stretch::under(40.0, &t).x + 0.003, dx: -0.2 };
-            let mut missing = vec![0.0; 2000];
-            deflection(&load, &inertia, 500.0, &t, truth, &mut missing);
-            let found = stretch_at_start([&load, &inertia, &missing], 500.0, &t, 20);
+            let missing = driven(&load, 2.0, &t, truth);
+            let told = |samples: usize| {
+                let (load, inertia) = (&load[..samples], &inertia[..samples]);
+                let link = LinkSide { load, inertia, stiffness: &stiffness[..samples], rate: 500.0 };
+                stretch_at_start(&link, &missing[..samples], &t, 20)
+            };
+            let found = told(2000);
             assert!((found.x - truth.x).abs() < 1e-6, "{found:?} {truth:?}");
             assert!((found.dx - truth.dx).abs() < 1e-4, "{found:?} {truth:?}");
-            let quiet = stretch_at_start([&load[..40], &inertia[..40], &missing[..40]], 500.0, &t, 20);
-            assert_eq!(quiet, Stretch::under(40.0, &t), "less than a period");
+            assert_eq!(told(40), Stretch::under(40.0, &t), "less than a period");
         }
     }
 }

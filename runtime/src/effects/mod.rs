@@ -41,7 +41,7 @@ mod variable;
 pub use catalogue::EffectKind;
 pub use check::TermError;
 pub use closed_form::ClosedForm;
-pub use compliance::{Compliance, Stretch, Transmission, deflection, stretch_at_start};
+pub use compliance::{Compliance, LinkSide, Stretch, Transmission, deflection, stretch_at_start};
 pub use contact::{ContactForce, JointTorque, unit_force_torques};
 pub use coupled::CoupledRotor;
 pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, SpecialCase, ToldBy, Words};

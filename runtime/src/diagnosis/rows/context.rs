@@ -5,10 +5,10 @@ use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rows::user::user_columns;
-use crate::diagnosis::rules::LEAST_LINK_INERTIA;
+use crate::diagnosis::rules::{LEAST_LINK_INERTIA, POSITION_STEP};
 use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity, Stretch,
-    Transmission, body_columns, deflection, derivable, derivative, stretch_at_start,
+    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, LinkSide, Place, Scale, Sensitivity,
+    Stretch, Transmission, body_columns, deflection, derivable, derivative, stretch_at_start,
 };
 use crate::model::{Link, Model, RecursiveModel};
 use std::sync::{Arc, OnceLock};
@@ -22,6 +22,8 @@ struct Links {
     load: Vec<Vec<f64>>,
     /// Mass matrix, `[i * n + j][t]`.
     mass: Vec<Vec<f64>>,
+    /// Derivatives of the rigid torques by the position of each joint, `[j][i][t]`.
+    bent: Vec<OnceLock<Vec<Vec<f64>>>>,
 }
 
 pub(in crate::diagnosis) struct Context<'a> {
@@ -258,48 +260,63 @@ impl<'a> Context<'a> {
     fn compliant(&self, signal: usize, j: usize, shape: &[f64]) -> Series {
         let n = self.model.robot().joints();
         let t = self.transmission(j, shape);
-        let links = self.links(signal);
+        let (links, signals) = (self.links(signal), &self.signals[signal]);
+        let bent = links.bent[j].get_or_init(|| self.bent(signal, j));
         let own = &links.mass[j * n + j];
         let inertia: Vec<f64> =
             own.iter().map(|m| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9)).collect();
         let load: Vec<f64> =
-            links.load[j].iter().zip(&self.signals[signal].ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
-        let (signals, rigid) = (&self.signals[signal], &self.torques[signal].total[j]);
+            links.load[j].iter().zip(&signals.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
+        let link = LinkSide { load: &load, inertia: &inertia, stiffness: &bent[j], rate: signals.rate };
         let measured = &signals.torque[j];
         let start = if measured.iter().any(|x| *x != 0.0) {
+            let rigid = &self.torques[signal].total[j];
             let missing: Vec<f64> = measured.iter().zip(rigid).map(|(tau, model)| tau - model).collect();
-            stretch_at_start([&load, &inertia, &missing], signals.rate, &t, signals.edge_samples)
+            stretch_at_start(&link, &missing, &t, signals.edge_samples)
         } else {
             // A motion that nobody has measured.
             Stretch::under(load.first().copied().unwrap_or(0.0), &t)
         };
-        let mut transmitted_torque = vec![0.0; load.len()];
-        deflection(&load, &inertia, signals.rate, &t, start, &mut transmitted_torque);
-        (0..n)
-            .map(|i| {
-                if i == j {
-                    return (j, transmitted_torque.clone());
+        let (mut x, mut swung) = (vec![0.0; load.len()], vec![0.0; load.len()]);
+        deflection(&link, &t, start, [&mut x, &mut swung]);
+        let on = |i: usize| {
+            let share = |k: usize| if i == j { 1.0 } else { links.mass[i * n + j][k] / inertia[k] };
+            (i, (0..x.len()).map(|k| swung[k] * share(k) - bent[i][k] * x[k]).collect())
+        };
+        (0..n).map(on).collect()
+    }
+
+    /// How the rigid torques of all joints change with the position of one, `[i][t]`, by central differences.
+    fn bent(&self, signal: usize, j: usize) -> Vec<Vec<f64>> {
+        let s = &self.signals[signal];
+        let n = s.q.len();
+        let mut bent = vec![vec![0.0; s.len()]; n];
+        let (mut a, mut b, mut mass, mut bias) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
+        for t in 0..s.len() {
+            for step in [POSITION_STEP, -POSITION_STEP] {
+                for i in 0..n {
+                    (a[i], b[i]) = (s.q[i][t], s.dq[i][t]);
                 }
-                let other = &links.mass[i * n + j];
-                (
-                    i,
-                    transmitted_torque
-                        .iter()
-                        .zip(other)
-                        .zip(&inertia)
-                        .map(|((f, m), own)| f * m / own)
-                        .collect(),
-                )
-            })
-            .collect()
+                a[j] += step;
+                self.model.mass_and_bias(&self.chi, &a, &b, &mut mass, &mut bias);
+                for i in 0..n {
+                    let torque = bias[i] + (0..n).map(|k| mass[i * n + k] * s.ddq[k][t]).sum::<f64>();
+                    bent[i][t] += torque / (2.0 * step);
+                }
+            }
+        }
+        bent
     }
 
     fn links(&self, signal: usize) -> &Links {
         self.links[signal].get_or_init(|| {
             let s = &self.signals[signal];
             let n = s.q.len();
-            let mut links =
-                Links { load: vec![vec![0.0; s.len()]; n], mass: vec![vec![0.0; s.len()]; n * n] };
+            let mut links = Links {
+                load: vec![vec![0.0; s.len()]; n],
+                mass: vec![vec![0.0; s.len()]; n * n],
+                bent: (0..n).map(|_| OnceLock::new()).collect(),
+            };
             let (mut a, mut b, mut mass, mut bias) =
                 (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
             for t in 0..s.len() {
