@@ -97,13 +97,16 @@ pub(in crate::diagnosis) fn seen(around: &Around<'_>, look: &Look) -> Option<Con
         let Some((wrench, doubt)) = wrench(around, &felt, &joints, &look.noise, (edges, doubt)) else {
             continue;
         };
-        if doubt > look.level {
+        let squares = felt.squares(around, &joints);
+        if doubt > look.level || squares.swing() {
             continue;
         }
         let window = [wrench.window[0] - CONTACT_MARGIN, wrench.window[1] + CONTACT_MARGIN];
         contacts.windows[clearest.motion].push(window);
         contacts.doubt = contacts.doubt.min(doubt);
-        felt.add_squares(around, &joints, &mut contacts);
+        contacts.before += squares.before;
+        contacts.after += squares.after;
+        contacts.torque += squares.torque;
         contacts.wrenches.push(wrench);
     }
     let targets = around.context.signals.iter().filter(|s| s.is_target);

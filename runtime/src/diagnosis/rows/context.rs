@@ -3,28 +3,18 @@
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rows::free::free_columns;
+use crate::diagnosis::rows::links::Links;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rows::user::user_columns;
-use crate::diagnosis::rules::{LEAST_LINK_INERTIA, POSITION_STEP};
 use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, LinkSide, Place, Scale, Sensitivity,
-    Stretch, Transmission, body_columns, deflection, derivable, derivative, stretch_at_start,
+    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
+    Transmission, body_columns, derivable, derivative,
 };
 use crate::model::{Link, Model, RecursiveModel};
 use std::sync::{Arc, OnceLock};
 
 /// One column in one motion at the full rate: the joints that it acts on, with their torques.
 pub(in crate::diagnosis) type Series = Vec<(usize, Vec<f64>)>;
-
-/// What links ask for through compliant transmissions.
-struct Links {
-    /// Rigid torque, `[j][t]`.
-    load: Vec<Vec<f64>>,
-    /// Mass matrix, `[i * n + j][t]`.
-    mass: Vec<Vec<f64>>,
-    /// Derivatives of the rigid torques by the position of each joint, `[j][i][t]`.
-    bent: Vec<OnceLock<Vec<Vec<f64>>>>,
-}
 
 pub(in crate::diagnosis) struct Context<'a> {
     pub model: &'a dyn Model,
@@ -248,9 +238,8 @@ impl<'a> Context<'a> {
 
     /// Least and median inertia that a joint moves in these motions.
     fn inertia(&self, j: usize) -> [f64; 2] {
-        let n = self.model.robot().joints();
         let mut inertia: Vec<f64> = (0..self.signals.len())
-            .flat_map(|k| self.links(k).mass[j * n + j].iter().step_by(7).copied().collect::<Vec<_>>())
+            .flat_map(|k| self.links(k).inertia(j).iter().step_by(7).copied().collect::<Vec<_>>())
             .collect();
         inertia.sort_by(f64::total_cmp);
         let least = inertia.first().copied().unwrap_or(1.0).max(1e-6);
@@ -258,80 +247,12 @@ impl<'a> Context<'a> {
     }
 
     fn compliant(&self, signal: usize, j: usize, shape: &[f64]) -> Series {
-        let n = self.model.robot().joints();
         let t = self.transmission(j, shape);
-        let (links, signals) = (self.links(signal), &self.signals[signal]);
-        let bent = links.bent[j].get_or_init(|| self.bent(signal, j));
-        let own = &links.mass[j * n + j];
-        let inertia: Vec<f64> =
-            own.iter().map(|m| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9)).collect();
-        let load: Vec<f64> =
-            links.load[j].iter().zip(&signals.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
-        let link = LinkSide { load: &load, inertia: &inertia, stiffness: &bent[j], rate: signals.rate };
-        let measured = &signals.torque[j];
-        let start = if measured.iter().any(|x| *x != 0.0) {
-            let rigid = &self.torques[signal].total[j];
-            let missing: Vec<f64> = measured.iter().zip(rigid).map(|(tau, model)| tau - model).collect();
-            stretch_at_start(&link, &missing, &t, signals.edge_samples)
-        } else {
-            // A motion that nobody has measured.
-            Stretch::under(load.first().copied().unwrap_or(0.0), &t)
-        };
-        let (mut x, mut swung) = (vec![0.0; load.len()], vec![0.0; load.len()]);
-        deflection(&link, &t, start, [&mut x, &mut swung]);
-        let on = |i: usize| {
-            let share = |k: usize| if i == j { 1.0 } else { links.mass[i * n + j][k] / inertia[k] };
-            (i, (0..x.len()).map(|k| swung[k] * share(k) - bent[i][k] * x[k]).collect())
-        };
-        (0..n).map(on).collect()
-    }
-
-    /// How the rigid torques of all joints change with the position of one, `[i][t]`, by central differences.
-    fn bent(&self, signal: usize, j: usize) -> Vec<Vec<f64>> {
-        let s = &self.signals[signal];
-        let n = s.q.len();
-        let mut bent = vec![vec![0.0; s.len()]; n];
-        let (mut a, mut b, mut mass, mut bias) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
-        for t in 0..s.len() {
-            for step in [POSITION_STEP, -POSITION_STEP] {
-                for i in 0..n {
-                    (a[i], b[i]) = (s.q[i][t], s.dq[i][t]);
-                }
-                a[j] += step;
-                self.model.mass_and_bias(&self.chi, &a, &b, &mut mass, &mut bias);
-                for i in 0..n {
-                    let torque = bias[i] + (0..n).map(|k| mass[i * n + k] * s.ddq[k][t]).sum::<f64>();
-                    bent[i][t] += torque / (2.0 * step);
-                }
-            }
-        }
-        bent
+        let motion = (&self.signals[signal], &self.torques[signal]);
+        self.links(signal).compliant((self.model, &self.chi), motion, j, &t)
     }
 
     fn links(&self, signal: usize) -> &Links {
-        self.links[signal].get_or_init(|| {
-            let s = &self.signals[signal];
-            let n = s.q.len();
-            let mut links = Links {
-                load: vec![vec![0.0; s.len()]; n],
-                mass: vec![vec![0.0; s.len()]; n * n],
-                bent: (0..n).map(|_| OnceLock::new()).collect(),
-            };
-            let (mut a, mut b, mut mass, mut bias) =
-                (vec![0.0; n], vec![0.0; n], vec![0.0; n * n], vec![0.0; n]);
-            for t in 0..s.len() {
-                for j in 0..n {
-                    (a[j], b[j]) = (s.q[j][t], s.dq[j][t]);
-                }
-                self.model.mass_and_bias(&self.chi, &a, &b, &mut mass, &mut bias);
-                for i in 0..n {
-                    links.load[i][t] = bias[i] + (0..n).map(|k| mass[i * n + k] * s.ddq[k][t]).sum::<f64>();
-                    for k in 0..n {
-                        links.mass[i * n + k][t] = mass[i * n + k];
-                    }
-                }
-            }
-            links
-        })
+        self.links[signal].get_or_init(|| Links::new(self.model, &self.chi, &self.signals[signal]))
     }
 }

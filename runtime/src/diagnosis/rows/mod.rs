@@ -5,6 +5,7 @@ pub(in crate::diagnosis) mod design;
 pub(in crate::diagnosis) mod fit;
 pub(in crate::diagnosis) mod free;
 pub(in crate::diagnosis) mod gram;
+pub(in crate::diagnosis) mod links;
 pub(in crate::diagnosis) mod motion;
 pub(in crate::diagnosis) mod prior;
 pub(in crate::diagnosis) mod scales;

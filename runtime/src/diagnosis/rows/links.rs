@@ -1,0 +1,133 @@
+//! What links ask for through compliant transmissions, and what a link behind one adds to the torques.
+
+use crate::diagnosis::rows::context::Series;
+use crate::diagnosis::rows::signals::{ModelTorques, Signals};
+use crate::diagnosis::rules::{LEAST_LINK_INERTIA, POSITION_STEP};
+use crate::effects::{LinkSide, Stretch, Transmission, deflection, stretch_at_start};
+use crate::model::Model;
+use std::sync::OnceLock;
+
+/// A model and its base parameters.
+type Parametrised<'a> = (&'a dyn Model, &'a [f64]);
+
+/// The rigid robot in one motion.
+pub(in crate::diagnosis) struct Links {
+    joints: usize,
+    /// Rigid torque, `[j][t]`.
+    load: Vec<Vec<f64>>,
+    /// Mass matrix, `[i * n + j][t]`.
+    mass: Vec<Vec<f64>>,
+    /// Derivatives of the rigid torques by the position of each joint, `[j][i][t]`.
+    bent: Vec<OnceLock<Vec<Vec<f64>>>>,
+}
+
+impl Links {
+    /// Of one motion.
+    pub fn new(model: &dyn Model, chi: &[f64], s: &Signals) -> Self {
+        let n = s.q.len();
+        let mut links = Self {
+            joints: n,
+            load: vec![vec![0.0; s.len()]; n],
+            mass: vec![vec![0.0; s.len()]; n * n],
+            bent: (0..n).map(|_| OnceLock::new()).collect(),
+        };
+        let mut rigid = Rigid::new((model, chi), n);
+        for t in 0..s.len() {
+            rigid.at(s, t, None);
+            for i in 0..n {
+                links.load[i][t] = rigid.torque[i];
+                for k in 0..n {
+                    links.mass[i * n + k][t] = rigid.mass[i * n + k];
+                }
+            }
+        }
+        links
+    }
+
+    /// Inertia about a joint, rotor included.
+    pub fn inertia(&self, j: usize) -> &[f64] {
+        &self.mass[j * self.joints + j]
+    }
+
+    /// The torques on all joints beyond those of the rigid model where joint j has this transmission.
+    pub fn compliant(
+        &self,
+        robot: Parametrised<'_>,
+        (signals, torques): (&Signals, &ModelTorques),
+        j: usize,
+        t: &Transmission,
+    ) -> Series {
+        let n = self.joints;
+        let bent = self.bent[j].get_or_init(|| bent(robot, signals, j));
+        let of_link = |m: &f64| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9);
+        let inertia: Vec<f64> = self.inertia(j).iter().map(of_link).collect();
+        let load: Vec<f64> = self.load[j].iter().zip(&signals.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
+        let link = LinkSide { load: &load, inertia: &inertia, stiffness: &bent[j], rate: signals.rate };
+        let measured = &signals.torque[j];
+        let start = if measured.iter().any(|x| *x != 0.0) {
+            let rigid = &torques.total[j];
+            let missing: Vec<f64> = measured.iter().zip(rigid).map(|(tau, model)| tau - model).collect();
+            stretch_at_start(&link, &missing, t, signals.edge_samples)
+        } else {
+            // A motion that nobody has measured.
+            Stretch::under(load.first().copied().unwrap_or(0.0), t)
+        };
+        let (mut x, mut swung) = (vec![0.0; load.len()], vec![0.0; load.len()]);
+        deflection(&link, t, start, [&mut x, &mut swung]);
+        let on = |i: usize| {
+            let share = |k: usize| if i == j { 1.0 } else { self.mass[i * n + j][k] / inertia[k] };
+            (i, (0..x.len()).map(|k| swung[k] * share(k) - bent[i][k] * x[k]).collect())
+        };
+        (0..n).map(on).collect()
+    }
+}
+
+/// How the rigid torques of all joints change with the position of one, `[i][t]`, by central differences.
+fn bent(robot: Parametrised<'_>, s: &Signals, j: usize) -> Vec<Vec<f64>> {
+    let n = s.q.len();
+    let mut bent = vec![vec![0.0; s.len()]; n];
+    let mut rigid = Rigid::new(robot, n);
+    for t in 0..s.len() {
+        for step in [POSITION_STEP, -POSITION_STEP] {
+            rigid.at(s, t, Some((j, step)));
+            for (bent, torque) in bent.iter_mut().zip(&rigid.torque) {
+                bent[t] += torque / (2.0 * step);
+            }
+        }
+    }
+    bent
+}
+
+/// The rigid model at an instant.
+struct Rigid<'a> {
+    robot: Parametrised<'a>,
+    q: Vec<f64>,
+    dq: Vec<f64>,
+    mass: Vec<f64>,
+    bias: Vec<f64>,
+    torque: Vec<f64>,
+}
+
+impl<'a> Rigid<'a> {
+    fn new(robot: Parametrised<'a>, n: usize) -> Self {
+        let zero = vec![0.0; n];
+        let mass = vec![0.0; n * n];
+        Self { robot, q: zero.clone(), dq: zero.clone(), mass, bias: zero.clone(), torque: zero }
+    }
+
+    /// At a sample, with one joint moved from where it is.
+    fn at(&mut self, s: &Signals, t: usize, moved: Option<(usize, f64)>) {
+        let n = self.q.len();
+        for j in 0..n {
+            (self.q[j], self.dq[j]) = (s.q[j][t], s.dq[j][t]);
+        }
+        if let Some((j, step)) = moved {
+            self.q[j] += step;
+        }
+        let (model, chi) = self.robot;
+        model.mass_and_bias(chi, &self.q, &self.dq, &mut self.mass, &mut self.bias);
+        for i in 0..n {
+            self.torque[i] = self.bias[i] + (0..n).map(|k| self.mass[i * n + k] * s.ddq[k][t]).sum::<f64>();
+        }
+    }
+}
