@@ -114,7 +114,7 @@ impl Residualised {
 
 impl Regression {
     /// In-sample gain of a trial of a candidate over all motion; negative infinity where it has none.
-    fn gain_of(&self, candidate: &Candidate, trial: &Trial) -> f64 {
+    pub fn gain_of(&self, candidate: &Candidate, trial: &Trial) -> f64 {
         self.fit
             .project_out(trial)
             .and_then(|part| part.solve(candidate))

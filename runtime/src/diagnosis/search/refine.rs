@@ -20,8 +20,18 @@ impl Search<'_> {
             let start = regression.best_trial(candidate)?;
             let shape = self.refined(regression, candidate, &candidate.trials[start].shape);
             let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);
-            let columns = columns(&model.context, design, effect, place, &shape, model.change);
-            Some(Trial::new(design, shape, columns))
+            let trial = |shape: &[f64]| {
+                let columns = columns(&model.context, design, effect, place, shape, model.change);
+                Trial::new(design, shape.to_vec(), columns)
+            };
+            let refined = trial(&shape);
+            if regression.gain_of(candidate, &refined) <= 0.0 {
+                return Some(refined);
+            }
+            // What explains anything may explain more at the end of its valley.
+            let mut tuning = Tuning::beside(model, &Accepted::tried(candidate, shape)).ok()?;
+            tuning.run().ok()?;
+            Some(trial(tuning.shape()))
         });
         for (candidate, trial) in self.fast.iter_mut().zip(polished) {
             candidate.trials.extend(trial);

@@ -257,19 +257,15 @@ impl Search<'_> {
     /// The winner as a term, with the shape of the grid.
     pub(in crate::diagnosis) fn as_term(&self, winner: &Winner) -> Accepted {
         let candidate = &self.candidates(winner.window)[winner.index];
+        let shape = candidate.trials[winner.verdict.trial].shape.clone();
         Accepted {
-            effect: candidate.effect,
-            place: candidate.place,
-            own: candidate.own.clone(),
             shows_on: winner.verdict.shows_on.clone(),
-            shape: candidate.trials[winner.verdict.trial].shape.clone(),
-            modes: Vec::new(),
-            fixed: candidate.fixed,
             significance: winner.significance,
             confidence: winner.confidence,
             inflation: winner.inflation,
             explained_fraction: winner.verdict.explained_fraction,
             rivals: winner.rivals.clone(),
+            ..Accepted::tried(candidate, shape)
         }
     }
 }

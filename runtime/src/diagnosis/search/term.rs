@@ -1,5 +1,6 @@
 //! An effect that became part of the model.
 
+use crate::diagnosis::candidates::candidate::Candidate;
 use crate::effects::{EffectKind, Place};
 
 /// An accepted effect.
@@ -24,6 +25,26 @@ pub(in crate::diagnosis) struct Accepted {
     /// Fraction of what held-out motion left open when it was accepted: what its rivals' fractions compare with.
     pub explained_fraction: f64,
     pub rivals: Vec<Rival>,
+}
+
+impl Accepted {
+    /// A candidate with a shape, before anything is known of how well it does.
+    pub fn tried(candidate: &Candidate, shape: Vec<f64>) -> Self {
+        Self {
+            effect: candidate.effect,
+            place: candidate.place,
+            own: candidate.own.clone(),
+            shows_on: candidate.own.clone(),
+            shape,
+            modes: Vec::new(),
+            fixed: candidate.fixed,
+            significance: 0.0,
+            confidence: 0.0,
+            inflation: 1.0,
+            explained_fraction: 0.0,
+            rivals: Vec::new(),
+        }
+    }
 }
 
 /// Another shape that leaves hardly more than the best.
