@@ -192,6 +192,18 @@ fn a_spring_on_a_revolute_joint_is_told_from_gravity() {
 }
 
 #[test]
+fn a_transmission_that_rings_from_the_start_is_named_with_its_stiffness() {
+    let robot = planar();
+    // Stiffness, damping, rotor, no play: some 6 Hz, and 30 mrad under the weight of the arm.
+    let transmission = [1500.0, 4.6, 0.12, 0.0];
+    let hidden = Hidden::effect(EffectKind::JointElasticity, Place::Joint(0), &[6.0], &transmission);
+    let diagnosis = diagnosed(robot, &hidden);
+    assert_only(&diagnosis, EffectKind::JointElasticity, &[1]);
+    assert_within_four_sigma(&diagnosis, "k", transmission[0]);
+    assert_within_four_sigma(&diagnosis, "d", transmission[1]);
+}
+
+#[test]
 fn a_torque_that_bends_with_the_position_is_no_spring() {
     let robot = scara();
     // No line and no lever bends as often.
