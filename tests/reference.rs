@@ -6,7 +6,7 @@ mod common;
 use std::fmt::Write as _;
 
 use common::{Folder, error_of, json_of, words_of};
-use dynid_runtime::model::{JointKind, ParameterKind};
+use dynid_runtime::model::{CouplingLaw, JointKind, ParameterKind};
 use dynid_runtime::recording::{Quantity, Unit};
 use serde_json::Value;
 
@@ -54,7 +54,8 @@ fn the_generated_parts_of_the_reference_are_what_the_program_says() {
 fn parameters() -> String {
     let mut text = String::from("| name | unit | of a prismatic joint | what |\n|---|---|---|---|\n");
     let all = ParameterKind::INERTIAL.into_iter().chain(ParameterKind::JOINT).chain(ParameterKind::MOTOR);
-    for kind in all {
+    let of_couplings = [CouplingLaw::Friction, CouplingLaw::Spring].map(CouplingLaw::parameters).concat();
+    for kind in all.chain(of_couplings) {
         let [turns, slides] = [JointKind::Revolute, JointKind::Prismatic].map(|joint| kind.unit(joint));
         let slides = if slides == turns { "" } else { slides };
         writeln!(text, "| `{}` | {turns} | {slides} | {} |", kind.symbol(), kind.meaning()).unwrap();

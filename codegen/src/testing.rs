@@ -39,7 +39,9 @@ pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> RobotTable {
         frames,
         dependent: Vec::new(),
         drive: DriveTable { gear, coupled_friction: Vec::new() },
+        couplings: Vec::new(),
         known: Vec::new(),
+        fixed: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

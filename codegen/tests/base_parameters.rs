@@ -6,11 +6,14 @@ mod shipped;
 
 use dynid_codegen::base::{BaseSet, base_set};
 use dynid_codegen::robot::{DriveTable, Expression, RobotTable, TableRow, parse};
-use dynid_description::{BaseParameter, DependentFrame, JointKind, Limits, ParameterKind};
+use dynid_description::{
+    BaseParameter, Coupling, CouplingLaw, DependentFrame, JointKind, Limits, ParameterKind,
+};
 use numeric::regressor;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use shipped::{robots, workspace};
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 fn robot(name: &str) -> RobotTable {
@@ -141,6 +144,115 @@ fn the_base_of_random_tables_in_which_parameters_are_known_to_be_0_has_the_numer
     assert!(wrong.is_empty(), "{} of 200 wrong\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
 }
 
+#[test]
+fn the_base_of_random_tables_with_friction_between_links_and_springs_has_the_numeric_rank_and_the_same_torques()
+ {
+    let mut random = Pcg64::seed_from_u64(23);
+    let (mut wrong, mut springs) = (Vec::new(), 0);
+    for trial in 0..300 {
+        let mut robot = random_robot(&mut random);
+        if trial % 3 == 1 {
+            make_dependent(&mut robot, &mut random);
+        }
+        add_couplings(&mut robot, &mut random);
+        let standard = robot.standard_parameters();
+        springs += standard.iter().filter(|p| p.kind == ParameterKind::K).count();
+        if trial % 2 == 1 {
+            // Friction and offsets of joints too, on which those of combinations lean.
+            robot.known = (0..standard.len()).filter(|_| random.random_bool(0.2)).collect();
+        }
+        if let Err(e) = check(&robot, &mut random) {
+            wrong.push(format!(
+                "table {trial}: {e} {:?} {:?}\n{}",
+                robot.couplings,
+                robot.known,
+                table(&robot)
+            ));
+        }
+    }
+    assert!(springs > 200, "{springs}");
+    assert!(wrong.is_empty(), "{} of 300 wrong\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
+}
+
+#[test]
+fn of_what_is_known_as_much_is_kept_as_torques_can_tell_from_the_rest() {
+    let mut random = Pcg64::seed_from_u64(24);
+    let (mut wrong, mut kept) = (Vec::new(), 0);
+    for trial in 0..200 {
+        let mut robot = random_robot(&mut random);
+        if trial % 3 == 1 {
+            make_dependent(&mut robot, &mut random);
+        }
+        add_couplings(&mut robot, &mut random);
+        let count = robot.standard_parameters().len();
+        for k in 0..count {
+            match random.random_range(0..8) {
+                0 => robot.known.push(k),
+                1 => robot.fixed.push((k, random.random_range(0.1..2.0))),
+                _ => {}
+            }
+        }
+        let mut check_fixed = || -> Result<(), String> {
+            check(&robot, &mut random)?;
+            let set = base_set(&robot);
+            let is_fixed = |k: usize| robot.fixed.iter().any(|&(fixed, _)| fixed == k);
+            let mut rows = observations(&robot, &set, &mut random);
+            robot.known.iter().for_each(|&k| rows.column_mut(k).fill(0.0));
+            let all = rank(&rows).0;
+            robot.fixed.iter().for_each(|&(k, _)| rows.column_mut(k).fill(0.0));
+            let free = if rows.amax() > 0.0 { rank(&rows).0 } else { 0 };
+            let known = dynid_codegen::numeric_robot(&robot, &set).fixed_base().len();
+            kept += known;
+            let found = set.base.iter().filter(|p| p.combination.iter().all(|&(k, _)| is_fixed(k))).count();
+            if known == all - free && found == known {
+                return Ok(());
+            }
+            Err(format!("{known} and {found} are known, rank {all} and {free}"))
+        };
+        if let Err(e) = check_fixed() {
+            wrong.push(format!("table {trial}: {e} {:?} {:?}\n{}", robot.known, robot.fixed, table(&robot)));
+        }
+    }
+    assert!(kept > 200, "{kept}");
+    assert!(wrong.is_empty(), "{} of 200 wrong\n{}", wrong.len(), wrong[..wrong.len().min(3)].join("\n"));
+}
+
+/// Up to four combinations with friction, and up to two springs, whose stiffnesses are always independent.
+fn add_couplings(robot: &mut RobotTable, random: &mut Pcg64) {
+    let joints = robot.joint_frames().len();
+    let mut terms = |least: usize| -> Cow<'static, [(usize, f64)]> {
+        loop {
+            let mut chosen = Vec::new();
+            for joint in 0..joints {
+                if random.random_bool(0.5) {
+                    chosen.push((joint, [1.0, -1.0, 1.0, -1.0, 0.35, -2.0][random.random_range(0..6)]));
+                }
+            }
+            if chosen.len() >= least.min(joints) {
+                return chosen.into();
+            }
+        }
+    };
+    let counts = (terms(0).len() % 5, terms(0).len() % 3);
+    for k in 0..counts.0 {
+        robot.couplings.push(Coupling {
+            name: format!("_f{k}").into(),
+            terms: terms(2),
+            law: CouplingLaw::Friction,
+        });
+    }
+    let mut before: Option<Vec<(usize, f64)>> = None;
+    for k in 0..counts.1 {
+        let law = [CouplingLaw::Spring, CouplingLaw::SpringAt(0.3)][terms(0).len() % 2];
+        let terms = terms(1);
+        let scaled: Vec<(usize, f64)> = terms.iter().map(|&(j, c)| (j, c / terms[0].1)).collect();
+        if before.as_ref() != Some(&scaled) {
+            robot.couplings.push(Coupling { name: format!("_s{k}").into(), terms, law });
+        }
+        before = Some(scaled);
+    }
+}
+
 /// Makes frames move with several joints, and several frames with one. The gear stays where no joint is lost.
 fn make_dependent(robot: &mut RobotTable, random: &mut Pcg64) {
     let kinds: Vec<JointKind> = robot.frames.iter().map(|f| f.kind).collect();
@@ -238,7 +350,9 @@ fn random_robot(random: &mut Pcg64) -> RobotTable {
         frames,
         dependent: Vec::new(),
         drive,
+        couplings: Vec::new(),
         known: Vec::new(),
+        fixed: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

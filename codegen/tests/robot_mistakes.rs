@@ -308,7 +308,7 @@ fn rows_may_move_with_variables_of_others() {
 }
 
 #[test]
-fn what_is_known_to_be_0_is_no_base_parameter() {
+fn what_is_known_is_no_base_parameter_or_one_with_a_value() {
     let rows = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n  \
                 - {j: 2, sigma: 0, alpha: 0, d: 0.1, theta: q2, r: 0}\n";
     let arm = |rest: &str| format!("name: arm\ngravity: [0, -9.81, 0]\nframes:\n{rows}{rest}");
@@ -316,11 +316,71 @@ fn what_is_known_to_be_0_is_no_base_parameter() {
     let set = dynid_codegen::base::base_set(&robot);
     let names: Vec<&str> = set.base.iter().map(|p| p.relation.as_ref()).collect();
     assert_eq!(names, ["ZZ1", "MX1", "MY1", "Fv1", "Fc1", "Ia2", "Fv2", "Fc2", "off2"]);
-    one_mistake(&arm("known: {M2: 0.3}\n"), "6:13", &["M2 is known to be 0.3", "only 0 is supported"]);
+    one_mistake(&arm("massless: [2]\nknown: {M2: 0.3}\n"), "7:9", &["M2 is known already", "massless"]);
+    one_mistake(&arm("known: {M2: 1e300}\n"), "6:13", &["M2", "at most"]);
     one_mistake(&arm("known: {M9: 0}\n"), "6:9", &["'M9' is not a standard parameter"]);
     one_mistake(&arm("massless: [3]\n"), "6:12", &["massless names 3", "1 to 2"]);
     let nominal = "massless: [2]\nnominal: {parameters: {M2: 1}}\n";
     one_mistake(&arm(nominal), "7:10", &["nominal has M2: 1, which is known to be 0"]);
+    let nominal = "known: {M2: 2}\nnominal: {parameters: {M2: 1}}\n";
+    one_mistake(&arm(nominal), "7:10", &["nominal has M2: 1, which is known to be 2"]);
+    // What torques can tell keeps a column of its own; what is part of others is regrouped as ever.
+    let robot = read(&arm("known: {Ia2: 0.3, M2: 2, Fv1: 4}\nnominal: {parameters: {Fc1: 1}}\n"));
+    let robot = dynid_codegen::numeric_robot(&robot, &dynid_codegen::base::base_set(&robot));
+    let fixed: Vec<(&str, f64)> =
+        robot.fixed_base().into_iter().map(|(k, value)| (&*robot.base[k].name, value)).collect();
+    assert_eq!(fixed, [("Fv1", 4.0), ("Ia2", 0.3)]);
+    assert!(robot.base.iter().any(|p| p.relation.starts_with("ZZ1 + Ia1 + 0.01*M2")), "{:?}", robot.base);
+    let nominal = robot.nominal.as_ref().unwrap();
+    assert_eq!(robot.base_from_standard(&nominal.standard)[robot.fixed_base()[0].0], 4.0);
+}
+
+#[test]
+fn friction_between_links_is_named_by_its_joints_and_refused_where_it_is_there_already() {
+    let robot = read(&arm("friction: [{joints: {q1: 1, q2: -0.5}}, {joints: {q2: 1, q1: 1}, name: belt}]"));
+    let names: Vec<String> = robot.standard_parameters()[28..].iter().map(|p| p.name.to_string()).collect();
+    assert_eq!(names, ["Fvc1_2", "Fcc1_2", "Fvc_belt", "Fcc_belt"]);
+    assert_eq!(*robot.couplings[1].terms, [(0, 1.0), (1, 1.0)]);
+    let one = |entries: &str, place: &str, words: &[&str]| {
+        one_mistake(&arm(&format!("friction: [{entries}]")), place, words);
+    };
+    one("{joints: {q2: 1}}", "5:12", &["joint 2 alone", "Fv2 and Fc2"]);
+    one("{joints: {q3: 1}}", "5:22", &["'q3' is no joint", "q1, q2"]);
+    one("{joints: {q1: 1, q2: 0}}", "5:33", &["coefficient of q2 is 0"]);
+    one("{joints: {q1: 1, q2: 1e9}}", "5:33", &["coefficient of q2", "at most"]);
+    one("{joints: q1 - q2}", "5:21", &["joints with their coefficients"]);
+    one("{name: belt}", "5:12", &["has no 'joints'"]);
+    one("{joints: {q1: 1, q2: 1}, name: 7}", "5:43", &["name '7'", "not a Rust identifier"]);
+    one("{joints: {q1: 1, q2: 1}}, {joints: {q1: -2, q2: -2}}", "5:38", &["Fvc1_2 and Fcc1_2"]);
+    one("{joints: {q1: 1, q2: 1}}, {joints: {q1: 1, q2: -1}}", "5:38", &["'1_2' already", "`name`"]);
+    let motor =
+        "drive: {gear: [[10, 0], [5, 10]], coupled_friction: [2]}\nfriction: [{joints: {q1: 1, q2: 2}}]";
+    one_mistake(&arm(motor), "6:12", &["speed of motor 2", "Fvm2 and Fcm2"]);
+}
+
+#[test]
+fn springs_are_of_one_joint_or_several_and_refused_where_torques_cannot_tell_them_apart() {
+    let robot =
+        read(&arm("springs: [{joint: 2}, {joints: {q1: 1, q2: 1}, rest: pi/2, name: hose, law: linear}]"));
+    let names: Vec<String> = robot.standard_parameters()[28..].iter().map(|p| p.name.to_string()).collect();
+    assert_eq!(names, ["K2", "KR2", "K_hose"]);
+    let set = dynid_codegen::base::base_set(&robot);
+    assert!(set.base.iter().any(|p| p.relation == "off2 - KR2"), "{:?}", set.base);
+    // Where the offset is known, the rest of the spring shows.
+    let without = read(&arm("springs: [{joint: 2}]\nknown: {off2: 0}"));
+    let set = dynid_codegen::base::base_set(&without);
+    assert!(set.base.iter().any(|p| p.name == "KR2"), "{:?}", set.base);
+    let one = |entries: &str, place: &str, words: &[&str]| {
+        one_mistake(&arm(&format!("springs: [{entries}]")), place, words);
+    };
+    one("{joint: 3}", "5:19", &["no joint 3", "[1, 2]"]);
+    one("{}", "5:11", &["joint: 2"]);
+    one("{joint: 1, joints: {q1: 1}}", "5:11", &["expected a spring on one joint"]);
+    one("{joint: 1, law: gas}", "5:27", &["the law is linear", "'gas'"]);
+    one("{joint: 1, rest: q2}", "5:28", &["rest must not depend on q2"]);
+    one("{joint: 1}, {joints: {q1: 3}, name: b}", "5:23", &["'_b' cannot be told"]);
+    let both = "{joint: 1}, {joint: 2}, {joints: {q1: 1, q2: 1}}, {joints: {q1: 1, q2: -1}, name: b}";
+    one(both, "5:61", &["'_b' cannot be told"]);
 }
 
 #[test]

@@ -18,6 +18,7 @@
 
 mod base_parameter;
 pub mod bounds;
+mod coupling;
 mod dependent;
 mod drive;
 pub mod formula;
@@ -30,6 +31,7 @@ mod robot;
 mod standard;
 
 pub use base_parameter::BaseParameter;
+pub use coupling::{Coupling, CouplingLaw};
 pub use dependent::{DependentFrame, MAX_TERMS, Motion, motions};
 pub use drive::Drive;
 pub use frame::{Frame, JointKind};

@@ -1,7 +1,7 @@
 //! The standard parameters of a link and its joint.
 
 use crate::JointKind;
-use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M, MX, MY, MZ, Off, XX, XY, XZ, YY, YZ, ZZ};
+use ParameterKind::{Fc, Fcc, Fcm, Fv, Fvc, Fvm, Ia, K, KR, M, MX, MY, MZ, Off, XX, XY, XZ, YY, YZ, ZZ};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -14,6 +14,9 @@ pub struct StandardParameter {
     pub kind: ParameterKind,
     /// Frame it belongs to, 0-based index in `Robot::frames`.
     pub frame: usize,
+    /// What it is of, 0-based index in `Robot::couplings`, where it is of a combination of joints.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupling: Option<usize>,
 }
 
 /// What a standard parameter is, in the order of chi_st within a frame.
@@ -52,6 +55,14 @@ pub enum ParameterKind {
     Fvm,
     /// Coulomb friction at motor speed.
     Fcm,
+    /// Viscous friction on a combination of joints.
+    Fvc,
+    /// Coulomb friction on a combination of joints.
+    Fcc,
+    /// Stiffness of a spring on a combination of joints.
+    K,
+    /// Stiffness times the position at rest of such a spring.
+    KR,
 }
 
 impl ParameterKind {
@@ -83,6 +94,10 @@ impl ParameterKind {
             Off => "off",
             Fvm => "Fvm",
             Fcm => "Fcm",
+            Fvc => "Fvc",
+            Fcc => "Fcc",
+            K => "K",
+            KR => "KR",
         }
     }
 
@@ -105,7 +120,31 @@ impl ParameterKind {
             Off => "constant torque of the joint: what the sensor or the current says where there is none",
             Fvm => "viscous friction at motor speed, of a motor that several joints turn",
             Fcm => "Coulomb friction at motor speed",
+            Fvc => "viscous friction between links or of a tendon, on a combination of joint speeds",
+            Fcc => "Coulomb friction between links or of a tendon",
+            K => "stiffness of a spring that the table names",
+            KR => "stiffness of such a spring times its position at rest",
         }
+    }
+
+    /// Whether its torque is friction: viscous, or one that follows the sign of a speed.
+    pub fn is_friction(self) -> bool {
+        self.is_viscous() || self.is_coulomb()
+    }
+
+    /// Whether its torque is proportional to a speed: of a joint, of a motor, or of a combination of joints.
+    pub fn is_viscous(self) -> bool {
+        matches!(self, Fv | Fvm | Fvc)
+    }
+
+    /// Whether its torque follows the sign of a speed.
+    pub fn is_coulomb(self) -> bool {
+        matches!(self, Fc | Fcm | Fcc)
+    }
+
+    /// Whether it is one of a spring.
+    pub fn is_spring(self) -> bool {
+        matches!(self, K | KR)
     }
 
     /// SI unit, where the frame that the parameter belongs to moves like this.
@@ -123,8 +162,9 @@ impl ParameterKind {
             M => "kg",
             Ia if kind == JointKind::Prismatic => "kg",
             Ia => "kg.m2",
-            Fv | Fvm => kind.viscous_unit(),
-            Fc | Off | Fcm => kind.torque_unit(),
+            Fv | Fvm | Fvc => kind.viscous_unit(),
+            Fc | Off | Fcm | Fcc | KR => kind.torque_unit(),
+            K => kind.stiffness_unit(),
         }
     }
 }

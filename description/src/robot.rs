@@ -1,8 +1,8 @@
 //! A robot as numbers.
 
 use crate::{
-    BaseParameter, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Motion, Nominal,
-    StandardParameter, motions,
+    BaseParameter, Coupling, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber, Limits,
+    Motion, Nominal, ParameterKind, StandardParameter, motions,
 };
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -25,13 +25,21 @@ pub struct Robot {
     pub dependent: Cow<'static, [DependentFrame]>,
     /// Transmission between motors and joints.
     pub drive: Drive,
+    /// Friction and springs on combinations of joints; none in most robots.
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    pub couplings: Cow<'static, [Coupling]>,
     /// Standard parameters, by index, that are known to be 0; none in most robots.
     #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
     pub known: Cow<'static, [usize]>,
+    /// Standard parameters, by index, that are known to have another value, ascending. Where torques can tell them from the
+    /// rest, base parameters hold known ones only: [`Robot::fixed_base`].
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    pub fixed: Cow<'static, [(usize, f64)]>,
     /// Limits per joint, SI.
     pub limits: Limits,
     /// The standard parameters in the order of chi_st: for each frame XX XY XZ YY YZ ZZ MX MY MZ M, then,
-    /// where the frame is a joint, Ia Fv Fc off, then Fvm Fcm where its motor has coupled friction.
+    /// where the frame is a joint, Ia Fv Fc off, then Fvm Fcm where its motor has coupled friction. Behind all frames: for
+    /// each of `couplings` Fvc Fcc, or K KR (K alone where its position at rest is known).
     pub standard: Cow<'static, [StandardParameter]>,
     /// The base parameters in the order of chi, joint after joint in the same order.
     pub base: Cow<'static, [BaseParameter]>,
@@ -131,6 +139,34 @@ impl Robot {
     pub fn without_effect(&self) -> Vec<usize> {
         let held = |k: usize| self.base.iter().any(|b| b.combination.iter().any(|&(column, _)| column == k));
         (0..self.standard.len()).filter(|&k| !held(k) && !self.known.contains(&k)).collect()
+    }
+
+    /// The combination of joints that a friction parameter or a spring acts on, joint index and coefficient: the joint alone
+    /// for Fv and Fc, the motor's speed in units of its own joint for Fvm and Fcm, what the table says for a coupling. Empty
+    /// for other parameters.
+    ///
+    /// The torque on joint i is the coefficient of i times that on the combination.
+    pub fn acts_on(&self, parameter: &StandardParameter) -> Vec<(usize, f64)> {
+        if let Some(coupling) = parameter.coupling {
+            return self.couplings.get(coupling).map_or_else(Vec::new, |c| c.terms.to_vec());
+        }
+        let joint = self.joint_of_frame().get(parameter.frame).copied().flatten();
+        let (Some(joint), true) = (joint, parameter.kind.is_friction()) else { return Vec::new() };
+        if matches!(parameter.kind, ParameterKind::Fv | ParameterKind::Fc) {
+            return vec![(joint, 1.0)];
+        }
+        let n = self.joints();
+        let Some(row) = self.drive.gear.get(joint * n..(joint + 1) * n) else { return Vec::new() };
+        row.iter().enumerate().filter(|(_, g)| **g != 0.0).map(|(s, g)| (s, g / row[joint])).collect()
+    }
+
+    /// The base parameters, by index, whose values are known: only `fixed` parameters are part of them.
+    pub fn fixed_base(&self) -> Vec<(usize, f64)> {
+        let value = |k: usize| self.fixed.iter().find(|(fixed, _)| *fixed == k).map(|(_, value)| *value);
+        let of = |base: &BaseParameter| -> Option<f64> {
+            base.combination.iter().map(|&(k, c)| Some(c * value(k)?)).sum()
+        };
+        self.base.iter().enumerate().filter_map(|(k, base)| Some((k, of(base)?))).collect()
     }
 
     /// chi from chi_st: every base parameter as its combination of standard parameters.

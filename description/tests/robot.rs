@@ -3,7 +3,7 @@
 
 use JointKind::{Fixed, Prismatic, Revolute};
 use dynid_description::{
-    Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Nominal, ParameterKind, Robot,
+    CouplingLaw, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Nominal, ParameterKind, Robot,
 };
 
 /// A serial robot with these joints; numbers without a short decimal form.
@@ -91,7 +91,9 @@ fn a_robot_comes_back_from_json_bit_for_bit() {
 fn json_says_kinds_as_the_table_does() {
     let text = serde_json::to_string(&[Revolute, Prismatic, Fixed]).unwrap();
     assert_eq!(text, r#"["revolute","prismatic","fixed"]"#);
-    for kind in ParameterKind::INERTIAL.into_iter().chain(ParameterKind::JOINT).chain(ParameterKind::MOTOR) {
+    let of_couplings = [CouplingLaw::Friction, CouplingLaw::Spring].map(CouplingLaw::parameters).concat();
+    let kinds = ParameterKind::INERTIAL.into_iter().chain(ParameterKind::JOINT).chain(ParameterKind::MOTOR);
+    for kind in kinds.chain(of_couplings) {
         assert_eq!(serde_json::to_string(&kind).unwrap(), format!("\"{}\"", kind.symbol()));
     }
     assert_eq!(serde_json::to_string(&JointNumber(4)).unwrap(), "4");

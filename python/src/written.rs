@@ -134,6 +134,7 @@ pub(crate) fn read(bytes: &[u8], robot: &Robot) -> Result<Observation, String> {
         equations: Equations::Torque,
         unknowns: robot.base.iter().map(|b| b.name.to_string()).collect(),
         base,
+        fixed: robot.fixed_base(),
         exact: exact(robot),
         trajectories: written.trajectories.iter().map(|m| m.name.clone()).collect(),
         rates: written.trajectories.iter().map(|m| m.rate).collect(),
@@ -178,6 +179,7 @@ fn left_out(e: &Rows, robot: &Robot) -> LeftOut {
 
 /// Unknowns whose columns have no measuring errors in the torque equations: constants, and the sign of the speed.
 fn exact(robot: &Robot) -> Vec<bool> {
-    let constant = |kind| matches!(kind, ParameterKind::Off | ParameterKind::Fc | ParameterKind::Fcm);
+    let constant =
+        |kind: ParameterKind| matches!(kind, ParameterKind::Off | ParameterKind::KR) || kind.is_coulomb();
     robot.base.iter().map(|b| constant(robot.standard[b.standard].kind)).collect()
 }

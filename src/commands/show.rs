@@ -1,7 +1,7 @@
 //! `dynid show ROBOT`: its table, what can be identified, what evaluating it costs.
 
 use clap::Args;
-use dynid_runtime::model::{JointIndex, JointKind, Motion, Robot};
+use dynid_runtime::model::{Coupling, CouplingLaw, JointIndex, JointKind, Motion, Robot};
 use dynid_runtime::report::significant;
 
 use crate::failure::Failure;
@@ -32,6 +32,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&format!("gravity ({x}, {y}, {z}) m/s2, {} joints", robot.joints()));
     print("");
     print(&frames(robot));
+    let acting = couplings(robot);
+    if !acting.is_empty() {
+        print("");
+        print(&acting);
+    }
     for doubt in table_doubts(robot) {
         print(&format!("warning: {doubt}"));
     }
@@ -100,11 +105,29 @@ fn frames(robot: &Robot) -> String {
     table(&header, rows)
 }
 
+/// Friction between links and springs, a line each.
+fn couplings(robot: &Robot) -> String {
+    let line = |coupling: &Coupling| {
+        let name = &coupling.name;
+        let s = coupling.combination(|joint| robot.joint_number(JointIndex(joint)).0);
+        match coupling.law {
+            CouplingLaw::Friction => format!("friction on s = {s}: Fvc{name}*ds + Fcc{name}*sign(ds)"),
+            CouplingLaw::Spring => format!("spring on s = {s}: K{name}*s - KR{name}"),
+            CouplingLaw::SpringAt(rest) => {
+                format!("spring on s = {s}: K{name}*(s - {})", significant(rest, 6))
+            }
+        }
+    };
+    robot.couplings.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
 /// The names of the base parameters, a line a frame.
 fn names(robot: &Robot) -> String {
     let mut lines: Vec<(usize, String)> = Vec::new();
     for parameter in robot.base.iter() {
-        let frame = robot.standard[parameter.standard].frame;
+        // What acts on several joints stands last.
+        let standard = &robot.standard[parameter.standard];
+        let frame = if standard.coupling.is_some() { robot.frames.len() } else { standard.frame };
         match lines.last_mut() {
             Some((known, line)) if *known == frame => {
                 line.push(' ');
@@ -131,6 +154,21 @@ fn relations(robot: &Robot) -> String {
     if !robot.known.is_empty() {
         let known: Vec<&str> = robot.known.iter().map(|&k| robot.standard[k].name.as_ref()).collect();
         text.push_str(&format!("\nknown to be 0: {}", known.join(" ")));
+    }
+    if !robot.fixed.is_empty() {
+        let known: Vec<String> = robot
+            .fixed
+            .iter()
+            .map(|&(k, value)| format!("{} {}", robot.standard[k].name, significant(value, 6)))
+            .collect();
+        text.push_str(&format!("\nknown: {}", known.join(", ")));
+        let base: Vec<&str> = robot.fixed_base().into_iter().map(|(k, _)| &*robot.base[k].name).collect();
+        if !base.is_empty() {
+            text.push_str(&format!(
+                "\nnot identified, because all that is part of them is known: {}",
+                base.join(" ")
+            ));
+        }
     }
     text
 }

@@ -1,4 +1,5 @@
-//! Base parameters of tables whose frames move with several joint variables, or several frames with one.
+//! Base parameters of tables whose frames move with several joint variables, or several frames with one, or of which
+//! parameters are known.
 //!
 //! First every moving frame is taken to move by itself: what is regrouped then stays zero whatever the frames' variables
 //! depend on, and keeps its relation in symbols. What is left is compared at states drawn at random, in exact arithmetic:
@@ -14,18 +15,22 @@ use crate::robot::{DriveTable, RobotTable};
 use dynid_description::{ParameterKind, StandardParameter};
 use std::collections::BTreeMap;
 
-/// [`regroup`] of a robot with dependent frames.
+/// [`regroup`] of a robot with dependent frames, or with parameters that are known.
 pub(super) fn regroup_dependent(robot: &RobotTable, standard: &[StandardParameter]) -> Regrouping {
     let mut regrouping = regroup_as_if_free(robot, standard);
     let inertial = |k: &usize| standard[*k].kind <= ParameterKind::M && !regrouping.contains_key(k);
-    let all = (0..standard.len()).filter(|k| !robot.known.contains(k));
+    let all = (0..standard.len()).filter(|&k| !robot.is_known(k));
     let of_kind = |kind: ParameterKind| all.clone().filter(move |&k| standard[k].kind == kind);
-    // First choice is what stands first in the table; rotors and offsets go into bodies where they can.
+    // First choice is what stands first in the table; rotors and offsets go into bodies where they can, and what springs have
+    // where their combination is 0 into offsets. What is known is kept only where nothing else can take it.
     let columns: Vec<usize> = all
         .clone()
         .filter(inertial)
         .chain(of_kind(ParameterKind::Off))
         .chain(of_kind(ParameterKind::Ia))
+        .chain(of_kind(ParameterKind::K))
+        .chain(of_kind(ParameterKind::KR))
+        .chain(robot.fixed.iter().map(|&(k, _)| k).filter(|&k| !standard[k].kind.is_friction()))
         .collect();
     let dependent = dependencies(&energies_at_random(robot, standard, &columns));
     let second: BTreeMap<usize, Vec<(usize, Number)>> = dependent
@@ -59,9 +64,11 @@ fn regroup_as_if_free(robot: &RobotTable, standard: &[StandardParameter]) -> Reg
     }
     free.dependent = Vec::new();
     free.known = Vec::new();
+    free.fixed = Vec::new();
+    free.couplings = Vec::new();
     free.drive = DriveTable::direct(free.joint_frames().len());
     let places: Vec<usize> = (0..standard.len())
-        .filter(|k| standard[*k].kind <= ParameterKind::M && !robot.known.contains(k))
+        .filter(|k| standard[*k].kind <= ParameterKind::M && !robot.is_known(*k))
         .collect();
     let bodies: Vec<StandardParameter> = places.iter().map(|&k| standard[k].clone()).collect();
     let found = regroup(&free, &bodies);
@@ -74,7 +81,7 @@ fn regroup_as_if_free(robot: &RobotTable, standard: &[StandardParameter]) -> Reg
 }
 
 /// The columns that depend on columns before them, each as a combination of those that do not.
-fn dependencies(rows: &[Vec<Number>]) -> Vec<(usize, Vec<(usize, Number)>)> {
+pub(super) fn dependencies(rows: &[Vec<Number>]) -> Vec<(usize, Vec<(usize, Number)>)> {
     let mut matrix = rows.to_vec();
     let columns = matrix.first().map_or(0, Vec::len);
     let mut kept: Vec<usize> = Vec::new();

@@ -1,83 +1,76 @@
-//! Which friction parameters of coupled motors are independent of those of the joints.
+//! Which friction parameters of motors and of combinations of joints are independent of those of the joints.
 
+use super::dependent::dependencies;
 use super::regroup::Regrouping;
-use crate::exact::{Form, Number, Span, decimal};
+use crate::exact::{Form, Number, decimal};
 use crate::robot::RobotTable;
-use dynid_description::{ParameterKind, StandardParameter};
+use dynid_description::StandardParameter;
+use num_rational::BigRational;
+use num_traits::Signed;
 
-/// Regroups the viscous and Coulomb friction of motors.
+/// Regroups viscous and Coulomb friction.
 ///
-/// Viscous friction at speed s = N dq / N_mm has the torque NT N dq, a symmetric matrix; matrices are compared entry
-/// by entry. Coulomb friction is NT sign(N dq): two of them are independent unless the motors turn with the same
-/// combination of joints, and a regular gear lets that be only a motor that turns with its own joint alone.
+/// Friction on the speed s = c dq has the torques c f(s). Viscous friction is the symmetric matrix c cT, and matrices are
+/// compared entry by entry. Coulomb friction is c sign(c dq), which jumps where s is 0 and nowhere else, so that two of them
+/// are independent unless their combinations are the same but for a factor. What stands first is kept: joints before motors,
+/// motors before combinations that the table names, what is known last.
 pub(super) fn regroup_friction(
     robot: &RobotTable,
     standard: &[StandardParameter],
     regrouping: &mut Regrouping,
 ) {
-    let joint_frames = robot.joint_frames();
-    let joints = joint_frames.len();
-    let joint_of = |frame: usize| joint_frames.iter().position(|&f| f == frame);
-    let index = |kind: ParameterKind, joint: usize| {
-        standard.iter().position(|p| p.kind == kind && p.frame == joint_frames[joint])
-    };
-    let motor_row = |m: usize| -> Vec<Number> {
-        let own = decimal(robot.drive.gear[m][m]);
-        robot.drive.gear[m].iter().map(|&x| (decimal(x) / &own).into()).collect()
+    let joints = robot.joint_frames().len();
+    let forms = |is_one: &dyn Fn(&StandardParameter) -> bool| -> Vec<(usize, Vec<BigRational>)> {
+        let mut columns: Vec<usize> =
+            (0..standard.len()).filter(|&k| is_one(&standard[k]) && !robot.known.contains(&k)).collect();
+        columns.sort_by_key(|&k| (robot.is_known(k), standard[k].kind));
+        columns.into_iter().map(|k| (k, robot.acts_on(&standard[k]))).collect()
     };
 
-    for (column, parameter) in standard.iter().enumerate() {
-        let Some(joint) = joint_of(parameter.frame) else { continue };
-        if parameter.kind == ParameterKind::Fcm {
-            let alone = motor_row(joint).iter().enumerate().all(|(k, x)| k == joint || x.is_zero());
-            if let (true, Some(kept)) = (alone, index(ParameterKind::Fc, joint)) {
-                regrouping.insert(column, vec![(kept, Form::one())]);
-            }
-        }
+    let viscous = forms(&|p| p.kind.is_viscous());
+    let entry = |i: usize, k: usize| {
+        viscous.iter().map(|(_, c)| Number::from(&c[i] * &c[k])).collect::<Vec<Number>>()
+    };
+    let rows: Vec<Vec<Number>> =
+        (0..joints).flat_map(|i| (0..=i).map(move |k| (i, k))).map(|(i, k)| entry(i, k)).collect();
+    for (column, of) in dependencies(&rows) {
+        let taken = of.into_iter().map(|(kept, factor)| (viscous[kept].0, Form::number(factor)));
+        regrouping.insert(viscous[column].0, taken.collect());
     }
 
-    // Off-diagonal entries decide which motors are independent; the diagonal can always be made up by the joints' Fv.
-    let mut kept: Vec<(usize, Vec<Number>)> = Vec::new();
-    let mut space = Span::default();
-    for (column, parameter) in standard.iter().enumerate() {
-        let (ParameterKind::Fvm, Some(joint)) = (parameter.kind, joint_of(parameter.frame)) else { continue };
-        let row = motor_row(joint);
-        let entries: Vec<Number> = row.iter().flat_map(|x| row.iter().map(move |y| *x * *y)).collect();
-        let mut mixed = entries.clone();
-        (0..joints).for_each(|k| mixed[k * joints + k] = Number::ZERO);
-        if space.insert(mixed) {
-            kept.push((column, entries));
-            continue;
+    let dry = forms(&|p| p.kind.is_coulomb());
+    for (at, (column, form)) in dry.iter().enumerate() {
+        // c' = a c has the torques |a| c sign(c dq).
+        let same = dry[..at].iter().find_map(|(kept, other)| Some((*kept, ratio(form, other)?)));
+        if let Some((kept, factor)) = same {
+            regrouping.insert(*column, vec![(kept, Form::number(factor.abs().into()))]);
         }
-        let mut rest = entries;
-        let mut taken = Vec::new();
-        for (other, factor) in combination(&kept, &rest, joints) {
-            for (x, y) in rest.iter_mut().zip(&kept[other].1) {
-                *x = *x - *y * factor;
-            }
-            taken.push((kept[other].0, Form::number(factor)));
-        }
-        for k in 0..joints {
-            let share = rest[k * joints + k];
-            if let (false, Some(fv)) = (share.is_zero(), index(ParameterKind::Fv, k)) {
-                taken.push((fv, Form::number(share)));
-            }
-        }
-        regrouping.insert(column, taken);
     }
 }
 
-/// The factors of the kept matrices that make up the off-diagonal entries of `target`, which depends on them.
-fn combination(kept: &[(usize, Vec<Number>)], target: &[Number], joints: usize) -> Vec<(usize, Number)> {
-    let count = kept.len();
-    // One equation per off-diagonal entry: the kept entries, then the target's.
-    let mut equations = Span::default();
-    for k in (0..joints * joints).filter(|k| k / joints != k % joints) {
-        let mut equation: Vec<Number> = kept.iter().map(|(_, entries)| entries[k]).collect();
-        equation.push(target[k]);
-        equations.insert(equation);
+/// a where c = a d, entry by entry.
+fn ratio(c: &[BigRational], d: &[BigRational]) -> Option<BigRational> {
+    let zero = BigRational::from_integer(0.into());
+    let first = d.iter().position(|x| *x != zero)?;
+    let factor = &c[first] / &d[first];
+    (factor != zero && c.iter().zip(d).all(|(x, y)| *x == &factor * y)).then_some(factor)
+}
+
+/// The exact combination as one number per joint.
+impl RobotTable {
+    pub(super) fn acts_on(&self, parameter: &StandardParameter) -> Vec<BigRational> {
+        let joint_frames = self.joint_frames();
+        let mut form = vec![BigRational::from_integer(0.into()); joint_frames.len()];
+        if let Some(coupling) = parameter.coupling {
+            self.couplings[coupling].terms.iter().for_each(|&(joint, c)| form[joint] = decimal(c));
+        } else if let Some(joint) = joint_frames.iter().position(|&f| f == parameter.frame) {
+            use dynid_description::ParameterKind::{Fcm, Fvm};
+            let row = &self.drive.gear[joint];
+            match parameter.kind {
+                Fvm | Fcm => form = row.iter().map(|&x| decimal(x) / decimal(row[joint])).collect(),
+                _ => form[joint] = BigRational::from_integer(1.into()),
+            }
+        }
+        form
     }
-    let order: Vec<usize> = (0..=count).collect();
-    let solved = equations.reduced(&order).into_iter().filter(|(unknown, _)| *unknown < count);
-    solved.map(|(unknown, row)| (unknown, row[count])).filter(|(_, x)| !x.is_zero()).collect()
 }

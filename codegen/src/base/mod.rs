@@ -6,6 +6,9 @@
 //! to its parent gives, so they come out in symbols of the table; where gravity, parallel axes, prismatic joints or a
 //! special geometry leave more undetermined, the spaces of attainable velocities and energies tell, in exact arithmetic.
 //!
+//! Parameters that are known to have a value other than 0 are the last to be kept: one that torques can tell from the rest is
+//! a base parameter of which only known ones are part, others are part of base parameters of the rest.
+//!
 //! ```
 //! use dynid_codegen::{base::base_set, robot::parse};
 //!
@@ -30,6 +33,7 @@ mod friction;
 mod placement;
 mod random_states;
 mod regroup;
+mod springs;
 
 use crate::exact::Form;
 use crate::robot::RobotTable;
@@ -39,7 +43,8 @@ use regroup::Regrouping;
 /// The standard parameters of a robot in the order of chi_st, and its base parameters in the order of chi.
 ///
 /// chi_st: for each frame XX XY XZ YY YZ ZZ MX MY MZ M; where the frame is a joint, Ia Fv Fc off follow, then
-/// Fvm Fcm where its motor has coupled friction. Base parameters keep that order.
+/// Fvm Fcm where its motor has coupled friction. Behind all frames those of friction between links and of springs. Base
+/// parameters keep that order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BaseSet {
     /// Every standard parameter.
@@ -51,8 +56,11 @@ pub struct BaseSet {
 /// The base parameters of a robot.
 pub fn base_set(robot: &RobotTable) -> BaseSet {
     let standard = robot.standard_parameters();
-    let mut regrouping = if robot.dependent.is_empty() {
-        regroup::regroup(robot, &standard)
+    let plain = robot.dependent.is_empty() && robot.fixed.is_empty();
+    let mut regrouping = if plain && springs::have_offsets(robot, &standard) {
+        let mut regrouping = regroup::regroup(robot, &standard);
+        springs::regroup_into_offsets(robot, &standard, &mut regrouping);
+        regrouping
     } else {
         dependent::regroup_dependent(robot, &standard)
     };

@@ -3,7 +3,7 @@
 use super::placement::{Placement, angles_of, length};
 use crate::exact::{Angles, Number, Rotation, decimal};
 use crate::robot::RobotTable;
-use dynid_description::{JointKind, Motion, ParameterKind, StandardParameter};
+use dynid_description::{CouplingLaw, JointKind, Motion, ParameterKind, StandardParameter};
 
 /// More states than columns: one more than the rank is enough, a few more cost nothing.
 const SPARE: usize = 8;
@@ -72,6 +72,7 @@ pub(super) fn energies_at_random(
             let parameter = &standard[column];
             match parameter.kind {
                 ParameterKind::Off => state.q[joint_of(parameter.frame)],
+                ParameterKind::K | ParameterKind::KR => spring_energy(robot, parameter, &state.q),
                 ParameterKind::Ia => {
                     let form = &rotors[joint_of(parameter.frame)];
                     let product = |i: usize, k: usize| {
@@ -95,6 +96,16 @@ pub(super) fn energies_at_random(
             row.into_iter().zip(&rest).map(|(x, y)| x - *y).collect()
         })
         .collect()
+}
+
+/// Potential energy of a spring per unit of K, K s^2 / 2 - K s0 s, or of KR, -s.
+fn spring_energy(robot: &RobotTable, parameter: &StandardParameter, q: &[Number]) -> Number {
+    let s: Number = robot.acts_on(parameter).into_iter().zip(q).map(|(c, q)| Number::from(c) * *q).sum();
+    match parameter.coupling.map(|k| robot.couplings[k].law) {
+        _ if parameter.kind == ParameterKind::KR => -s,
+        Some(CouplingLaw::SpringAt(rest)) => half() * s * s - Number::from(decimal(rest)) * s,
+        _ => half() * s * s,
+    }
 }
 
 fn half() -> Number {

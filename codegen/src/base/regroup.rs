@@ -81,7 +81,7 @@ fn candidates(
     let rotors = robot.drive.rotor_matrices();
     let mut candidates = Vec::new();
     for (column, parameter) in standard.iter().enumerate() {
-        if robot.known.contains(&column) {
+        if robot.is_known(column) {
             continue;
         }
         let mut candidate = Candidate { column, ..Candidate::default() };

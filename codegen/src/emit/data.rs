@@ -1,7 +1,7 @@
 //! The robot as numbers, as statics of the generated module.
 
 use crate::mechanics::Equations;
-use dynid_description::{JointKind, Limits, Nominal, Robot};
+use dynid_description::{CouplingLaw, JointKind, Limits, Nominal, Robot};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -13,12 +13,21 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
     let dependent = dependent(robot);
     let gear = floats(&robot.drive.gear);
     let coupled = borrowed(robot.drive.coupled_friction.iter().map(|&m| index(m)));
+    let couplings = couplings(robot);
     let known = borrowed(robot.known.iter().map(|&k| index(k)));
+    let fixed = borrowed(robot.fixed.iter().map(|&(k, value)| {
+        let (k, value) = (index(k), float(value));
+        quote!((#k, #value))
+    }));
     let limits = limits(&robot.limits);
     let standard = borrowed(robot.standard.iter().map(|p| {
         let (name, kind, frame) = (&p.name, format_ident!("{}", format!("{:?}", p.kind)), index(p.frame));
+        let coupling = p.coupling.map_or(quote!(None), |k| {
+            let k = index(k);
+            quote!(Some(#k))
+        });
         quote! {
-            StandardParameter { name: Cow::Borrowed(#name), kind: ParameterKind::#kind, frame: #frame }
+            StandardParameter { name: Cow::Borrowed(#name), kind: ParameterKind::#kind, frame: #frame, coupling: #coupling }
         }
     }));
     let base = borrowed(robot.base.iter().map(|p| {
@@ -48,7 +57,9 @@ pub fn statics(robot: &Robot, equations: &Equations) -> TokenStream {
             frames: #frames,
             dependent: #dependent,
             drive: Drive { gear: #gear, coupled_friction: #coupled },
+            couplings: #couplings,
             known: #known,
+            fixed: #fixed,
             limits: #limits,
             standard: #standard,
             base: #base,
@@ -91,6 +102,25 @@ fn dependent(robot: &Robot) -> TokenStream {
             quote!((#joint, #c))
         }));
         quote!(DependentFrame { frame: #frame, kind: JointKind::#kind, terms: #terms })
+    }))
+}
+
+fn couplings(robot: &Robot) -> TokenStream {
+    borrowed(robot.couplings.iter().map(|c| {
+        let name = &c.name;
+        let terms = borrowed(c.terms.iter().map(|&(joint, c)| {
+            let (joint, c) = (index(joint), float(c));
+            quote!((#joint, #c))
+        }));
+        let law = match c.law {
+            CouplingLaw::Friction => quote!(CouplingLaw::Friction),
+            CouplingLaw::Spring => quote!(CouplingLaw::Spring),
+            CouplingLaw::SpringAt(rest) => {
+                let rest = float(rest);
+                quote!(CouplingLaw::SpringAt(#rest))
+            }
+        };
+        quote!(Coupling { name: Cow::Borrowed(#name), terms: #terms, law: #law })
     }))
 }
 

@@ -28,11 +28,12 @@ fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStre
     // A robot without values for simulation does not name their type.
     let nominal = robot.nominal.as_ref().map(|_| quote!(Nominal,));
     let dependent = (!robot.dependent.is_empty()).then(|| quote!(DependentFrame,));
+    let coupling = (!robot.couplings.is_empty()).then(|| quote!(Coupling, CouplingLaw,));
     quote! {
         #![allow(non_snake_case, unused_variables, clippy::all)]
 
         use dynid_runtime::model::{
-            BaseParameter, #dependent Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
+            BaseParameter, #coupling #dependent Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
             ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut, evaluate_block, evaluate_line,
             evaluate_lines,
         };

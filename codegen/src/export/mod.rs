@@ -159,7 +159,8 @@ impl<'a> Export<'a> {
 
     /// The known parameters with those of friction and offsets zero: their torques are the loads.
     fn load_parameters(&self) -> Vec<f64> {
-        let moves = |k: usize| self.set.standard[self.set.base[k].standard].kind <= ParameterKind::Ia;
+        let kind = |k: usize| self.set.standard[self.set.base[k].standard].kind;
+        let moves = |k: usize| kind(k) <= ParameterKind::Ia || kind(k).is_spring();
         let chi = self.known.map_or(&[][..], |known| &known.chi);
         chi.iter().enumerate().map(|(k, &x)| if moves(k) { x } else { 0.0 }).collect()
     }

@@ -1,10 +1,10 @@
-//! Rotor inertia, friction and offsets, with motors that several joints turn: (9), (25), (26).
+//! Rotor inertia, friction, offsets and springs, with motors that several joints turn: (9), (25), (26).
 //! Equation numbers are those of Gautier and Briot.
 
 use super::error::ModelError;
 use crate::robot::RobotTable;
 use crate::symbolic::{Expr, Graph, Symbol};
-use dynid_description::{ParameterKind, StandardParameter};
+use dynid_description::{Coupling, CouplingLaw, ParameterKind, StandardParameter};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
@@ -15,6 +15,7 @@ pub struct DriveColumns {
     relative: Vec<Vec<f64>>,
     /// A_j: ddq -> torques per unit Ia_j.
     inertia: Vec<Vec<Vec<f64>>>,
+    couplings: Vec<Coupling>,
 }
 
 impl DriveColumns {
@@ -37,7 +38,7 @@ impl DriveColumns {
             .iter()
             .map(|form| form.iter().map(|row| row.iter().map(value).collect()).collect())
             .collect();
-        Ok(DriveColumns { relative, inertia })
+        Ok(DriveColumns { relative, inertia, couplings: robot.couplings.clone() })
     }
 
     /// A_j of the rotor inertia Ia_j, row-major.
@@ -59,20 +60,68 @@ impl DriveColumns {
             ParameterKind::Fv => column[joint] = dq,
             ParameterKind::Fc => column[joint] = g.sign(dq),
             ParameterKind::Off => column[joint] = Graph::ONE,
-            ParameterKind::Fvm | ParameterKind::Fcm => {
-                let speed = weighted(g, &self.relative[joint], Symbol::Velocity);
-                let level = if parameter.kind == ParameterKind::Fvm { speed } else { g.sign(speed) };
-                for (row, &share) in self.relative[joint].iter().enumerate() {
+            _ => {
+                let form = self.acts_on(parameter, joint);
+                let level = self.on_combination(g, parameter, &form);
+                for (row, share) in form.into_iter().enumerate().filter(|(_, share)| *share != 0.0) {
                     column[row] = g.scale(share, level);
                 }
             }
-            _ => {}
         }
         column
     }
 
-    /// Kinetic energy per unit of a rotor inertia; friction and offsets store none.
+    /// The combination of joints that friction of a motor, or a coupling of the table, acts on: one number per joint.
+    fn acts_on(&self, parameter: &StandardParameter, joint: usize) -> Vec<f64> {
+        match parameter.coupling {
+            None => self.relative[joint].clone(),
+            Some(k) => {
+                let mut form = vec![0.0; self.relative.len()];
+                self.couplings[k].terms.iter().for_each(|&(joint, c)| form[joint] = c);
+                form
+            }
+        }
+    }
+
+    /// The torque on the combination `form` of joints, per unit of the parameter.
+    fn on_combination(&self, g: &mut Graph, parameter: &StandardParameter, form: &[f64]) -> Expr {
+        match parameter.kind {
+            ParameterKind::Fvm | ParameterKind::Fvc => weighted(g, form, Symbol::Velocity),
+            ParameterKind::Fcm | ParameterKind::Fcc => {
+                let speed = weighted(g, form, Symbol::Velocity);
+                g.sign(speed)
+            }
+            ParameterKind::K => {
+                let s = weighted(g, form, Symbol::Position);
+                let rest = g.constant(self.rest(parameter));
+                g.sub(s, rest)
+            }
+            ParameterKind::KR => -Graph::ONE,
+            _ => Graph::ZERO,
+        }
+    }
+
+    /// Where a spring is at rest, as far as the table knows; 0 where it does not.
+    fn rest(&self, parameter: &StandardParameter) -> f64 {
+        match parameter.coupling.map(|k| self.couplings[k].law) {
+            Some(CouplingLaw::SpringAt(rest)) => rest,
+            _ => 0.0,
+        }
+    }
+
+    /// Energy per unit of a rotor inertia, or of a spring; friction and offsets store none.
     pub fn energy(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Expr {
+        if parameter.kind.is_spring() {
+            let form = self.acts_on(parameter, joint);
+            let s = weighted(g, &form, Symbol::Position);
+            if parameter.kind == ParameterKind::KR {
+                return -s;
+            }
+            let half = g.scale(0.5, s);
+            let rest = g.constant(self.rest(parameter));
+            let mean = g.sub(half, rest);
+            return g.mul(s, mean);
+        }
         if parameter.kind != ParameterKind::Ia {
             return Graph::ZERO;
         }
@@ -86,11 +135,12 @@ impl DriveColumns {
         g.scale(0.5, double)
     }
 
-    /// Power per unit of a drive parameter: dqT times its column, motor by motor.
+    /// Power per unit of a drive parameter: dqT times its column; of what acts on a combination of joints, its speed times the torque on it.
     pub fn power(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Expr {
-        if matches!(parameter.kind, ParameterKind::Fvm | ParameterKind::Fcm) {
-            let speed = weighted(g, &self.relative[joint], Symbol::Velocity);
-            let level = if parameter.kind == ParameterKind::Fvm { speed } else { g.sign(speed) };
+        if parameter.kind > ParameterKind::Off {
+            let form = self.acts_on(parameter, joint);
+            let speed = weighted(g, &form, Symbol::Velocity);
+            let level = self.on_combination(g, parameter, &form);
             return g.mul(speed, level);
         }
         let mut total = Graph::ZERO;

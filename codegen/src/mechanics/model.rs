@@ -135,7 +135,17 @@ impl Equations {
                 }
             }
         }
-        let bias = bias(g, &geometry, set);
+        let mut bias = bias(g, &geometry, set);
+        for (k, base) in set.base.iter().enumerate() {
+            let parameter = &set.standard[base.standard];
+            if let (true, Some(joint)) = (parameter.kind.is_spring(), geometry.links[parameter.frame].joint) {
+                let chi = g.symbol(Symbol::Parameter(k));
+                for (torque, entry) in bias.iter_mut().zip(drive.column(g, parameter, joint)) {
+                    let term = g.mul(chi, entry);
+                    *torque = g.add(*torque, term);
+                }
+            }
+        }
         let torque = TorqueEquations::derive_as(robot, set, &drive, (merge, compose));
         let mut equations = Equations { graph, energy: h, power: dh, idm, mass, bias, torque };
         equations.drop_vanishing_entries();

@@ -48,7 +48,9 @@ fn random_robot(random: &mut Random) -> RobotTable {
         frames,
         dependent: Vec::new(),
         drive: DriveTable::direct(joints),
+        couplings: Vec::new(),
         known: Vec::new(),
+        fixed: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

@@ -1,54 +1,62 @@
-//! Parameters that are known before anything is identified: links without inertia, rotors that do not count.
+//! Parameters that are known before anything is identified: links without inertia, rotors that do not count, a mass that was
+//! weighed.
 
 use super::diagnostic::nearest;
 use super::document::{Node, Value, shortened};
-use super::drive_table::DriveTable;
+use super::magnitudes::within;
 use super::reader::Reader;
-use super::table::{TableRow, standard_parameters};
+use dynid_description::bounds::LARGEST_NOMINAL;
 use dynid_description::{ParameterKind, StandardParameter};
 
-/// Reads `massless` and `known`: the standard parameters that are 0, as indices, ascending.
+/// Standard parameters by index, ascending.
+#[derive(Default)]
+pub(super) struct Known {
+    /// Those that are 0.
+    pub zero: Vec<usize>,
+    /// Those that have another value.
+    pub fixed: Vec<(usize, f64)>,
+}
+
+/// Reads `massless` and `known`.
 pub(super) fn read_known(
     reader: &mut Reader,
     (massless, known): (Option<&Node>, Option<&Node>),
-    (frames, drive): (&[TableRow], &DriveTable),
+    standard: &[StandardParameter],
     constants: &[(String, f64)],
-) -> Vec<usize> {
-    let standard = standard_parameters(frames, drive);
-    let mut zero = Vec::new();
+) -> Known {
+    let mut all = Known::default();
     for item in
         massless.and_then(|node| reader.list(node, "massless as a list of frame numbers")).unwrap_or(&[])
     {
         let Some(j) = reader.integer(item, "the number j of a frame") else { continue };
-        if !frames.iter().any(|f| f.j == j) {
-            reader.report(
-                item.place,
-                format!("massless names {j}: the table has frames 1 to {}", frames.len()),
-            );
+        let frames = standard.iter().map(|p| p.frame + 1).max().unwrap_or(0);
+        if !(1..=frames).contains(&j) {
+            reader.report(item.place, format!("massless names {j}: the table has frames 1 to {frames}"));
         }
         let of_frame = |k: &usize| standard[*k].frame + 1 == j && standard[*k].kind <= ParameterKind::M;
-        zero.extend((0..standard.len()).filter(of_frame));
+        all.zero.extend((0..standard.len()).filter(of_frame));
     }
     if let Some(node) = known {
-        zero.extend(read_values(reader, node, (&standard, drive), constants));
+        read_values(reader, node, standard, constants, &mut all);
     }
-    zero.sort_unstable();
-    zero.dedup();
-    zero
+    all.zero.sort_unstable();
+    all.zero.dedup();
+    all.fixed.sort_by_key(|&(k, _)| k);
+    all
 }
 
-/// The parameters of `known`, by index.
+/// The parameters of `known`.
 fn read_values(
     reader: &mut Reader,
     node: &Node,
-    (standard, drive): (&[StandardParameter], &DriveTable),
+    standard: &[StandardParameter],
     constants: &[(String, f64)],
-) -> Vec<usize> {
-    let mut zero = Vec::new();
+    all: &mut Known,
+) {
     let Value::Mapping(pairs) = &node.value else {
         let found = node.describe();
         reader.report(node.place, format!("expected known parameters by name ({{M4: 0}}), found {found}"));
-        return zero;
+        return;
     };
     for (key, value) in pairs {
         let Some(name) = reader.text(key, "the name of a standard parameter") else { continue };
@@ -61,22 +69,13 @@ fn read_values(
             continue;
         };
         let Some(number) = reader.number(value, name, constants) else { continue };
-        if number != 0.0 {
-            reader.report(
-                value.place,
-                format!(
-                    "{name} is known to be {number}: only 0 is supported, which takes its column out of the model. Leave \
-                     {name} out of `known`, and name it in `nominal` as a prior"
-                ),
-            );
+        if all.fixed.iter().any(|&(known, _)| known == k) || number != 0.0 && all.zero.contains(&k) {
+            reader.report(key.place, format!("{name} is known already, with another value or by `massless`"));
+        } else if number == 0.0 {
+            all.zero.push(k);
+        } else {
+            within(reader, value, name, number, [0.0, LARGEST_NOMINAL]);
+            all.fixed.push((k, number));
         }
-        if standard[k].kind >= ParameterKind::Fv && !drive.coupled_friction.is_empty() {
-            reader.report(
-                key.place,
-                format!("{name}: friction of coupled motors is compared with that of the joints, which cannot be left out"),
-            );
-        }
-        zero.push(k);
     }
-    zero
 }

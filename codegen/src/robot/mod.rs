@@ -13,7 +13,12 @@
 //!   gear: [32, 32, 400]             # one ratio a joint, or a matrix: motor speed = gear * joint speed
 //!   coupled_friction: [2]           # motors with friction at motor speed (Fvm2, Fcm2)
 //! massless: [3]                     # optional: frames whose ten inertial parameters are 0
-//! known: {Ia1: 0, MZ2: 0}           # optional: standard parameters that are 0; other values are not supported
+//! friction:                         # optional: friction between links or of a tendon, on a sum of joint speeds
+//!   - {joints: {q1: 1, q2: -1}}     # Fvc1_2 and Fcc1_2
+//! springs:                          # optional: springs known by design, on a joint or a sum of joint positions
+//!   - {joint: 2}                    # torque K2*q2 - KR2; with `rest: 0.3` K2*(q2 - 0.3)
+//!   - {joints: {q1: 1, q2: 1}, name: balancer}   # K_balancer, KR_balancer
+//! known: {Ia1: 0, M2: 3.4}           # optional: standard parameters whose values are known
 //! limits:                           # optional, each of them; x stands for [-x, x], one value for every joint
 //!   position: [pi, [-1, 2], 0.2]
 //!   velocity: 3
@@ -51,6 +56,7 @@
 //! assert_eq!(text[1], "arm.yaml:4:19: expected sigma as 0 (revolute), 1 (prismatic) or 2 (fixed), found '3'");
 //! ```
 
+mod couplings;
 mod diagnostic;
 mod document;
 mod drive;

@@ -1,27 +1,30 @@
 //! A robot from its YAML.
 
+use super::couplings::read_couplings;
 use super::diagnostic::Diagnostic;
 use super::document::{Node, Place, START, Value, read_document};
 use super::drive::read_drive;
 use super::drive_table::DriveTable;
 use super::formula::joint_variable;
-use super::known::read_known;
+use super::known::{Known, read_known};
 use super::magnitudes::within;
 use super::reader::Reader;
 use super::rows::read_frames;
 use super::simulation_values::{read_limits, read_nominal};
-use super::table::{NominalValues, RobotTable, TableRow, standard_parameters};
+use super::table::{NominalValues, RobotTable, standard_parameters};
 use dynid_description::bounds::HEAVIEST;
-use dynid_description::{JointKind, Limits};
+use dynid_description::{JointKind, Limits, StandardParameter};
 use std::collections::HashSet;
 
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 12] = [
     "name",
     "description",
     "gravity",
     "constants",
     "frames",
     "drive",
+    "friction",
+    "springs",
     "massless",
     "known",
     "limits",
@@ -100,14 +103,17 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
         None => DriveTable::direct(joints),
     };
     let zero = (fields.get("massless"), fields.get("known"));
-    let known = read_known(reader, zero, (&frames, &drive), &constants);
+    let acting = (fields.get("friction"), fields.get("springs"));
+    let couplings = read_couplings(reader, acting, (&frames, &drive), &constants);
+    let standard = standard_parameters(&frames, &drive, &couplings);
+    let known = read_known(reader, zero, &standard, &constants);
     let limits = match fields.get("limits") {
         Some(node) => read_limits(reader, node, joints, &constants),
         None => Limits::default(),
     };
-    let nominal =
-        fields.get("nominal").and_then(|node| read_nominal(reader, node, &frames, &drive, &constants));
-    check_nominal(reader, fields.get("nominal"), nominal.as_ref(), (&frames, &drive, &known));
+    let mut nominal =
+        fields.get("nominal").and_then(|node| read_nominal(reader, node, joints, &standard, &constants));
+    check_nominal(reader, fields.get("nominal"), nominal.as_mut(), (&standard, &known));
     Some(RobotTable {
         name: name?,
         description,
@@ -116,27 +122,34 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
         frames,
         dependent,
         drive,
-        known,
+        couplings,
+        known: known.zero,
+        fixed: known.fixed,
         limits,
         nominal,
     })
 }
 
-/// What is known to be 0 has no other nominal value.
+/// What is known has no other nominal value.
 fn check_nominal(
     reader: &mut Reader,
     node: Option<&Node>,
-    nominal: Option<&NominalValues>,
-    (frames, drive, known): (&[TableRow], &DriveTable, &[usize]),
+    nominal: Option<&mut NominalValues>,
+    (standard, known): (&[StandardParameter], &Known),
 ) {
     let (Some(node), Some(nominal)) = (node, nominal) else { return };
-    let standard = standard_parameters(frames, drive);
-    for &k in known {
+    let all = known.zero.iter().map(|&k| (k, 0.0)).chain(known.fixed.iter().copied());
+    for (k, expected) in all {
         let name = &standard[k].name;
-        if let Some((_, value)) =
-            nominal.standard.iter().find(|(named, value)| named == name && *value != 0.0)
-        {
-            reader.report(node.place, format!("nominal has {name}: {value}, which is known to be 0"));
+        match nominal.standard.iter().find(|(named, _)| named == name) {
+            Some((_, value)) if *value != expected => {
+                reader.report(
+                    node.place,
+                    format!("nominal has {name}: {value}, which is known to be {expected}"),
+                );
+            }
+            None if expected != 0.0 => nominal.standard.push((name.to_string(), expected)),
+            _ => {}
         }
     }
 }
@@ -173,7 +186,7 @@ fn read_constants(reader: &mut Reader, node: &Node) -> Vec<(String, f64)> {
 }
 
 /// Whether a name can be a Rust identifier; if not, why and what was expected.
-fn check_identifier(name: &str) -> Result<(), String> {
+pub(super) fn check_identifier(name: &str) -> Result<(), String> {
     let expected = "expected a letter, then letters, digits and _";
     let mut chars = name.chars();
     let starts = chars.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');

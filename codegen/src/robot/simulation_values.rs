@@ -2,12 +2,11 @@
 
 use super::diagnostic::nearest;
 use super::document::{Node, Value, shortened};
-use super::drive_table::DriveTable;
 use super::magnitudes::within;
 use super::reader::Reader;
-use super::table::{NominalValues, TableRow, standard_parameters};
+use super::table::NominalValues;
 use dynid_description::bounds::{LARGEST_NOMINAL, WIDEST_LIMIT};
-use dynid_description::{JointKind, Limits};
+use dynid_description::{Limits, StandardParameter};
 
 /// Reads `limits`: per joint a number x, which stands for [-x, x], or [low, high]; one number stands for every joint.
 pub(super) fn read_limits(
@@ -81,11 +80,10 @@ fn range(reader: &mut Reader, node: &Node, key: &str, constants: &[(String, f64)
 pub(super) fn read_nominal(
     reader: &mut Reader,
     node: &Node,
-    frames: &[TableRow],
-    drive: &DriveTable,
+    joints: usize,
+    standard: &[StandardParameter],
     constants: &[(String, f64)],
 ) -> Option<NominalValues> {
-    let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let fields = reader.fields(node, "nominal", &["parameters", "controller", "noise"])?;
     let mut nominal = NominalValues {
         standard: Vec::new(),
@@ -96,7 +94,7 @@ pub(super) fn read_nominal(
         torque_noise: Vec::new(),
     };
     if let Some(node) = fields.get("parameters") {
-        nominal.standard = read_parameters(reader, node, frames, drive, constants);
+        nominal.standard = read_parameters(reader, node, standard, constants);
     }
     let mut per_joint = |group: &str, what: &'static str, keys: [&str; 3]| {
         let mut lists = [Vec::new(), Vec::new(), Vec::new()];
@@ -143,11 +141,9 @@ fn not_negative(
 fn read_parameters(
     reader: &mut Reader,
     node: &Node,
-    frames: &[TableRow],
-    drive: &DriveTable,
+    standard: &[StandardParameter],
     constants: &[(String, f64)],
 ) -> Vec<(String, f64)> {
-    let standard = standard_parameters(frames, drive);
     let names: Vec<&str> = standard.iter().map(|p| p.name.as_ref()).collect();
     let mut values = Vec::new();
     let Value::Mapping(pairs) = &node.value else {

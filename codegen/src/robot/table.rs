@@ -2,7 +2,9 @@
 
 use super::drive_table::DriveTable;
 use super::expression::Expression;
-use dynid_description::{DependentFrame, Frame, JointKind, Limits, Motion, StandardParameter, motions};
+use dynid_description::{
+    Coupling, DependentFrame, Frame, JointKind, Limits, Motion, StandardParameter, motions,
+};
 
 /// A robot read from its YAML, checked: the modified-DH table in symbols, and what else the file says.
 ///
@@ -23,8 +25,12 @@ pub struct RobotTable {
     pub dependent: Vec<DependentFrame>,
     /// Motors and transmission.
     pub drive: DriveTable,
+    /// Friction between links, then springs.
+    pub couplings: Vec<Coupling>,
     /// Standard parameters, by index, that are known to be 0: they are no part of any base parameter.
     pub known: Vec<usize>,
+    /// Standard parameters, by index, that are known to have another value: kept only where nothing else can take them.
+    pub fixed: Vec<(usize, f64)>,
     /// Limits per joint.
     pub limits: Limits,
     /// Values for simulation.
@@ -85,14 +91,23 @@ impl RobotTable {
 
     /// The standard parameters in the order of chi_st.
     pub fn standard_parameters(&self) -> Vec<StandardParameter> {
-        standard_parameters(&self.frames, &self.drive)
+        standard_parameters(&self.frames, &self.drive, &self.couplings)
+    }
+
+    /// Whether a standard parameter is known beforehand, by index: it is regrouped after all others, or not at all.
+    pub(crate) fn is_known(&self, standard: usize) -> bool {
+        self.known.contains(&standard) || self.fixed.iter().any(|&(k, _)| k == standard)
     }
 }
 
-/// The standard parameters of these rows and this drive in the order of chi_st.
-pub(super) fn standard_parameters(rows: &[TableRow], drive: &DriveTable) -> Vec<StandardParameter> {
+/// The standard parameters of these rows, this drive and these couplings in the order of chi_st.
+pub(super) fn standard_parameters(
+    rows: &[TableRow],
+    drive: &DriveTable,
+    couplings: &[Coupling],
+) -> Vec<StandardParameter> {
     let frames: Vec<Frame> = rows.iter().map(TableRow::evaluated).collect();
-    dynid_description::standard_parameters(&frames, &drive.coupled_friction)
+    dynid_description::standard_parameters(&frames, &drive.coupled_friction, couplings)
 }
 
 impl TableRow {

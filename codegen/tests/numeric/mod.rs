@@ -1,7 +1,7 @@
 //! Standard inverse dynamic regressor by Newton and Euler in plain matrices, written for the tests alone.
 
 use dynid_codegen::robot::RobotTable;
-use dynid_description::JointKind;
+use dynid_description::{CouplingLaw, JointKind};
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
 /// A frame in motion, everything in the axes of frame 0. `jv`, `jw`: velocities per unit joint speed.
@@ -87,6 +87,16 @@ pub fn regressor(robot: &RobotTable, q: &[f64], dq: &[f64], ddq: &[f64]) -> DMat
             columns.extend([&motors[joint] * speed, &motors[joint] * speed.signum()]);
         }
         joint += 1;
+    }
+    for coupling in &robot.couplings {
+        let mut c = DVector::zeros(n);
+        coupling.terms.iter().for_each(|&(joint, factor)| c[joint] = factor);
+        let (s, speed) = (c.dot(&DVector::from_column_slice(q)), c.dot(&speeds));
+        match coupling.law {
+            CouplingLaw::Friction => columns.extend([&c * speed, &c * speed.signum()]),
+            CouplingLaw::Spring => columns.extend([&c * s, -c]),
+            CouplingLaw::SpringAt(rest) => columns.push(c * (s - rest)),
+        }
     }
     DMatrix::from_columns(&columns)
 }

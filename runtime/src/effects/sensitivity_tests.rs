@@ -24,7 +24,7 @@ fn arm() -> Robot {
         row(Some(0), -std::f64::consts::FRAC_PI_2, 0.1, 0.0),
         row(Some(1), 0.0, 0.4, 0.05),
     ];
-    let standard = standard_parameters(&frames, &[]);
+    let standard = standard_parameters(&frames, &[], &[]);
     let base = standard
         .iter()
         .enumerate()
@@ -46,7 +46,9 @@ fn arm() -> Robot {
             gear: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0].into(),
             coupled_friction: vec![].into(),
         },
+        couplings: Vec::new().into(),
         known: Vec::new().into(),
+        fixed: Vec::new().into(),
         limits: Limits::default(),
         standard: standard.into(),
         base: Cow::Owned(base),

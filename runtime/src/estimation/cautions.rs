@@ -41,6 +41,9 @@ pub(super) fn describe_dependence(
 ) {
     for group in &everything.dependent {
         let Some((&parameter, others)) = group.split_first() else { continue };
+        if observation.fixed.iter().any(|&(known, _)| known == parameter) {
+            continue;
+        }
         warnings.push(Warning::NotDetermined {
             parameter: observation.unknowns[parameter].clone(),
             from: others.iter().map(|&l| observation.unknowns[l].clone()).collect(),

@@ -61,7 +61,8 @@ pub(super) fn upper_covariance(
     upper.iter().all(|x| x.is_finite()).then_some(upper)
 }
 
-/// All unknowns of an observation; those that are not `active` are zero and without deviations.
+/// All unknowns of an observation; those that are not `active` are zero and without deviations, or
+/// have their known value.
 pub(super) fn described(
     observation: &Observation,
     active: &[usize],
@@ -81,6 +82,10 @@ pub(super) fn described(
             relative_sigma_percent: None,
         })
         .collect();
+    for &(l, value) in &observation.fixed {
+        let parameter = &mut parameters[l];
+        (parameter.value, parameter.sigma, parameter.relative_sigma_percent) = (value, Some(0.0), Some(0.0));
+    }
     for (place, &l) in active.iter().enumerate() {
         let parameter = &mut parameters[l];
         parameter.value = chi[place];

@@ -5,7 +5,7 @@ use super::Factor;
 use super::attenuation::corrected;
 use super::deviations::{Deviations, described};
 use super::observe::Observation;
-use super::outcome::Essential;
+use super::outcome::{Essential, ParameterEstimate};
 use super::residuals::relative_error;
 use super::solve::back_substitute;
 use super::weights::{Weights, iterate, spread, stack};
@@ -51,6 +51,30 @@ pub(super) fn eliminate(factor: &Factor, active: &[usize], r_sigma: f64, inflati
         reduced = reduced.select(&columns);
     }
     Elimination { kept, cancelled }
+}
+
+impl Essential {
+    /// The simplified model of an observation with known unknowns, from that of the free ones.
+    pub(super) fn with_fixed(mut self, observation: &Observation) -> Essential {
+        let value_of =
+            |name: &String| self.parameters.iter().find(|p| p.name == *name).map_or(0.0, |p| p.value);
+        let chi = observation.with_fixed(observation.unknowns.iter().map(value_of).collect());
+        self.relative_error = relative_error(observation, &chi);
+        for &(unknown, value) in &observation.fixed {
+            self.parameters.push(ParameterEstimate {
+                name: observation.unknowns[unknown].clone(),
+                value,
+                sigma: Some(0.0),
+                sigma_white: None,
+                sigma_blocks: None,
+                correction: None,
+                relative_sigma_percent: Some(0.0),
+            });
+        }
+        let place = |p: &ParameterEstimate| observation.unknowns.iter().position(|name| *name == p.name);
+        self.parameters.sort_by_key(place);
+        self
+    }
 }
 
 /// The simplified model; `inflation` is by how much the standard deviation of each active parameter is larger than (18)

@@ -24,11 +24,19 @@ use super::weights::{Weights, equal, from_own_fits, iterate, solve_active, sprea
 /// standard deviations: those that it could state rest on errors of the columns that are independent and of one size,
 /// which those of one filtered position signal are not.
 pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estimate {
+    match observation.without_fixed() {
+        None => of_free(observation, observation, settings),
+        Some(free) => of_free(&free, observation, settings),
+    }
+}
+
+/// Solves the equations of the `free` unknowns; errors are those of all equations as they were observed.
+fn of_free(free: &Observation, observation: &Observation, settings: &EstimateSettings) -> Estimate {
     let mut warnings = Vec::new();
-    let solved = solve(observation, settings, &mut warnings);
+    let solved = solve(free, settings, &mut warnings);
     let Solved { everything, active, weights, rows, solution, .. } = &solved;
-    let chi = spread(&solution.chi, active, observation.unknowns.len());
-    let deviations = deviations_of(&solved, observation, settings, &chi);
+    let chi = observation.with_fixed(spread(&solution.chi, active, observation.unknowns.len()));
+    let deviations = deviations_of(&solved, free, settings, &chi);
     let parameters = described(observation, active, &solution.chi, &deviations);
     describe_dependence(observation, everything, &mut warnings);
     if solution.condition > settings.worst_condition {
@@ -44,7 +52,9 @@ pub fn estimate(observation: &Observation, settings: &EstimateSettings) -> Estim
     warnings.extend(not_explained(observation, &per_equation));
     let essential = settings.r_sigma.map(|r_sigma| {
         let inflation: Vec<f64> = (0..active.len()).map(|p| deviations.inflation(p)).collect();
-        simplified(solved.counted(observation), active, weights, r_sigma, settings.weighted, &inflation)
+        let simple =
+            simplified(solved.counted(free), active, weights, r_sigma, settings.weighted, &inflation);
+        if observation.fixed.is_empty() { simple } else { simple.with_fixed(observation) }
     });
     let covariance = upper_covariance(observation.unknowns.len(), active, &deviations);
     Estimate {

@@ -57,6 +57,7 @@ fn observation(unknowns: &[&str], dense: &[Dense], blocks: usize) -> Observation
         equations: Equations::Torque,
         unknowns: unknowns.iter().map(|s| s.to_string()).collect(),
         base: unknowns.len(),
+        fixed: Vec::new(),
         exact: vec![false; unknowns.len()],
         trajectories: (0..trajectories).map(|t| format!("t{t}")).collect(),
         rates: vec![100.0; trajectories],

@@ -6,7 +6,7 @@ use super::observe::{EquationFactor, Equations, ExtraColumns, Observation};
 use super::residuals::{per_equation, relative_error};
 use super::solve::RANK_TOLERANCE;
 use super::uncertainty::{Solved, variances};
-use super::weights::{residual_norm, stack};
+use super::weights::{residual_norm, spread, stack};
 use super::{EquationError, Estimate, ParameterEstimate};
 use crate::model::{Model, States};
 use crate::signal::Motion;
@@ -159,18 +159,25 @@ pub fn instrumental_variables(
         let found = observation.unknowns.len().saturating_sub(k);
         return Err(InstrumentalError::Instruments { found, needed: k });
     }
-    let order: Vec<usize> = (k..2 * k).chain(0..k).collect();
-    let factor = stack(observation, errors).select(&order);
+    let reduced = observation.without_fixed();
+    let free = reduced.as_ref().unwrap_or(observation);
+    let is_free = |l: &usize| observation.fixed.iter().all(|(known, _)| known != l);
+    let parameters: Vec<usize> = (0..k).filter(is_free).collect();
+    let (unknowns, base) = (|l: usize| &observation.unknowns[parameters[l]], k);
+    let k = parameters.len();
+    let instruments: Vec<usize> = parameters.iter().map(|l| base + l).collect();
+    let order: Vec<usize> = instruments.iter().chain(&parameters).copied().collect();
+    let factor = stack(free, errors).select(&order);
     let norms = factor.column_norms();
     // Where an instrument adds nothing to those before it, its row of R says nothing about the instruments.
     if let Some(l) = (0..k).find(|&l| factor.r(l, l).abs() <= RANK_TOLERANCE * norms[l]) {
-        return Err(InstrumentalError::DependentInstrument { parameter: observation.unknowns[l].clone() });
+        return Err(InstrumentalError::DependentInstrument { parameter: unknowns(l).clone() });
     }
     let cross = DMatrix::from_fn(k, k, |i, l| factor.r(i, k + l));
     let y = DMatrix::from_fn(k, 1, |i, _| factor.r(i, 2 * k));
     let scale: Vec<f64> = cross.column_iter().map(|c| c.norm()).collect();
     if let Some(l) = scale.iter().position(|&norm| norm == 0.0) {
-        return Err(InstrumentalError::NoInstrument { parameter: observation.unknowns[l].clone() });
+        return Err(InstrumentalError::NoInstrument { parameter: unknowns(l).clone() });
     }
     let scaled = DMatrix::from_fn(k, k, |i, l| cross[(i, l)] / scale[l]);
     let lu = scaled.lu();
@@ -181,20 +188,20 @@ pub fn instrumental_variables(
     let all: Vec<f64> = std::iter::repeat_n(0.0, k).chain(chi.iter().copied()).collect();
     let freedom = factor.rows().saturating_sub(k).max(1) as f64;
     let noise = factor.residual_norm(&all) / freedom.sqrt();
-    let (parameters, instruments): (Vec<usize>, Vec<usize>) = ((0..k).collect(), (k..2 * k).collect());
     let solved = Solved {
-        observation,
+        observation: free,
         unknowns: &parameters,
         instruments: &instruments,
         noise_of_columns: None,
         weights: errors,
         errors,
     };
-    let sigma = match variances(&solved) {
+    let sigma: Vec<f64> = match variances(&solved) {
         Some(variances) => variances.into_iter().map(f64::sqrt).collect(),
         None => (0..k).map(|l| noise * inverse.row(l).norm() / scale[l]).collect(),
     };
-    Ok(InstrumentalEstimate { chi, sigma })
+    let all = |values: &[f64]| spread(values, &parameters, base);
+    Ok(InstrumentalEstimate { chi: observation.with_fixed(all(&chi)), sigma: all(&sigma) })
 }
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ pub trait Model: Send + Sync {
     /// Which entries of IDM are computed; the others are zero for every state.
     fn pattern(&self) -> &Pattern;
 
-    /// Energy row h(q, dq) of (10): nb values, J per unit parameter. Friction columns are zero, those of offsets too:
+    /// Energy row h(q, dq) of (10): nb values, J per unit parameter. Friction columns are zero, those of offsets too, and springs have their potential:
     /// where the weight that a prismatic joint lifts was regrouped into its offset (`off2R`), h chi lacks its potential,
     /// which is the offset times q of that joint, and the power row has its rate.
     fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]);
@@ -71,7 +71,8 @@ pub trait Model: Send + Sync {
     fn energy_block(&self, states: States<'_>, stride: usize, out: &mut [f64]);
 
     /// Mass matrix M(q) (n x n, row-major, both triangles) and bias N(q, dq) of (1) for given base parameters:
-    /// centrifugal, Coriolis and gravity torques with the rotor inertias; friction and offsets are not included.
+    /// centrifugal, Coriolis and gravity torques and those of springs, with the rotor inertias; friction and offsets are not
+    /// included.
     fn mass_and_bias(&self, chi: &[f64], q: &[f64], dq: &[f64], mass: &mut [f64], bias: &mut [f64]);
 
     /// Torques IDM(q, dq, ddq) chi of (4) for given base parameters, friction, rotor inertias and offsets included:

@@ -41,8 +41,8 @@ pub use block::{
 pub use dual::Dual;
 pub use dynamics::{Model, Operations, Pattern};
 pub use dynid_description::{
-    BaseParameter, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber, Limits, Motion, Nominal,
-    ParameterKind, Robot, StandardParameter, standard_parameters,
+    BaseParameter, Coupling, CouplingLaw, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber,
+    Limits, Motion, Nominal, ParameterKind, Robot, StandardParameter, standard_parameters,
 };
 pub use lanes::{LANES, Lanes};
 pub use number::Number;

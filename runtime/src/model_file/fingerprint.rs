@@ -1,6 +1,6 @@
 //! Whether two tables are the same robot.
 
-use crate::model::Robot;
+use crate::model::{CouplingLaw, Robot};
 
 /// Sixteen hexadecimal digits that two robots share if and only if the same parameters give them the same torques.
 ///
@@ -12,7 +12,9 @@ use crate::model::Robot;
 /// 3. the gear matrix row by row; the number of motors with coupled friction, then each;
 /// 4. for each base parameter: its name, then the standard parameter and the coefficient of each term of its combination;
 /// 5. for each frame that moves with other variables than its own joint's alone: its index, sigma, then each joint and its
-///    coefficient.
+///    coefficient;
+/// 6. for each combination of joints that friction or a spring acts on: its name, 0 for friction, 1 for a spring, 2 for one
+///    whose position at rest is known and that position, then each joint and its coefficient.
 ///
 /// Name, description, limits and nominal values have no part in it.
 pub fn fingerprint(robot: &Robot) -> String {
@@ -38,6 +40,21 @@ pub fn fingerprint(robot: &Robot) -> String {
         hash.count(frame.frame);
         hash.count(frame.kind as usize);
         for (joint, coefficient) in frame.terms.iter() {
+            hash.count(*joint);
+            hash.number(*coefficient);
+        }
+    }
+    for coupling in robot.couplings.iter() {
+        hash.text(&coupling.name);
+        match coupling.law {
+            CouplingLaw::Friction => hash.count(0),
+            CouplingLaw::Spring => hash.count(1),
+            CouplingLaw::SpringAt(rest) => {
+                hash.count(2);
+                hash.number(rest);
+            }
+        }
+        for (joint, coefficient) in coupling.terms.iter() {
             hash.count(*joint);
             hash.number(*coefficient);
         }
@@ -103,6 +120,9 @@ pub fn difference(saved: &Robot, now: &Robot) -> Option<String> {
     }
     if saved.dependent != now.dependent {
         return Some("a frame moves with other joint variables".to_owned());
+    }
+    if saved.couplings != now.couplings {
+        return Some("its friction between links or its springs have changed".to_owned());
     }
     if saved.gravity != now.gravity {
         return Some(format!("gravity was {:?}, now {:?}", saved.gravity, now.gravity));

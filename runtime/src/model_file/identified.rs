@@ -251,10 +251,10 @@ impl Identified {
 /// Why the value of a base parameter is none that a robot can have: a mass, a moment of inertia or a friction below zero,
 /// where nothing else is regrouped into it. `None` where a robot can have it.
 pub fn doubt(robot: &Robot, name: &str, value: f64, sigma: Option<f64>) -> Option<String> {
-    use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M, XX, YY, ZZ};
+    use ParameterKind::{Ia, M, XX, YY, ZZ};
     let base = robot.base.iter().find(|b| b.name == name)?;
     let standard = robot.standard.get(base.standard)?;
-    let positive = matches!(standard.kind, M | XX | YY | ZZ | Ia | Fv | Fc | Fvm | Fcm);
+    let positive = matches!(standard.kind, M | XX | YY | ZZ | Ia) || standard.kind.is_friction();
     if !positive || base.name != standard.name || value >= 0.0 {
         return None;
     }

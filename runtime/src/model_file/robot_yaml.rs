@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::model::{Frame, JointIndex, JointKind, Motion, Robot};
+use crate::model::{Coupling, CouplingLaw, Frame, JointIndex, JointKind, Motion, Robot};
 
 /// A robot as the YAML that it could have been read from: numbers in the place of expressions and constants. Limits and
 /// nominal values are not written.
@@ -37,12 +37,38 @@ pub fn to_yaml(robot: &Robot) -> String {
             .collect();
         let _ = writeln!(text, "  coupled_friction: [{}]", motors.join(", "));
     }
-    if !robot.known.is_empty() {
-        let known = robot.known.iter().filter_map(|&k| robot.standard.get(k));
-        let zero: Vec<String> = known.map(|p| format!("{}: 0", p.name)).collect();
-        let _ = writeln!(text, "known: {{{}}}", zero.join(", "));
+    for (key, friction) in [("friction", true), ("springs", false)] {
+        let entries: Vec<&Coupling> =
+            robot.couplings.iter().filter(|c| (c.law == CouplingLaw::Friction) == friction).collect();
+        if !entries.is_empty() {
+            let _ = writeln!(text, "{key}:");
+        }
+        for coupling in entries {
+            let _ = writeln!(text, "  - {}", entry(coupling, number));
+        }
+    }
+    let zero = robot.known.iter().map(|&k| (k, 0.0));
+    let known: Vec<String> = zero
+        .chain(robot.fixed.iter().copied())
+        .filter_map(|(k, value)| Some(format!("{}: {value}", robot.standard.get(k)?.name)))
+        .collect();
+    if !known.is_empty() {
+        let _ = writeln!(text, "known: {{{}}}", known.join(", "));
     }
     text
+}
+
+/// Friction between links or a spring.
+fn entry(coupling: &Coupling, number: impl Fn(usize) -> usize) -> String {
+    let joints: Vec<String> =
+        coupling.terms.iter().map(|&(joint, c)| format!("q{}: {c}", number(joint))).collect();
+    let rest = match coupling.law {
+        CouplingLaw::SpringAt(rest) => format!(", rest: {rest}"),
+        _ => String::new(),
+    };
+    // A name that was given begins with an underscore.
+    let name = coupling.name.strip_prefix('_').map_or_else(String::new, |name| format!(", name: {name}"));
+    format!("{{joints: {{{}}}{rest}{name}}}", joints.join(", "))
 }
 
 fn row(j: usize, frame: &Frame, motion: &Motion, number: impl Fn(usize) -> usize) -> String {

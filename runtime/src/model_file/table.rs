@@ -1,7 +1,7 @@
 //! The table of a saved model: every index and number of it.
 
 use super::error::FileError;
-use crate::model::{RecursiveModel, Robot};
+use crate::model::{CouplingLaw, ParameterKind, RecursiveModel, Robot};
 use dynid_description::{JointKind, MAX_TERMS, bounds};
 
 /// Checks that models and effects can be evaluated with a table.
@@ -22,6 +22,7 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
         }
     }
     check_dependent(robot, n)?;
+    check_couplings(robot, n)?;
     if robot.drive.gear.iter().any(|x| beyond(x, bounds::FASTEST_GEAR)) {
         return wrong("drive.gear".to_owned(), "a ratio is not finite, or no robot has it");
     }
@@ -31,6 +32,10 @@ pub(super) fn check(robot: &Robot) -> Result<(), FileError> {
     for (k, p) in robot.standard.iter().enumerate() {
         if p.frame >= robot.frames.len() {
             return wrong(format!("standard[{k}].frame"), "there is no such frame");
+        }
+        let of_coupling = p.kind > ParameterKind::Fcm;
+        if p.coupling.is_some() != of_coupling || p.coupling.is_some_and(|c| c >= robot.couplings.len()) {
+            return wrong(format!("standard[{k}].coupling"), "there is no such friction or spring");
         }
     }
     for (k, base) in robot.base.iter().enumerate() {
@@ -73,6 +78,11 @@ fn check_dependent(robot: &Robot, n: usize) -> Result<(), FileError> {
         let what = "there is no such standard parameter";
         return Err(FileError::new(format!("table.known[{k}]"), what));
     }
+    let fits = |&(k, value): &(usize, f64)| k < robot.standard.len() && value.is_finite();
+    if let Some(k) = robot.fixed.iter().position(|known| !fits(known)) {
+        let what = "there is no such standard parameter, or its value is not finite";
+        return Err(FileError::new(format!("table.fixed[{k}]"), what));
+    }
     let mut before = None;
     for (k, d) in robot.dependent.iter().enumerate() {
         let wrong =
@@ -91,6 +101,26 @@ fn check_dependent(robot: &Robot, n: usize) -> Result<(), FileError> {
         let known = d.terms.iter().all(|&(joint, c)| joint < n && fits(c));
         if d.terms.is_empty() || d.terms.len() > MAX_TERMS || !ascending || !known {
             return wrong("terms", "ascending joints with coefficients, whole numbers for an angle");
+        }
+    }
+    Ok(())
+}
+
+/// Friction between links and springs: as the YAML says them.
+fn check_couplings(robot: &Robot, n: usize) -> Result<(), FileError> {
+    for (k, c) in robot.couplings.iter().enumerate() {
+        let wrong =
+            |field: &str, what: &str| Err(FileError::new(format!("table.couplings[{k}].{field}"), what));
+        if c.name.is_empty() || !c.name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
+            return wrong("name", "letters, digits and underscores");
+        }
+        let known = c.terms.iter().all(|&(joint, c)| joint < n && c != 0.0 && c.abs() <= bounds::LONGEST);
+        let ascending = c.terms.windows(2).all(|pair| pair[0].0 < pair[1].0);
+        if c.terms.is_empty() || !ascending || !known {
+            return wrong("terms", "ascending joints with coefficients");
+        }
+        if matches!(c.law, CouplingLaw::SpringAt(rest) if rest.is_nan() || rest.abs() > bounds::WIDEST) {
+            return wrong("law", "its position at rest is not finite, or no robot has it");
         }
     }
     Ok(())

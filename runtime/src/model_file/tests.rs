@@ -3,7 +3,7 @@
 use super::*;
 use crate::diagnosis::Errors;
 use crate::effects::{EffectKind, EffectTerm, Place, TermScale};
-use crate::model::{Drive, Frame, JointKind, Limits, Robot};
+use crate::model::{Coupling, CouplingLaw, Drive, Frame, JointKind, Limits, Robot};
 use serde_json::{Value, json};
 
 /// Revolute, fixed, prismatic.
@@ -210,3 +210,53 @@ fn the_fingerprint_is_the_same_everywhere_and_follows_what_torques_depend_on() {
 }
 
 const FINGERPRINT: &str = "5aeb02c20489fcb0";
+
+#[test]
+fn friction_between_links_and_springs_of_a_table_are_read_back_and_checked() {
+    let coupling =
+        |name: &'static str, law| Coupling { name: name.into(), terms: vec![(0, 1.0)].into(), law };
+    let couplings = vec![
+        Coupling { terms: vec![(0, 0.5), (1, -1.0)].into(), ..coupling("1_3", CouplingLaw::Friction) },
+        coupling("1", CouplingLaw::Spring),
+        coupling("_hose", CouplingLaw::SpringAt(0.2)),
+    ];
+    let mut robot = robot().with_couplings(couplings);
+    robot.fixed = vec![(9, 2.5)].into();
+    let rows = EvaluatedRows {
+        samples: 100,
+        rows_left_out: None,
+        equations: Vec::new(),
+        band: 25.0,
+        errors: Errors { relative_error: None, per_joint: vec![None; 2] },
+        noise: None,
+    };
+    let parameters = model().base_parameters;
+    let mut all: Vec<NamedParameter> = robot
+        .base
+        .iter()
+        .map(|b| NamedParameter { name: b.name.to_string(), ..parameters[0].clone() })
+        .collect();
+    all.iter_mut().for_each(|p| p.value = 1.0);
+    let saved = Identified::with_parameters(&robot, "crane", "diagnosis", rows, all);
+    let good: Value = serde_json::to_value(&saved).unwrap();
+    let back = read(&good.to_string()).unwrap();
+    assert_eq!(back.table.as_ref().unwrap().couplings, robot.couplings);
+    assert_eq!(back.table.as_ref().unwrap().fixed, robot.fixed);
+    let standard = robot.standard.len();
+    for (path, value, expected) in [
+        ("/table/couplings/0/terms".to_owned(), json!([[1, 1.0], [0, 1.0]]), "table.couplings[0].terms"),
+        ("/table/couplings/0/terms".to_owned(), json!([[5, 1.0]]), "table.couplings[0].terms"),
+        ("/table/couplings/1/terms".to_owned(), json!([]), "table.couplings[1].terms"),
+        ("/table/couplings/0/name".to_owned(), json!("a}\n"), "table.couplings[0].name"),
+        ("/table/couplings/2/law".to_owned(), json!({"spring_at": 1e300}), "table.couplings[2].law"),
+        ("/table/couplings".to_owned(), json!([]), "coupling"),
+        (format!("/table/standard/{}/coupling", standard - 1), json!(7), "coupling"),
+        (format!("/table/standard/{}/kind", standard - 1), json!("Fc"), "coupling"),
+        ("/table/fixed/0".to_owned(), json!([900, 1.0]), "table.fixed[0]"),
+    ] {
+        let mut bad = good.clone();
+        *bad.pointer_mut(&path).unwrap_or_else(|| panic!("{path}")) = value.clone();
+        let error = read(&bad.to_string()).expect_err(&path).to_string();
+        assert!(error.contains(expected), "{path} = {value}: {error}");
+    }
+}

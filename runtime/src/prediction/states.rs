@@ -54,8 +54,7 @@ pub fn row_states(
 
 /// Parameters whose torques are those of inertia and gravity alone.
 fn without_friction(robot: &Robot, chi: &[f64]) -> Vec<f64> {
-    use ParameterKind::{Fc, Fcm, Fv, Fvm, Off};
-    let is_friction = |kind: ParameterKind| matches!(kind, Fv | Fc | Fvm | Fcm | Off);
+    let is_friction = |kind: ParameterKind| kind.is_friction() || kind == ParameterKind::Off;
     let each = robot.base.iter().zip(chi);
     each.map(|(base, &value)| if is_friction(robot.standard[base.standard].kind) { 0.0 } else { value })
         .collect()

@@ -16,7 +16,7 @@ fn arm() -> RecursiveModel {
     let frames = vec![row(None, 0.0), row(Some(0), 0.5)];
     let drive = Drive { gear: vec![1.0, 0.0, 0.0, 1.0].into(), coupled_friction: vec![].into() };
     let robot = Robot::with_standard_as_base("arm", [0.0, -9.81, 0.0], frames, drive, Limits::default());
-    assert_eq!(robot.base.len(), standard_parameters(&robot.frames, &[]).len());
+    assert_eq!(robot.base.len(), standard_parameters(&robot.frames, &[], &[]).len());
     RecursiveModel::new(robot).unwrap()
 }
 

@@ -27,11 +27,11 @@ pub fn check_standard(robot: &Robot, standard: &[f64]) -> Result<(), SimulationE
         });
     }
     for (parameter, &value) in robot.standard.iter().zip(standard) {
-        use ParameterKind::{Fc, Fcm, Fv, Fvm, Ia, M};
+        use ParameterKind::{Ia, M};
         if !value.is_finite() {
             return Err(SimulationError::NotFinite { name: parameter.name.to_string() });
         }
-        if matches!(parameter.kind, M | Ia | Fv | Fc | Fvm | Fcm) && value < 0.0 {
+        if (matches!(parameter.kind, M | Ia) || parameter.kind.is_friction()) && value < 0.0 {
             return Err(SimulationError::NegativeParameter { name: parameter.name.to_string(), value });
         }
     }

@@ -108,7 +108,7 @@ impl<'a> Controller<'a> {
                 let joints: Vec<usize> = (0..n).collect();
                 let kept = robot.base.iter().zip(chi).map(|(p, &value)| {
                     let standard = &robot.standard[p.standard];
-                    (&*p.name, standard.kind, standard.frame, value)
+                    (&*p.name, standard, value)
                 });
                 Some(DriveFriction::new(robot, kept, &joints, false)?)
             }

@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 
 use super::SimulationError;
-use crate::model::{ParameterKind, Robot};
+use crate::model::{ParameterKind, Robot, StandardParameter};
 
-/// One place where dry friction acts: a joint, or a motor that several joints turn.
+/// One place where dry friction acts: a joint, a motor that several joints turn, or a combination of joints.
 #[derive(Debug, Clone)]
 pub(crate) struct DryElement {
     /// Slip velocity = sum of factor * velocity of the coordinate.
@@ -39,7 +39,7 @@ pub(crate) struct DriveFriction {
     pub viscous: Vec<(usize, usize, f64)>,
     /// (coordinate, torque).
     pub offset: Vec<(usize, f64)>,
-    /// Joints first, then motors with friction of their own.
+    /// Joints first, then motors with friction of their own and combinations of joints.
     pub elements: Vec<DryElement>,
 }
 
@@ -51,7 +51,7 @@ impl DriveFriction {
     /// A negative friction coefficient: such a plant would feed itself.
     pub fn new<'a>(
         robot: &Robot,
-        parameters: impl Iterator<Item = (&'a str, ParameterKind, usize, f64)>,
+        parameters: impl Iterator<Item = (&'a str, &'a StandardParameter, f64)>,
         coordinate: &[usize],
         every_joint: bool,
     ) -> Result<Self, SimulationError> {
@@ -60,36 +60,30 @@ impl DriveFriction {
         let mut viscous = DMatrix::<f64>::zeros(n, n);
         let mut offset = Vec::new();
         let mut coulomb = vec![0.0; n];
-        let mut motors = Vec::new();
-        for (name, kind, frame, value) in parameters {
-            let Some(j) = joint_of[frame] else { continue };
-            let friction = matches!(
-                kind,
-                ParameterKind::Fv | ParameterKind::Fc | ParameterKind::Fvm | ParameterKind::Fcm
-            );
-            if friction && value < 0.0 {
+        let mut combined = Vec::new();
+        for (name, parameter, value) in parameters {
+            let Some(j) = joint_of[parameter.frame] else { continue };
+            if parameter.kind.is_friction() && value < 0.0 {
                 return Err(SimulationError::NegativeParameter { name: name.to_string(), value });
             }
             if value == 0.0 {
                 continue;
             }
-            match kind {
-                ParameterKind::Fv => viscous[(j, j)] += value,
+            match parameter.kind {
                 ParameterKind::Fc => coulomb[j] += value,
                 ParameterKind::Off => offset.push((coordinate[j], value)),
-                ParameterKind::Fvm => {
-                    let row = motor_row(robot, j);
-                    for a in 0..n {
-                        for b in 0..n {
-                            viscous[(a, b)] += value * row[a] * row[b];
+                kind if kind.is_viscous() => {
+                    let form = robot.acts_on(parameter);
+                    for &(a, ca) in &form {
+                        for &(b, cb) in &form {
+                            viscous[(a, b)] += value * ca * cb;
                         }
                     }
                 }
-                ParameterKind::Fcm => {
-                    let row = motor_row(robot, j);
-                    let direction =
-                        (0..n).filter(|&s| row[s] != 0.0).map(|s| (coordinate[s], row[s])).collect();
-                    motors.push(DryElement { direction, joint: None, level: value });
+                kind if kind.is_coulomb() => {
+                    let form = robot.acts_on(parameter);
+                    let direction = form.into_iter().map(|(s, c)| (coordinate[s], c)).collect();
+                    combined.push(DryElement { direction, joint: None, level: value });
                 }
                 _ => {}
             }
@@ -98,19 +92,13 @@ impl DriveFriction {
             .filter(|&j| every_joint || coulomb[j] > 0.0)
             .map(|j| DryElement { direction: vec![(coordinate[j], 1.0)], joint: Some(j), level: coulomb[j] })
             .collect();
-        elements.extend(motors);
+        elements.extend(combined);
         let viscous = (0..n * n)
             .filter(|&k| viscous[(k / n, k % n)] != 0.0)
             .map(|k| (coordinate[k / n], coordinate[k % n], viscous[(k / n, k % n)]))
             .collect();
         Ok(Self { viscous, offset, elements })
     }
-}
-
-/// Speed of motor m in units of its own joint: gear[m][s] / gear[m][m] for every joint s.
-fn motor_row(robot: &Robot, m: usize) -> Vec<f64> {
-    let n = robot.joints();
-    (0..n).map(|s| robot.drive.gear[m * n + s] / robot.drive.gear[m * n + m]).collect()
 }
 
 /// Inertia Ja of each rotor at the motor, from `inertia[j]` = Ia_j: equation (26) of Gautier and Briot solved,

@@ -118,7 +118,7 @@ impl<'m> Plant<'m> {
         let freedom = n + elastic.len();
         let kept = robot.base.iter().zip(&chi).map(|(p, &value)| {
             let standard = &robot.standard[p.standard];
-            (&*p.name, standard.kind, standard.frame, value)
+            (&*p.name, standard, value)
         });
         let every_joint = effects.iter().any(|e| e.has_dry_friction());
         let friction = DriveFriction::new(robot, kept, &motor, every_joint)?;

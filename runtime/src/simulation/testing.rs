@@ -104,6 +104,26 @@ pub fn arm() -> (RecursiveModel, Vec<f64>) {
     (model, standard)
 }
 
+/// [`arm`] with friction between its links and two springs.
+pub fn tethered_arm() -> (RecursiveModel, Vec<f64>) {
+    use crate::model::{Coupling, CouplingLaw, Model};
+    let (model, mut standard) = arm();
+    let coupling = |name: &'static str, terms: &[(usize, f64)], law| Coupling {
+        name: name.into(),
+        terms: terms.to_vec().into(),
+        law,
+    };
+    let couplings = vec![
+        coupling("_belt", &[(2, 1.0), (4, -0.5)], CouplingLaw::Friction),
+        coupling("1", &[(0, 1.0)], CouplingLaw::Spring),
+        coupling("_hose", &[(0, 0.1), (1, 1.0), (3, -0.2)], CouplingLaw::SpringAt(0.4)),
+    ];
+    let robot = model.robot().clone().with_couplings(couplings);
+    // Fvc, Fcc, K and KR, and K.
+    standard.extend([1.5, 2.0, 30.0, 12.0, 150.0]);
+    (RecursiveModel::new(robot).unwrap(), standard)
+}
+
 /// Random q, dq, ddq of n joints.
 pub fn random_state(n: usize, random: &mut rand_pcg::Pcg64) -> [Vec<f64>; 3] {
     [2.0, 3.0, 20.0].map(|size| (0..n).map(|_| random.random_range(-size..size)).collect())

@@ -2,14 +2,15 @@
 //! The plant against energy, against the inverse dynamics, and against friction worked out by hand.
 
 use super::excitation::{ExcitationSettings, FourierJoint, FourierMotion, MotionKind, excite};
-use super::testing::{arm, pendulum, random_state, tx40, wrist};
+use super::testing::{arm, pendulum, random_state, tethered_arm, tx40, wrist};
 use super::*;
-use crate::model::{JointNumber, Model, ParameterKind, RecursiveModel, torques_at};
+use crate::model::{Coupling, CouplingLaw, JointNumber, Model, ParameterKind, RecursiveModel, torques_at};
 use rand::{RngExt, SeedableRng};
 
 fn without_friction(model: &RecursiveModel, chi: &[f64]) -> Vec<f64> {
     let kinds = model.robot().standard.iter().map(|p| p.kind);
-    chi.iter().zip(kinds).map(|(&x, kind)| if kind > ParameterKind::Ia { 0.0 } else { x }).collect()
+    let stores = |kind: ParameterKind| kind <= ParameterKind::Ia || kind.is_spring();
+    chi.iter().zip(kinds).map(|(&x, kind)| if stores(kind) { x } else { 0.0 }).collect()
 }
 
 fn energy(model: &RecursiveModel, chi: &[f64], state: &State) -> f64 {
@@ -21,7 +22,16 @@ fn energy(model: &RecursiveModel, chi: &[f64], state: &State) -> f64 {
 
 #[test]
 fn energy_is_kept_over_ten_seconds_without_friction() {
-    let (model, chi) = arm();
+    keeps_its_energy(arm(), 50_000);
+}
+
+#[test]
+fn springs_give_back_what_they_take() {
+    // The springs make the motion faster, and steps of fourth order err by the fourth power.
+    keeps_its_energy(tethered_arm(), 100_000);
+}
+
+fn keeps_its_energy((model, chi): (RecursiveModel, Vec<f64>), steps: usize) {
     let chi = without_friction(&model, &chi);
     let n = model.robot().joints();
     let mut plant = Plant::new(&model, &chi).unwrap();
@@ -30,8 +40,8 @@ fn energy_is_kept_over_ten_seconds_without_friction() {
     // Energy has no absolute zero: the drift is measured against what is exchanged between its two forms.
     let rest = plant.state(&state.q[..n], &vec![0.0; n]);
     let mut kinetic = before - energy(&model, &chi, &rest);
-    for _ in 0..50_000 {
-        plant.advance(&mut state, &vec![0.0; n], 2e-4).unwrap();
+    for _ in 0..steps {
+        plant.advance(&mut state, &vec![0.0; n], 10.0 / steps as f64).unwrap();
         let still = State { dq: vec![0.0; n], ..state.clone() };
         kinetic = kinetic.max(energy(&model, &chi, &state) - energy(&model, &chi, &still));
     }
@@ -41,7 +51,11 @@ fn energy_is_kept_over_ten_seconds_without_friction() {
 
 #[test]
 fn forward_dynamics_undo_inverse_dynamics() {
-    let (model, chi) = arm();
+    undoes_inverse_dynamics(arm());
+    undoes_inverse_dynamics(tethered_arm());
+}
+
+fn undoes_inverse_dynamics((model, chi): (RecursiveModel, Vec<f64>)) {
     let n = model.robot().joints();
     let mut plant = Plant::new(&model, &chi).unwrap();
     let mut random = rand_pcg::Pcg64::seed_from_u64(3);
@@ -140,6 +154,30 @@ fn a_motor_can_hold_the_sum_of_two_joints_while_each_moves() {
     }
     assert!(state.dq[0].abs() > 0.1);
     assert!((state.q[0] + state.q[1] - 0.6).abs() < 1e-12);
+}
+
+#[test]
+fn friction_between_links_is_that_of_a_motor_that_turns_with_both() {
+    let (model, chi) = wrist(0.3, 0.2, 5.0);
+    let terms = vec![(0, 2.0), (1, 2.0)].into();
+    let belt = Coupling { name: "_belt".into(), terms, law: CouplingLaw::Friction };
+    let other = RecursiveModel::new(model.robot().clone().with_couplings(vec![belt])).unwrap();
+    let mut on_belt = chi.clone();
+    let motor = model.robot().standard.iter().position(|p| p.name == "Fcm2").unwrap();
+    // The combination of the belt is twice the motor's.
+    on_belt[motor] = 0.0;
+    on_belt.extend([0.0, 2.5]);
+    let run = |model: &RecursiveModel, chi: &[f64]| {
+        let mut plant = Plant::new(model, chi).unwrap();
+        let mut state = plant.state(&[0.2, 0.4], &[0.0; 2]);
+        for torque in [[3.0, -3.0], [9.0, 7.0], [-9.0, 2.0]] {
+            (0..500).for_each(|_| plant.advance(&mut state, &torque, 1e-3).unwrap());
+        }
+        state.q
+    };
+    for (a, b) in run(&model, &chi).iter().zip(run(&other, &on_belt)) {
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use dynid_runtime::effects::EffectTerm;
-use dynid_runtime::model::{JointIndex, ParameterKind, Robot};
+use dynid_runtime::model::{Coupling, CouplingLaw, JointIndex, ParameterKind, Robot, StandardParameter};
 use dynid_runtime::report::significant;
 use serde::Serialize;
 
@@ -132,9 +132,16 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
     let mut list = Vec::new();
     for (k, p) in robot.standard.iter().enumerate() {
         let value = fitted.standard[k];
-        let Some(formula) = formula(robot, p.kind, p.frame, value, to) else { continue };
+        let formula = match p.coupling.and_then(|c| robot.couplings.get(c)) {
+            Some(coupling) => of_coupling(robot, p, coupling, value),
+            None => formula(robot, p.kind, p.frame, value, to),
+        };
+        let Some(formula) = formula else { continue };
         let unit = p.kind.unit(robot.frames[p.frame].kind).to_owned();
-        let joints = vec![p.frame + 1];
+        let joints = match p.coupling {
+            Some(_) => robot.acts_on(p).iter().map(|t| robot.joint_number(JointIndex(t.0)).0).collect(),
+            None => vec![p.frame + 1],
+        };
         list.push(LeftOut {
             name: p.name.to_string(),
             joints,
@@ -177,6 +184,24 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
         });
     }
     list
+}
+
+/// The formula of a parameter of friction between links or of a spring; `None` where there is nothing.
+fn of_coupling(robot: &Robot, p: &StandardParameter, coupling: &Coupling, value: f64) -> Option<String> {
+    let s = coupling.combination(|joint| robot.joint_number(JointIndex(joint)).0);
+    let rest = match coupling.law {
+        CouplingLaw::SpringAt(rest) if rest < 0.0 => format!(" + {}", -rest),
+        CouplingLaw::SpringAt(rest) => format!(" - {rest}"),
+        _ => String::new(),
+    };
+    let law = match p.kind {
+        ParameterKind::Fvc => "Fvc*ds".to_owned(),
+        ParameterKind::Fcc => "Fcc*sign(ds)".to_owned(),
+        ParameterKind::K if rest.is_empty() => "K*s".to_owned(),
+        ParameterKind::K => format!("K*(s{rest})"),
+        _ => "-KR".to_owned(),
+    };
+    (value != 0.0).then(|| format!("{law} on s = {s}: on each joint times its coefficient"))
 }
 
 /// The formula of a parameter that the format cannot hold; `None` where it can, or where there is nothing.

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::rules::{RATE_PER_CUTOFF, RECORDED_BAND, SAMPLES_PER_SECOND};
-use crate::model::{Model, ParameterKind, Robot, States};
+use crate::model::{Model, ParameterKind, Robot, StandardParameter, States};
 use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
 
@@ -310,9 +310,7 @@ impl ModelTorques {
                 for e in pattern.rows[j]..pattern.rows[j + 1] {
                     let k = pattern.columns[e];
                     let part = match kinds[k] {
-                        ParameterKind::Fv | ParameterKind::Fc | ParameterKind::Fvm | ParameterKind::Fcm => {
-                            Some(&mut out.friction[j])
-                        }
+                        kind if kind.is_friction() => Some(&mut out.friction[j]),
                         ParameterKind::Off => None,
                         _ => Some(&mut out.rigid[j]),
                     };
@@ -322,7 +320,7 @@ impl ModelTorques {
                             *o += v * chi[k];
                         }
                     }
-                    if kinds[k] <= ParameterKind::M {
+                    if kinds[k] <= ParameterKind::M || kinds[k].is_spring() {
                         for (o, v) in out.link[j][first..first + count].iter_mut().zip(values) {
                             *o += v * chi[k];
                         }
@@ -337,7 +335,8 @@ impl ModelTorques {
     }
 }
 
-/// The linear forms of dq whose sign enters the row of each joint: its own speed, and those of coupled motors.
+/// The linear forms of dq whose sign enters the row of each joint: its own speed, those of coupled motors, and those that
+/// friction between links acts on.
 pub(in crate::diagnosis) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
     let n = robot.joints();
     let mut forms: Vec<Vec<Vec<f64>>> = (0..n)
@@ -347,9 +346,10 @@ pub(in crate::diagnosis) fn directions(robot: &Robot) -> Vec<Vec<Vec<f64>>> {
             vec![own]
         })
         .collect();
-    for &m in robot.drive.coupled_friction.iter() {
-        let row = &robot.drive.gear[m * n..(m + 1) * n];
-        let form: Vec<f64> = row.iter().map(|g| g / row[m]).collect();
+    let combined = |p: &&StandardParameter| matches!(p.kind, ParameterKind::Fcm | ParameterKind::Fcc);
+    for parameter in robot.standard.iter().filter(combined) {
+        let mut form = vec![0.0; n];
+        robot.acts_on(parameter).into_iter().for_each(|(joint, c)| form[joint] = c);
         for (j, forms) in forms.iter_mut().enumerate() {
             if form[j] != 0.0 && !forms.contains(&form) {
                 forms.push(form.clone());

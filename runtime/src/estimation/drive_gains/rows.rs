@@ -112,6 +112,7 @@ impl<'a> Both<'a> {
             equations: Equations::Torque,
             unknowns: (0..unknowns).map(|k| format!("x{k}")).collect(),
             base: unknowns,
+            fixed: Vec::new(),
             exact: vec![true; unknowns],
             trajectories: [unloaded.trajectories.clone(), loaded.trajectories.clone()].concat(),
             rates: both(|o| &o.rates),

@@ -51,7 +51,7 @@ pub fn observe(
 ) -> Result<Observation, ObserveError> {
     let source = |(trajectory, motion)| source::source(equations, model, trajectory, motion, extra);
     let sources = motions.iter().enumerate().map(source).collect::<Result<Vec<_>, _>>()?;
-    let rows = motion_rows(&model.robot().drive, motions, settings, equations)?;
+    let rows = motion_rows(model.robot(), motions, settings, equations)?;
     let prepared: Vec<Prepared<'_>> = sources
         .into_iter()
         .zip(rows)
@@ -77,6 +77,7 @@ pub fn observe(
     Ok(Observation {
         equations,
         exact,
+        fixed: robot.fixed_base(),
         base: robot.base.len(),
         unknowns,
         trajectories: motions.iter().map(|m| m.name.clone()).collect(),
@@ -106,9 +107,9 @@ fn unknowns(
     if let (Some(extra), Equations::Torque) = (extra, equations) {
         unknowns.extend(extra.names().iter().cloned());
     }
-    let exact = |kind| {
-        matches!(kind, ParameterKind::Off | ParameterKind::Fc | ParameterKind::Fcm)
-            && equations == Equations::Torque
+    let exact = |kind: ParameterKind| {
+        let constant = matches!(kind, ParameterKind::Off | ParameterKind::KR);
+        (constant || kind.is_coulomb()) && equations == Equations::Torque
     };
     let mut exact: Vec<bool> = robot.base.iter().map(|p| exact(robot.standard[p.standard].kind)).collect();
     exact.resize(unknowns.len(), false);

@@ -40,6 +40,9 @@ pub struct Observation {
     pub unknowns: Vec<String>,
     /// How many of the unknowns are base parameters.
     pub base: usize,
+    /// Unknowns whose values are known beforehand, ascending, with them: base parameters of which only known standard ones are
+    /// part.
+    pub fixed: Vec<(usize, f64)>,
     /// Which unknowns have columns without measuring errors: constants, and the sign of the speed.
     pub exact: Vec<bool>,
     /// Name of each motion.
@@ -63,7 +66,47 @@ pub struct Observation {
     pub rows: Option<Vec<Rows>>,
 }
 
+impl EquationFactor {
+    /// The same rows with Y less the columns of known unknowns, and without these columns.
+    fn without(&self, fixed: &[(usize, f64)]) -> EquationFactor {
+        let place =
+            |&(unknown, value): &(usize, f64)| Some((self.columns.binary_search(&unknown).ok()?, value));
+        let held: Vec<(usize, f64)> = fixed.iter().filter_map(place).collect();
+        let is_free = |unknown: &usize| fixed.iter().all(|(known, _)| known != unknown);
+        let columns = self.columns.iter().copied().filter(is_free).collect();
+        EquationFactor { columns, factor: self.factor.hold(&held), ..*self }
+    }
+}
+
 impl Observation {
+    /// The same equations with Y less the torques or the power of what is known, whose unknowns have no columns then; `None`
+    /// where nothing is.
+    pub(in crate::estimation) fn without_fixed(&self) -> Option<Observation> {
+        if self.fixed.is_empty() {
+            return None;
+        }
+        let mut free = self.clone();
+        for equation in free.groups.iter_mut().chain(free.blocks.iter_mut().flat_map(|b| &mut b.equations)) {
+            *equation = equation.without(&self.fixed);
+        }
+        for rows in free.rows.iter_mut().flatten() {
+            *rows = rows.without(&self.fixed);
+        }
+        for (noise, group) in free.noise_of_columns.iter_mut().flatten().zip(&self.groups) {
+            let kept: Vec<usize> = (0..group.columns.len())
+                .filter(|&c| self.fixed.iter().all(|(known, _)| *known != group.columns[c]))
+                .collect();
+            *noise = DMatrix::from_fn(kept.len(), kept.len(), |i, k| noise[(kept[i], kept[k])]);
+        }
+        Some(free)
+    }
+
+    /// Puts the known values into those of all unknowns.
+    pub(in crate::estimation) fn with_fixed(&self, mut chi: Vec<f64>) -> Vec<f64> {
+        self.fixed.iter().for_each(|&(unknown, value)| chi[unknown] = value);
+        chi
+    }
+
     /// Takes in the motions of another observation of the same unknowns, behind its own: a recording that is too
     /// long for the memory is read, observed and dropped piece by piece.
     ///

@@ -4,7 +4,7 @@ use super::error::ObserveError;
 use super::select::{self, Candidates, LeftOut, Selection, select};
 use super::settings::{Equations, ObserveSettings};
 use super::source::check_shape;
-use crate::model::{Drive, JointIndex, Robot};
+use crate::model::{JointIndex, Robot};
 use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// The rows of the torque equations of one motion.
@@ -31,7 +31,7 @@ pub(crate) fn row_plans(
     settings: &ObserveSettings,
 ) -> Result<Vec<RowPlan>, ObserveError> {
     motions.iter().try_for_each(|motion| check_shape(robot, motion))?;
-    let rows = motion_rows(&robot.drive, motions, settings, Equations::Torque)?;
+    let rows = motion_rows(robot, motions, settings, Equations::Torque)?;
     let plan = |(MotionRows { decimator, grid, selection }, motion): (MotionRows, &Motion)| {
         let number = |Selection { used, left_out }| {
             let joint = Some(robot.joint_number(JointIndex(left_out.equation)));
@@ -59,7 +59,7 @@ pub(super) struct MotionRows {
 /// # Errors
 /// A band or rate that is not positive, or speeds of standstill of another number of joints.
 pub(super) fn motion_rows(
-    drive: &Drive,
+    robot: &Robot,
     motions: &[Motion],
     settings: &ObserveSettings,
     equations: Equations,
@@ -71,7 +71,7 @@ pub(super) fn motion_rows(
         let grid = decimator.kept_rows(valid_samples(motion));
         let candidates = Candidates {
             trajectory,
-            drive,
+            robot,
             motion,
             decimator: &decimator,
             grid,

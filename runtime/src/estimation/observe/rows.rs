@@ -22,6 +22,22 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// The same rows with Y less the columns of known unknowns, and without these columns.
+    pub(super) fn without(&self, fixed: &[(usize, f64)]) -> Rows {
+        let count = self.y.len().max(1);
+        let mut free = Rows { columns: Vec::new(), w: Vec::new(), ..self.clone() };
+        for (&unknown, column) in self.columns.iter().zip(self.w.chunks_exact(count)) {
+            match fixed.iter().find(|(known, _)| *known == unknown) {
+                Some((_, value)) => free.y.iter_mut().zip(column).for_each(|(y, w)| *y -= value * w),
+                None => {
+                    free.columns.push(unknown);
+                    free.w.extend_from_slice(column);
+                }
+            }
+        }
+        free
+    }
+
     /// W chi, for all unknowns of the observation.
     pub fn predict(&self, chi: &[f64]) -> Vec<f64> {
         let mut prediction = vec![0.0; self.y.len()];

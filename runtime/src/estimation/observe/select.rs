@@ -3,7 +3,7 @@
 use super::error::ObserveError;
 use super::settings::{Equations, ObserveSettings};
 use super::standstill::Standstill;
-use crate::model::{Drive, JointNumber};
+use crate::model::{JointNumber, ParameterKind, Robot, StandardParameter};
 use crate::signal::{Decimator, KeptRows, Motion, StandstillSpeeds};
 
 /// How many rows of one equation of one motion were used.
@@ -38,7 +38,7 @@ pub(super) struct Candidates<'a> {
     /// Index of the motion.
     pub trajectory: usize,
     /// The motors, of which some have friction of their own.
-    pub drive: &'a Drive,
+    pub robot: &'a Robot,
     pub motion: &'a Motion,
     /// What brings a signal at the full rate to the rows.
     pub decimator: &'a Decimator,
@@ -51,7 +51,7 @@ pub(super) struct Candidates<'a> {
 
 /// Which rows of each equation are used.
 pub(super) fn select(rows: &Candidates<'_>, equations: Equations) -> Result<Vec<Selection>, ObserveError> {
-    let &Candidates { trajectory, drive, motion, decimator, grid, detected, settings } = rows;
+    let &Candidates { trajectory, robot, motion, decimator, grid, detected, settings } = rows;
     let n = motion.dq.len();
     let samples = motion.q.first().map_or(0, Vec::len);
     let possible = samples.div_ceil(grid.step);
@@ -68,7 +68,7 @@ pub(super) fn select(rows: &Candidates<'_>, equations: Equations) -> Result<Vec<
     let lobe = decimator.factor();
     let mut moving = rows_that_move(motion, grid, lobe, detected, settings)?;
     if matches!(settings.standstill, Standstill::Automatic | Standstill::Detected(_)) {
-        leave_out_turning_motors(drive, motion, grid, lobe, &mut moving);
+        leave_out_turning_combinations(robot, motion, grid, lobe, &mut moving);
         keep_short_strokes(&rows_that_move(motion, grid, lobe / 2, detected, settings)?, &mut moving);
     }
     let count = if equations == Equations::Torque { n } else { 1 };
@@ -144,25 +144,25 @@ fn rows_that_move(
     Ok(motion.dq.iter().zip(speeds).map(faster).collect())
 }
 
-/// Leaves out the rows of the joints that a motor with friction of its own drives, where that motor turns round within
-/// the main lobe of the row: its Coulomb friction is as sharp there as a joint's.
-fn leave_out_turning_motors(
-    drive: &Drive,
+/// Leaves out the rows of the joints that a motor with friction of its own drives, or on which friction between links acts,
+/// where that motor or combination of joints turns round within the main lobe of the row: its Coulomb friction is as sharp
+/// there as a joint's.
+fn leave_out_turning_combinations(
+    robot: &Robot,
     motion: &Motion,
     grid: KeptRows,
     reach: usize,
     moving: &mut [Vec<bool>],
 ) {
-    let n = motion.dq.len();
-    for &motor in drive.coupled_friction.iter() {
-        let Some(gear) = drive.gear.get(motor * n..(motor + 1) * n) else { continue };
-        let driven: Vec<usize> = (0..n).filter(|&j| gear[j] != 0.0).collect();
-        let speed = |t: usize| driven.iter().map(|&j| gear[j] * motion.dq[j][t]).sum::<f64>();
+    let combined = |p: &&StandardParameter| matches!(p.kind, ParameterKind::Fcm | ParameterKind::Fcc);
+    for parameter in robot.standard.iter().filter(combined) {
+        let form = robot.acts_on(parameter);
+        let speed = |t: usize| form.iter().map(|&(j, c)| c * motion.dq[j][t]).sum::<f64>();
         for (row, at) in grid.centres().enumerate() {
             let around = at.saturating_sub(reach)..(at + reach + 1).min(motion.dq[0].len());
             let now = speed(at);
             if around.into_iter().any(|t| speed(t) * now < 0.0) {
-                driven.iter().for_each(|&j| moving[j][row] = false);
+                form.iter().for_each(|&(j, _)| moving[j][row] = false);
             }
         }
     }

@@ -68,7 +68,8 @@ pub(super) fn source<'a>(
         Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
         Equations::Power { closed_form } => {
             let inertial = (0..model.robot().base.len())
-                .map(|c| model.robot().standard[model.robot().base[c].standard].kind <= ParameterKind::Ia)
+                .map(|c| model.robot().standard[model.robot().base[c].standard].kind)
+                .map(|kind| kind <= ParameterKind::Ia || kind.is_spring())
                 .collect();
             let filtered = (0..=model.robot().base.len()).collect();
             Box::new(Power { model, signals, closed_form, inertial, filtered, n })

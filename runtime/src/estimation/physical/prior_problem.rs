@@ -70,10 +70,13 @@ impl Search {
         }
         search.add_rotors(robot, prior);
         search.add_data(robot, chi, covariance)?;
-        // Friction and offsets have no prior: where no data show them there is nothing to say.
+        // Friction, offsets and springs have no prior: where no data show them there is nothing to say, and of what is part of
+        // one base parameter all is said by the one that it is named after.
         for (k, p) in robot.standard.iter().enumerate() {
             let is_loose = !ParameterKind::INERTIAL.contains(&p.kind) && p.kind != ParameterKind::Ia;
-            if is_loose && search.normal[(k, k)] == 0.0 {
+            let is_base = robot.base.iter().any(|b| b.standard == k);
+            let is_known = robot.fixed.iter().any(|&(known, _)| known == k);
+            if is_loose && !is_known && (!is_base || search.normal[(k, k)] == 0.0) {
                 search.fixed.push(k);
             }
         }
@@ -152,8 +155,21 @@ impl Search {
         let l = factor.l();
         self.g = l.solve_lower_triangular(&rows).ok_or(NearPriorError::NoInformation)?;
         self.y = l.solve_lower_triangular(&y).ok_or(NearPriorError::NoInformation)?;
+        self.add_fixed(robot);
         self.normal = self.g.tr_mul(&self.g);
         Ok(())
+    }
+
+    /// What the table knows of standard parameters is as good as exact.
+    fn add_fixed(&mut self, robot: &Robot) {
+        let free = robot.fixed.iter().filter(|(k, _)| !self.fixed.contains(k));
+        for &(k, value) in free {
+            let sigma = EXACT * value.abs().max(EXACT);
+            let at = self.y.len();
+            self.g = std::mem::take(&mut self.g).insert_row(at, 0.0);
+            self.g[(at, k)] = 1.0 / sigma;
+            self.y = std::mem::take(&mut self.y).push(value / sigma);
+        }
     }
 
     pub(super) fn distance(&self, x: &DVector<f64>) -> f64 {

@@ -69,29 +69,34 @@ impl Problem {
 
     /// The speeds come from the columns of Fv and Fc, which are v and sign(v) of each row.
     fn friction(&mut self, robot: &Robot, unweighted: &Factor) {
-        use ParameterKind::{Fc, Fcm, Fv, Fvm};
+        use ParameterKind::{Fc, Fcc, Fcm, Fv, Fvc, Fvm};
         let column = |standard: usize| robot.base.iter().position(|b| b.standard == standard);
         let product = |a: usize, b: usize| -> f64 {
             (0..=a.min(b)).map(|i| unweighted.r(i, a) * unweighted.r(i, b)).sum()
         };
-        for frame in 0..robot.frames.len() {
-            for (viscous, coulomb) in [(Fv, Fc), (Fvm, Fcm)] {
-                let (viscous, coulomb) = (parameter(robot, frame, viscous), parameter(robot, frame, coulomb));
-                let known: Vec<usize> = [viscous, coulomb].into_iter().flatten().collect();
-                known.iter().for_each(|&k| self.start[k] = 1.0);
-                let speeds = match known.as_slice() {
-                    &[v, c] => column(v).zip(column(c)).and_then(|(v, c)| {
-                        let (vv, vc, cc) = (product(v, v), product(v, c), product(c, c));
-                        (cc > 0.0 && vc > 0.0).then(|| [vc / cc, vv / vc])
-                    }),
-                    _ => None,
-                };
-                match (speeds, known.as_slice()) {
-                    (Some(speeds), &[v, c]) => {
-                        self.positive.extend(speeds.map(|speed| vec![(c, 1.0), (v, speed)]));
-                    }
-                    _ => self.positive.extend(known.iter().map(|&k| vec![(k, 1.0)])),
+        let of_frame = |frame: usize| {
+            [(Fv, Fc), (Fvm, Fcm)].map(|(v, c)| [v, c].map(|kind| parameter(robot, frame, kind)))
+        };
+        let of_coupling = |k: usize| {
+            let position = |kind| robot.standard.iter().position(|p| p.coupling == Some(k) && p.kind == kind);
+            [Fvc, Fcc].map(position)
+        };
+        let joints = (0..robot.frames.len()).flat_map(of_frame);
+        for pair in joints.chain((0..robot.couplings.len()).map(of_coupling)) {
+            let known: Vec<usize> = pair.into_iter().flatten().collect();
+            known.iter().for_each(|&k| self.start[k] = 1.0);
+            let speeds = match known.as_slice() {
+                &[v, c] => column(v).zip(column(c)).and_then(|(v, c)| {
+                    let (vv, vc, cc) = (product(v, v), product(v, c), product(c, c));
+                    (cc > 0.0 && vc > 0.0).then(|| [vc / cc, vv / vc])
+                }),
+                _ => None,
+            };
+            match (speeds, known.as_slice()) {
+                (Some(speeds), &[v, c]) => {
+                    self.positive.extend(speeds.map(|speed| vec![(c, 1.0), (v, speed)]));
                 }
+                _ => self.positive.extend(known.iter().map(|&k| vec![(k, 1.0)])),
             }
         }
     }

@@ -1,12 +1,12 @@
-//! Columns of rotor inertias, friction and offsets, with any transmission matrix: (3), (9), (25) and (26).
+//! Columns of rotor inertias, friction, offsets and springs, with any transmission matrix: (3), (9), (25) and (26).
 //! Equation numbers are those of Gautier and Briot.
 
 use super::error::RecursiveModelError;
-use crate::model::{Number, ParameterKind, Robot};
+use crate::model::{CouplingLaw, Number, ParameterKind, Robot, StandardParameter};
 use nalgebra::DMatrix;
 
 /// What an entry is a function of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Law {
     /// A linear form of ddq.
     Acceleration,
@@ -14,6 +14,8 @@ enum Law {
     Speed,
     /// The sign of a linear form of dq.
     Direction,
+    /// A linear form of q, less where it is at rest.
+    Stretch(f64),
     /// 1.
     Constant,
 }
@@ -28,28 +30,34 @@ pub(super) struct DriveEntry {
     law: Law,
     scale: f64,
     form: Vec<(usize, f64)>,
+    /// Its torque has a potential that the energy row holds, and belongs to the bias of M ddq + N.
+    pub is_spring: bool,
 }
 
 impl DriveEntry {
     /// The entry of IDM.
     #[inline(always)]
-    pub fn value<T: Number>(&self, dq: &[T], ddq: &[T]) -> T {
+    pub fn value<T: Number>(&self, q: &[T], dq: &[T], ddq: &[T]) -> T {
         let scale = T::constant(self.scale);
         match self.law {
             Law::Acceleration => scale * self.form_of(ddq),
             Law::Speed => scale * self.form_of(dq),
             Law::Direction => scale * self.form_of(dq).sign(),
+            Law::Stretch(rest) => scale * (self.form_of(q) - T::constant(rest)),
             Law::Constant => scale,
         }
     }
 
-    /// Twice the entry's share of its column's energy: dq_row * sum_s A[row][s] dq_s; zero for friction.
+    /// Twice the entry's share of its column's energy: dq_row * sum_s A[row][s] dq_s, of a spring the share of the row in
+    /// s (s - 2 s0), or in -2 s; zero for friction and offsets.
     #[inline(always)]
-    pub fn twice_energy<T: Number>(&self, dq: &[T]) -> T {
-        if self.law == Law::Acceleration {
-            dq[self.row] * T::constant(self.scale) * self.form_of(dq)
-        } else {
-            T::constant(0.0)
+    pub fn twice_energy<T: Number>(&self, q: &[T], dq: &[T]) -> T {
+        let scale = T::constant(self.scale);
+        match self.law {
+            Law::Acceleration => dq[self.row] * scale * self.form_of(dq),
+            Law::Stretch(rest) => q[self.row] * scale * (self.form_of(q) - T::constant(2.0 * rest)),
+            Law::Constant if self.is_spring => q[self.row] * scale * T::constant(2.0),
+            _ => T::constant(0.0),
         }
     }
 
@@ -74,17 +82,14 @@ pub(super) fn drive_entries(robot: &Robot) -> Result<Vec<DriveEntry>, RecursiveM
     let n = robot.joints();
     let gear = checked_gear(robot)?;
     let inertias = rotor_inertia_matrices(&gear);
-    // N[m][s] / N[m][m]: the speed of motor m in units of its own joint.
-    let relative = |m: usize, s: usize| gear[(m, s)] / gear[(m, m)];
-    let speed_of_motor = |m: usize| -> Vec<(usize, f64)> {
-        (0..n).map(|s| (s, relative(m, s))).filter(|&(_, c)| c != 0.0).collect()
-    };
     let joint_of_frame = robot.joint_of_frame();
     let mut entries = Vec::new();
     for (column, base) in robot.base.iter().enumerate() {
         let standard = &robot.standard[base.standard];
         let Some(j) = joint_of_frame[standard.frame] else { continue };
-        let mut push = |row, law, scale, form| entries.push(DriveEntry { row, column, law, scale, form });
+        let is_spring = standard.kind.is_spring();
+        let mut push =
+            |row, law, scale, form| entries.push(DriveEntry { row, column, law, scale, form, is_spring });
         match standard.kind {
             ParameterKind::Ia => {
                 for row in 0..n {
@@ -95,19 +100,31 @@ pub(super) fn drive_entries(robot: &Robot) -> Result<Vec<DriveEntry>, RecursiveM
                     }
                 }
             }
-            ParameterKind::Fv => push(j, Law::Speed, 1.0, vec![(j, 1.0)]),
-            ParameterKind::Fc => push(j, Law::Direction, 1.0, vec![(j, 1.0)]),
             ParameterKind::Off => push(j, Law::Constant, 1.0, Vec::new()),
-            ParameterKind::Fvm | ParameterKind::Fcm => {
-                let law = if standard.kind == ParameterKind::Fvm { Law::Speed } else { Law::Direction };
-                for (row, share) in speed_of_motor(j) {
-                    push(row, law, share, speed_of_motor(j));
+            kind => {
+                let form = robot.acts_on(standard);
+                for &(row, share) in &form {
+                    match kind {
+                        ParameterKind::K => {
+                            push(row, Law::Stretch(rest(robot, standard)), share, form.clone())
+                        }
+                        ParameterKind::KR => push(row, Law::Constant, -share, Vec::new()),
+                        _ if kind.is_viscous() => push(row, Law::Speed, share, form.clone()),
+                        _ => push(row, Law::Direction, share, form.clone()),
+                    }
                 }
             }
-            _ => {}
         }
     }
     Ok(entries)
+}
+
+/// Where a spring is at rest, as far as the table knows; 0 where it is a parameter.
+fn rest(robot: &Robot, parameter: &StandardParameter) -> f64 {
+    match parameter.coupling.and_then(|k| robot.couplings.get(k)).map(|c| c.law) {
+        Some(CouplingLaw::SpringAt(rest)) => rest,
+        _ => 0.0,
+    }
 }
 
 fn checked_gear(robot: &Robot) -> Result<DMatrix<f64>, RecursiveModelError> {

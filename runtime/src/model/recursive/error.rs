@@ -24,6 +24,12 @@ pub enum RecursiveModelError {
         /// 1-based row.
         frame: usize,
     },
+    /// Friction or a spring on joints that are not there.
+    #[error("{name}: friction or a spring on joints that are not there, or with coefficients that are none")]
+    Coupling {
+        /// Its name.
+        name: String,
+    },
     /// The gear matrix does not fit the joints.
     #[error("the gear matrix has {found} entries: {joints} joints need {}", joints * joints)]
     GearShape {

@@ -100,7 +100,7 @@ impl RecursiveModel {
             }
         });
         for (entry, &place) in self.drive.iter().zip(&self.drive_places) {
-            emit(place, entry.value(dq, ddq));
+            emit(place, entry.value(q, dq, ddq));
         }
     }
 
@@ -120,7 +120,7 @@ impl RecursiveModel {
             }
         });
         for entry in &self.drive {
-            emit(entry.column, dq[entry.row] * entry.value(dq, ddq));
+            emit(entry.column, dq[entry.row] * entry.value(q, dq, ddq));
         }
     }
 
@@ -132,7 +132,7 @@ impl RecursiveModel {
             }
         });
         for entry in &self.drive {
-            emit(entry.column, T::constant(0.5) * entry.twice_energy(dq));
+            emit(entry.column, T::constant(0.5) * entry.twice_energy(q, dq));
         }
     }
 }
@@ -217,6 +217,9 @@ impl Model for RecursiveModel {
             for (s, inertia) in entry.inertia() {
                 mass[entry.row * n + s] += chi[entry.column] * inertia;
             }
+            if entry.is_spring {
+                bias[entry.row] += chi[entry.column] * entry.value(q, dq, dq);
+            }
         }
     }
 
@@ -224,7 +227,7 @@ impl Model for RecursiveModel {
         let (bodies, gravity) = (self.bodies(chi), self.robot.gravity);
         rigid_torques((&self.links, &bodies), gravity, [q, dq, ddq], |joint, value| torque[joint] = value);
         for entry in &self.drive {
-            torque[entry.row] += chi[entry.column] * entry.value(dq, ddq);
+            torque[entry.row] += chi[entry.column] * entry.value(q, dq, ddq);
         }
     }
 
@@ -235,7 +238,7 @@ impl Model for RecursiveModel {
                 group.write(&mut out[joint * stride..], value);
             });
             for entry in &self.drive {
-                let value = Lanes::splat(chi[entry.column]) * entry.value(dq, ddq);
+                let value = Lanes::splat(chi[entry.column]) * entry.value(q, dq, ddq);
                 group.add(&mut out[entry.row * stride..], value);
             }
         });

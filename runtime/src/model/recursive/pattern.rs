@@ -3,7 +3,7 @@
 use super::columns::standard_idm;
 use super::error::{MAX_FRAMES, RecursiveModelError};
 use super::kinematics::Link;
-use crate::model::Robot;
+use crate::model::{CouplingLaw, Robot};
 use dynid_description::MAX_TERMS;
 
 /// Entries of one (joint, frame) block that are wanted: (place among the ten columns, entry of the pattern).
@@ -24,6 +24,16 @@ pub(super) fn check(robot: &Robot) -> Result<(), RecursiveModelError> {
         let fits = dependent.terms.iter().all(|&(joint, c)| joint < robot.joints() && c.is_finite());
         if dependent.frame >= found || dependent.terms.len() > MAX_TERMS || !fits {
             return Err(RecursiveModelError::Dependent { frame: dependent.frame.saturating_add(1) });
+        }
+    }
+    for coupling in robot.couplings.iter() {
+        let known = |&(joint, c): &(usize, f64)| joint < robot.joints() && c.is_finite();
+        let rest = match coupling.law {
+            CouplingLaw::SpringAt(rest) => rest,
+            _ => 0.0,
+        };
+        if coupling.terms.is_empty() || !coupling.terms.iter().all(known) || !rest.is_finite() {
+            return Err(RecursiveModelError::Coupling { name: coupling.name.to_string() });
         }
     }
     for base in robot.base.iter() {

@@ -250,8 +250,10 @@ fn parameter_sizes(robot: &Robot, chi: Option<&[f64]>) -> Vec<f64> {
         let family = match standard.kind {
             ParameterKind::MX | ParameterKind::MY | ParameterKind::MZ => 1,
             ParameterKind::M => 2,
-            ParameterKind::Fv | ParameterKind::Fvm => 3,
-            ParameterKind::Fc | ParameterKind::Off | ParameterKind::Fcm => 4,
+            ParameterKind::Off | ParameterKind::KR => 4,
+            ParameterKind::K => 5,
+            kind if kind.is_viscous() => 3,
+            kind if kind.is_coulomb() => 4,
             _ => 0,
         };
         (standard.frame, family)

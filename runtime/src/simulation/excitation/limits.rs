@@ -69,7 +69,7 @@ pub fn peak_torque_share(
     let joints: Vec<usize> = (0..n).collect();
     let kept = robot.base.iter().zip(chi).map(|(p, &value)| {
         let standard = &robot.standard[p.standard];
-        (&*p.name, standard.kind, standard.frame, value)
+        (&*p.name, standard, value)
     });
     let friction = DriveFriction::new(robot, kept, &joints, false)?;
     let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
