@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector3;
 
 use crate::body::Body;
+use crate::coaxial::links_between;
 use crate::document::Urdf;
 use crate::frames::{Frames, Row, frames};
 use crate::joint::{Joint, JointType};
@@ -61,9 +62,10 @@ pub fn import(urdf: &Urdf, file: &str, options: &ImportOptions) -> Result<Import
     }
     let mut warnings = urdf.warnings.clone();
     warnings.extend(held(urdf, &tree));
-    warnings.extend(without_mass(urdf, &tree));
+    let between = links_between(urdf, &tree);
+    warnings.extend(without_mass(urdf, &tree, &between));
     warnings.extend(friction_of_followers(urdf, &tree));
-    let yaml = Writer { urdf, tree: &tree, frames: &frames, options }.yaml(file);
+    let yaml = Writer { urdf, tree: &tree, frames: &frames, between: &between, options }.yaml(file);
     let own = tree.bodies.iter().filter(|m| m.follows.is_none());
     let joints = own.map(|m| urdf.joints[m.joint].name.clone()).collect();
     Ok(Imported { yaml, joints, warnings })
@@ -83,7 +85,7 @@ fn held(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
     tree.held.iter().map(joint).map(words).collect()
 }
 
-fn without_mass(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
+fn without_mass(urdf: &Urdf, tree: &Tree, between: &[usize]) -> Vec<Mistake> {
     let massless =
         |links: &[(usize, Pose)]| links.iter().all(|(link, _)| urdf.links[*link].inertial.is_none());
     let words = |link: usize| {
@@ -93,7 +95,8 @@ fn without_mass(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
         );
         Mistake::new(urdf.links[link].place, words)
     };
-    tree.bodies.iter().filter(|m| massless(&m.links)).map(|m| words(m.links[0].0)).collect()
+    let bodies = tree.bodies.iter().enumerate().filter(|(k, m)| massless(&m.links) && !between.contains(k));
+    bodies.map(|(_, m)| words(m.links[0].0)).collect()
 }
 
 fn friction_of_followers(urdf: &Urdf, tree: &Tree) -> Vec<Mistake> {
@@ -114,6 +117,8 @@ struct Writer<'a> {
     urdf: &'a Urdf,
     tree: &'a Tree,
     frames: &'a Frames,
+    /// Bodies that are none: links between joints about one axis.
+    between: &'a [usize],
     options: &'a ImportOptions,
 }
 
@@ -144,6 +149,7 @@ impl Writer<'_> {
             let _ = writeln!(text, "  - {row:widest$}   # {}", shown(name));
         }
         text.push_str(&self.drive());
+        text.push_str(&self.massless());
         text.push_str(&self.limits());
         text.push_str(&self.nominal());
         text
@@ -208,6 +214,18 @@ impl Writer<'_> {
     fn own_joints(&self) -> impl Iterator<Item = &Joint> {
         let own = self.tree.bodies.iter().filter(|m| m.follows.is_none());
         own.map(|m| &self.urdf.joints[m.joint])
+    }
+
+    /// Rows between the joints of one sum.
+    fn massless(&self) -> String {
+        if self.between.is_empty() {
+            return String::new();
+        }
+        let rows: Vec<String> = self.between.iter().map(|&k| self.frames.number[k].to_string()).collect();
+        format!(
+            "massless: [{}]            # between joints about one axis, of which one mimics another\n",
+            rows.join(", ")
+        )
     }
 
     fn drive(&self) -> String {

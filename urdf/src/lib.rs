@@ -24,6 +24,7 @@
 mod angles;
 mod attributes;
 mod body;
+mod coaxial;
 mod connections;
 mod document;
 mod frames;
@@ -47,6 +48,6 @@ pub use import::{ImportOptions, Imported, import};
 pub use mistake::{Mistake, Place};
 pub use mjcf::write_mjcf;
 pub use pose::Pose;
-pub use skeleton::{Segment, Skeleton, Unlike, armatures, value};
+pub use skeleton::{Mimic, Segment, Skeleton, Tendon, Unlike, armatures, value};
 pub use template::{JointFriction, Template, TemplateBody};
 pub use write_urdf::write_urdf;

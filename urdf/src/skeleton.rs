@@ -10,7 +10,7 @@ use crate::joint::JointType;
 use crate::pose::Pose;
 use crate::screw::Screw;
 use crate::tree::Tree;
-use dynid_description::{Frame, JointKind, ParameterKind, Robot};
+use dynid_description::{CouplingLaw, Frame, JointKind, Motion, ParameterKind, Robot};
 
 /// A robot as bodies on joints.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,34 @@ pub struct Skeleton {
     pub base: String,
     /// Bodies, parents before children.
     pub segments: Vec<Segment>,
+    /// Friction between links and springs.
+    pub tendons: Vec<Tendon>,
+}
+
+/// What moves with another joint: q = multiplier * q of that joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mimic {
+    /// The segment whose joint has the variable.
+    pub segment: usize,
+    /// Of a revolute joint a whole number, of a prismatic one m/rad or 1.
+    pub multiplier: f64,
+}
+
+/// Friction and a spring on a combination of joint positions: a fixed tendon of MJCF.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tendon {
+    /// Its name.
+    pub name: String,
+    /// Segments and coefficients.
+    pub terms: Vec<(usize, f64)>,
+    /// Viscous friction, not below 0.
+    pub damping: f64,
+    /// Coulomb friction, not below 0.
+    pub friction: f64,
+    /// Stiffness, not below 0.
+    pub stiffness: f64,
+    /// Where the spring is at rest.
+    pub rest: f64,
 }
 
 /// A joint and the body that it moves.
@@ -54,6 +82,11 @@ pub struct Segment {
     pub friction: f64,
     /// Rotor inertia at the joint.
     pub armature: f64,
+    /// What moves its joint, where that has no variable of its own.
+    pub mimic: Option<Mimic>,
+    /// Further joints about the same axis, one behind the other, which move with others: a frame that moves with a sum of
+    /// joint variables is moved by as many joints.
+    pub further: Vec<Mimic>,
 }
 
 /// Standard parameters of one frame as a body.
@@ -65,6 +98,22 @@ pub fn body_of_frame(robot: &Robot, standard: &[f64], frame: usize) -> Body {
 pub fn value(robot: &Robot, standard: &[f64], frame: usize, kind: ParameterKind) -> f64 {
     let at = robot.standard.iter().position(|p| p.frame == frame && p.kind == kind);
     at.and_then(|k| standard.get(k)).copied().unwrap_or(0.0)
+}
+
+/// What moves a frame, with joints in the place of their segments: its axis along or against z, what its own joint mimics where
+/// it has no variable of its own, and what further joints about this axis mimic.
+fn moved(motion: &Motion, own: Option<usize>) -> (f64, Option<Mimic>, Vec<Mimic>) {
+    let mimic = |segment: usize, multiplier: f64| Mimic { segment, multiplier };
+    let coefficient = own.and_then(|own| motion.terms.iter().find(|t| t.0 == own)).map_or(1.0, |t| t.1);
+    let axis = coefficient.signum();
+    let mut further: Vec<Mimic> = Vec::new();
+    if let (Some(own), true) = (own, coefficient.abs() != 1.0) {
+        further.push(mimic(own, coefficient.abs() - 1.0));
+    }
+    further
+        .extend(motion.terms.iter().filter(|t| Some(t.0) != own).map(|&(joint, c)| mimic(joint, axis * c)));
+    let first = (own.is_none() && !further.is_empty()).then(|| further.remove(0));
+    (axis, first, further)
 }
 
 /// Pose of a frame of the table in its parent's, its joint at 0.
@@ -93,12 +142,43 @@ pub fn armatures(robot: &Robot, standard: &[f64]) -> Vec<f64> {
     }
 }
 
+/// Friction between links and springs of a table.
+fn tendons(robot: &Robot, standard: &[f64], segment_of: &[usize]) -> Vec<Tendon> {
+    let tendon = |(k, coupling): (usize, &dynid_description::Coupling)| {
+        let value = |kind: ParameterKind| {
+            let at = robot.standard.iter().position(|p| p.coupling == Some(k) && p.kind == kind);
+            at.and_then(|at| standard.get(at)).copied().unwrap_or(0.0)
+        };
+        let terms = coupling.terms.iter().filter_map(|&(joint, c)| Some((*segment_of.get(joint)?, c)));
+        let stiffness = value(ParameterKind::K).max(0.0);
+        let rest = match coupling.law {
+            CouplingLaw::SpringAt(rest) => rest,
+            _ if stiffness > 0.0 => value(ParameterKind::KR) / stiffness,
+            _ => 0.0,
+        };
+        let kind = if coupling.law == CouplingLaw::Friction { "friction" } else { "spring" };
+        Tendon {
+            name: format!("{kind}{}", coupling.name),
+            terms: terms.collect(),
+            damping: value(ParameterKind::Fvc).max(0.0),
+            friction: value(ParameterKind::Fcc).max(0.0),
+            stiffness,
+            rest,
+        }
+    };
+    robot.couplings.iter().enumerate().map(tendon).collect()
+}
+
 impl Skeleton {
-    /// A table and its standard parameters. Fixed frames are part of what carries them, those on the base are left out.
+    /// A table and its standard parameters. Fixed frames are part of what carries them, those on the base are left out. A frame
+    /// that moves with several joint variables has several joints about its axis, of which all but one mimic others.
     pub fn of_table(robot: &Robot, standard: &[f64]) -> Skeleton {
         let joints = robot.joint_of_frame();
         let armature = armatures(robot, standard);
+        let motions = robot.motions();
         let mut segments: Vec<Segment> = Vec::new();
+        // The segment of each joint.
+        let mut segment_of: Vec<usize> = Vec::new();
         // For each frame the segment that carries it, and its pose there.
         let mut carried: Vec<(Option<usize>, Pose)> = Vec::new();
         for (k, frame) in robot.frames.iter().enumerate() {
@@ -106,34 +186,46 @@ impl Skeleton {
                 frame.parent.and_then(|p| carried.get(p)).copied().unwrap_or((None, Pose::identity()));
             let origin = pose.then(&row_pose(frame));
             let body = body_of_frame(robot, standard, k);
-            let Some(j) = joints[k] else {
+            let own = joints[k];
+            if motions[k].kind == JointKind::Fixed {
                 if let Some(carrier) = carrier {
                     segments[carrier].body = segments[carrier].body.with(&body.seen_from(&origin));
                 }
                 carried.push((carrier, origin));
                 continue;
-            };
+            }
             let number = k + 1;
-            let largest = |limits: &[[f64; 2]]| limits.get(j).map(|[low, high]| low.abs().max(high.abs()));
+            let limit = |limits: &[[f64; 2]]| own.and_then(|j| limits.get(j).copied());
+            let largest = |limits: &[[f64; 2]]| limit(limits).map(|[low, high]| low.abs().max(high.abs()));
+            let (axis, mimic, further) = moved(&motions[k], own);
             segments.push(Segment {
                 link: format!("link{number}"),
                 joint: format!("joint{number}"),
                 parent: carrier,
                 origin,
-                kind: frame.kind,
-                axis: Vector3::z(),
-                position: robot.limits.position.get(j).copied(),
+                kind: motions[k].kind,
+                axis: Vector3::z() * axis,
+                position: limit(&robot.limits.position),
                 velocity: largest(&robot.limits.velocity),
                 effort: largest(&robot.limits.torque),
                 body,
                 damping: value(robot, standard, k, ParameterKind::Fv).max(0.0),
                 friction: value(robot, standard, k, ParameterKind::Fc).max(0.0),
-                armature: armature.get(j).copied().unwrap_or_default(),
+                armature: own.and_then(|j| armature.get(j).copied()).unwrap_or_default(),
+                mimic,
+                further,
             });
+            segment_of.extend(own.map(|_| segments.len() - 1));
             carried.push((Some(segments.len() - 1), Pose::identity()));
         }
+        for segment in &mut segments {
+            for mimic in segment.mimic.iter_mut().chain(&mut segment.further) {
+                mimic.segment = segment_of.get(mimic.segment).copied().unwrap_or_default();
+            }
+        }
         let gravity = Vector3::from(robot.gravity);
-        Skeleton { name: robot.name.to_string(), gravity, base: "base".to_owned(), segments }
+        let tendons = tendons(robot, standard, &segment_of);
+        Skeleton { name: robot.name.to_string(), gravity, base: "base".to_owned(), segments, tendons }
     }
 
     /// The part of a URDF that a tree is, with its own names and frames.
@@ -158,6 +250,8 @@ impl Skeleton {
                 damping: joint.damping.unwrap_or(0.0).max(0.0),
                 friction: joint.friction.unwrap_or(0.0).max(0.0),
                 armature: 0.0,
+                mimic: None,
+                further: Vec::new(),
             }
         };
         Skeleton {
@@ -165,6 +259,7 @@ impl Skeleton {
             gravity,
             base: urdf.links[tree.base].name.clone(),
             segments: tree.bodies.iter().map(segment).collect(),
+            tendons: Vec::new(),
         }
     }
 

@@ -170,6 +170,7 @@ impl<'a> Template<'a> {
         let table = Skeleton::of_table(robot, standard);
         let mut skeleton = self.skeleton.clone();
         skeleton.gravity = table.gravity;
+        skeleton.tendons = table.tendons;
         for ((own, new), pose) in skeleton.segments.iter_mut().zip(table.segments).zip(&self.in_link) {
             own.body = new.body.seen_from(pose);
             (own.damping, own.friction, own.armature) = (new.damping, new.friction, new.armature);

@@ -6,12 +6,12 @@ use nalgebra::{Rotation3, Vector3};
 
 use crate::body::Body;
 use crate::pose::Pose;
-use crate::skeleton::{Segment, Skeleton};
+use crate::skeleton::{Mimic, Segment, Skeleton};
 use crate::text::{number, plain};
 use dynid_description::JointKind;
 
 /// The URDF of a robot. Its root link `world` has gravity along -z, as every reader takes it; a URDF cannot hold how large
-/// gravity is.
+/// gravity is. A segment that moves with several joint variables stands behind as many joints and links without mass.
 pub fn write_urdf(skeleton: &Skeleton) -> String {
     let mut text = String::from("<?xml version=\"1.0\"?>\n");
     // Writing to a String cannot fail.
@@ -29,7 +29,7 @@ pub fn write_urdf(skeleton: &Skeleton) -> String {
     }
     let _ = writeln!(text, "  <link name=\"{base}\"/>");
     for segment in &skeleton.segments {
-        joint(&mut text, skeleton, segment);
+        joints(&mut text, skeleton, segment);
         let _ = writeln!(text, "  <link name=\"{}\">", escaped(&segment.link));
         if let Some(inertial) = inertial(&segment.body, "    ", "\n") {
             let _ = writeln!(text, "    {inertial}");
@@ -39,19 +39,47 @@ pub fn write_urdf(skeleton: &Skeleton) -> String {
     text + "</robot>\n"
 }
 
-fn joint(text: &mut String, skeleton: &Skeleton, segment: &Segment) {
+/// Name of a joint about the axis of a segment that mimics another one.
+fn further_name(skeleton: &Skeleton, segment: &Segment, mimic: &Mimic) -> String {
+    format!("{}_with_{}", segment.joint, skeleton.segments[mimic.segment].joint)
+}
+
+/// The joint of a segment, and the further ones about its axis with the links between them.
+fn joints(text: &mut String, skeleton: &Skeleton, segment: &Segment) {
+    let parent = segment.parent.map_or(&skeleton.base, |p| &skeleton.segments[p].link);
+    let names: Vec<String> = segment.further.iter().map(|m| further_name(skeleton, segment, m)).collect();
+    // Behind each joint but the last stands a link that is named after the next one.
+    let link = |place: usize| names.get(place).map_or(segment.link.clone(), |next| format!("before_{next}"));
+    joint(text, skeleton, segment, [parent, &link(0)]);
+    for (k, (name, mimic)) in names.iter().zip(&segment.further).enumerate() {
+        let _ = writeln!(text, "  <link name=\"{}\"/>", escaped(&link(k)));
+        let moved = Segment {
+            joint: name.clone(),
+            origin: Pose::identity(),
+            position: None,
+            velocity: None,
+            effort: None,
+            damping: 0.0,
+            friction: 0.0,
+            mimic: Some(*mimic),
+            ..segment.clone()
+        };
+        joint(text, skeleton, &moved, [&link(k), &link(k + 1)]);
+    }
+}
+
+fn joint(text: &mut String, skeleton: &Skeleton, segment: &Segment, [parent, child]: [&str; 2]) {
     let kind = match (segment.kind, segment.position) {
         (JointKind::Prismatic, _) => "prismatic",
         (_, Some(_)) => "revolute",
         (_, None) => "continuous",
     };
-    let parent = segment.parent.map_or(&skeleton.base, |p| &skeleton.segments[p].link);
     let _ = writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&segment.joint));
     let _ = writeln!(
         text,
         "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>",
         escaped(parent),
-        escaped(&segment.link)
+        escaped(child)
     );
     let axis = segment.axis;
     let _ = writeln!(
@@ -73,6 +101,10 @@ fn joint(text: &mut String, skeleton: &Skeleton, segment: &Segment) {
         plain(effort),
         plain(velocity)
     );
+    if let Some(mimic) = &segment.mimic {
+        let master = escaped(&skeleton.segments[mimic.segment].joint);
+        let _ = writeln!(text, "    <mimic joint=\"{master}\" multiplier=\"{}\"/>", plain(mimic.multiplier));
+    }
     if segment.damping != 0.0 || segment.friction != 0.0 {
         let _ = writeln!(
             text,

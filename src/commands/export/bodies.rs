@@ -62,13 +62,11 @@ impl Fitted {
                     arguments.what
                 )));
             };
-            refuse_dependent(&robot, &arguments.what)?;
             let standard = nominal.standard.to_vec();
             return Ok(Self { prior: standard.clone(), standard, robot, identified: None });
         }
         let identified = read_model(path)?;
         let robot = own_dynamics(&identified, path)?.model().robot().clone();
-        refuse_dependent(&robot, &arguments.what)?;
         let template = template.map(|file| file.of(&robot, arguments)).transpose()?;
         let nominal =
             identified.table.as_ref().and_then(|table| table.nominal.as_ref()).or(robot.nominal.as_ref());
@@ -86,16 +84,6 @@ impl Fitted {
             None => "the robot's nominal parameters, as they are".to_owned(),
         }
     }
-}
-
-/// A frame that moves with the difference of two joints has no words in either format.
-fn refuse_dependent(robot: &Robot, what: &str) -> Result<(), Failure> {
-    let Some(first) = robot.dependent.first() else { return Ok(()) };
-    Err(Failure::Input(format!(
-        "{what}: frame {} moves with a combination of joints; a URDF joint mimics one other joint only, and neither URDF nor \
-         MJCF is written of such a robot. --to c and --to rust are",
-        first.frame + 1
-    )))
 }
 
 /// A table without a template, as bodies.

@@ -133,6 +133,8 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
     for (k, p) in robot.standard.iter().enumerate() {
         let value = fitted.standard[k];
         let formula = match p.coupling.and_then(|c| robot.couplings.get(c)) {
+            // A fixed tendon, where it gives no power.
+            Some(_) if to == Target::Mjcf && (value >= 0.0 || p.kind == ParameterKind::KR) => None,
             Some(coupling) => of_coupling(robot, p, coupling, value),
             None => formula(robot, p.kind, p.frame, value, to),
         };
