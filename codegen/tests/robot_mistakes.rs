@@ -331,7 +331,7 @@ fn what_is_known_is_no_base_parameter_or_one_with_a_value() {
         robot.fixed_base().into_iter().map(|(k, value)| (&*robot.base[k].name, value)).collect();
     assert_eq!(fixed, [("Fv1", 4.0), ("Ia2", 0.3)]);
     assert!(robot.base.iter().any(|p| p.relation.starts_with("ZZ1 + Ia1 + 0.01*M2")), "{:?}", robot.base);
-    let nominal = robot.nominal.as_ref().unwrap();
+    let nominal = robot.nominal.as_ref().expect("the table has nominal values");
     assert_eq!(robot.base_from_standard(&nominal.standard)[robot.fixed_base()[0].0], 4.0);
 }
 
