@@ -5,8 +5,10 @@ mod common;
 
 use common::{Folder, MANIFEST, error_of, moving};
 use dynid::models;
-use dynid_codegen::{Real, export_c, export_rust};
-use dynid_runtime::model::Model;
+use dynid_codegen::base::base_set;
+use dynid_codegen::robot::parse;
+use dynid_codegen::{Real, export_c, export_rust, numeric_robot};
+use dynid_runtime::model::{Model, RecursiveModel};
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
@@ -220,7 +222,11 @@ fn exported_c_compiles_without_a_warning_and_gives_the_numbers_of_the_library_un
     if !sanitizers {
         println!("skipped: {cc} has no sanitizers");
     }
-    for &model in models::all() {
+    // Friction of a belt, springs, and a prismatic joint.
+    let text = include_bytes!("formats/tethered.yaml");
+    let table = parse("tethered.yaml", text).unwrap();
+    let tethered = RecursiveModel::new(numeric_robot(&table, &base_set(&table))).unwrap();
+    for model in models::all().iter().copied().chain([&tethered as &dyn Model]) {
         let (robot, n) = (model.robot(), model.robot().joints());
         let chi = values(3, robot.base.len());
         for (real, kind, tolerance) in [(Real::Double, "double", 1e-12), (Real::Single, "float", 1e-4)] {
