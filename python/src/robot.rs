@@ -143,11 +143,8 @@ impl PyRobot {
         let numbers = writable.as_slice_mut().map_err(|why| error(format!("out: {why}")))?;
         let (views, model, is_fresh) = (signals.views(), self.model(), out.is_none());
         py.detach(|| {
-            if !is_fresh {
-                numbers.fill(0.0);
-            }
             let mut dense = DenseRegressor::new(model);
-            views.blocks(|range, states| dense.write(&range, states, numbers));
+            views.blocks(|range, states| dense.write(&range, states, numbers, is_fresh));
         });
         drop(writable);
         if signals.single && out.is_none() {
