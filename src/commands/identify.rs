@@ -162,7 +162,8 @@ fn identify(
         simulated::at_once(whole, recording)?;
         let plan = simulated::Plan::read(plan, model.robot().joints())?;
         let method = arguments.method;
-        let task = simulated::Task { method, recorded, recording, plan: &plan, r_sigma: Some(arguments.r_sigma) };
+        let task =
+            simulated::Task { method, recorded, recording, plan: &plan, r_sigma: Some(arguments.r_sigma) };
         let found = task.identify(torques, &estimate)?;
         estimate = found.estimate;
         simulated = Some(found.simulated);
