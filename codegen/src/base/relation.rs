@@ -2,19 +2,26 @@
 
 use crate::exact::Form;
 
+/// Parameters with one factor, each with its sign within the product.
+struct Product<'a> {
+    sign: char,
+    factor: String,
+    names: Vec<(char, &'a str)>,
+}
+
 /// `ZZ1 + Ia1 + d3^2*(M3 + M4)`: the kept parameter, and what was regrouped into it with its factors. Parameters with the
 /// same factor, but for its sign, stand together where the first of them does.
 pub(super) fn relation(kept: &str, regrouped: &[(&str, &Form)]) -> String {
-    let mut products: Vec<(char, String, Vec<(char, &str)>)> = Vec::new();
+    let mut products: Vec<Product<'_>> = Vec::new();
     for &(name, form) in regrouped {
         let (sign, factor) = form.signed_factor();
-        match products.iter_mut().find(|(_, other, _)| !factor.is_empty() && *other == factor) {
-            Some((first, _, names)) => names.push((if sign == *first { '+' } else { '-' }, name)),
-            None => products.push((sign, factor, vec![('+', name)])),
+        match products.iter_mut().find(|product| !factor.is_empty() && product.factor == factor) {
+            Some(product) => product.names.push((if sign == product.sign { '+' } else { '-' }, name)),
+            None => products.push(Product { sign, factor, names: vec![('+', name)] }),
         }
     }
     let mut text = kept.to_owned();
-    for (sign, factor, names) in &products {
+    for Product { sign, factor, names } in &products {
         let names: Vec<String> = names
             .iter()
             .enumerate()
