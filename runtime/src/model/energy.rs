@@ -43,6 +43,7 @@ pub fn energy_at(model: &dyn Model, chi: &[f64], q: &[f64], dq: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::model::{
         BaseParameter, Drive, Frame, JointKind, Limits, RecursiveModel, Robot, StandardParameter,
