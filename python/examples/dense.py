@@ -33,7 +33,7 @@ report("dense, the same memory again, arrays in rows", lambda: r.regressor(*in_r
 report("torques, arrays in rows", lambda: r.torque(r.chi, *in_rows))
 
 
-def pinocchio_loop(samples=5000):
+def pinocchio_loop(most=5000):
     """The regressor of the same axes (60 standard inertial columns) by a loop in Python, as there is none over states."""
     import pinocchio as pin
 
@@ -46,7 +46,7 @@ def pinocchio_loop(samples=5000):
         offset = np.array([d, 0, 0]) + turn @ np.array([0, 0, r])
         place = pin.SE3(turn @ pin.AngleAxis(theta, np.eye(3)[2]).matrix(), offset)
         parent = model.addJoint(parent, pin.JointModelRZ(), place, f"joint{j + 1}")
-    data = model.createData()
+    data, samples = model.createData(), min(most, len(in_rows[0]))
     q, dq, ddq = (x[:samples] for x in in_rows)
     out = np.empty((samples, 6, 60))
 
