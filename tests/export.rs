@@ -25,6 +25,17 @@ fn compiler() -> Option<String> {
     found.then_some(name)
 }
 
+/// The compilers that exported C is tried with: the machine's, and clang where it is another one.
+fn compilers() -> Vec<String> {
+    let Some(own) = compiler() else { return Vec::new() };
+    let clang = Command::new("clang").arg("--version").output().is_ok_and(|o| o.status.success());
+    if !clang {
+        println!("skipped: there is no clang");
+    }
+    let other = (clang && own != "clang").then(|| "clang".to_owned());
+    [own].into_iter().chain(other).collect()
+}
+
 fn rustc() -> Command {
     let mut command = Command::new(std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned()));
     command.args(["--edition", "2024", "-D", "warnings", "-C", "opt-level=1"]);
@@ -211,39 +222,156 @@ fn assert_close(found: &[f64], model: &dyn Model, chi: &[f64], tolerance: f64, w
     }
 }
 
-#[test]
-fn exported_c_compiles_without_a_warning_and_gives_the_numbers_of_the_library_under_sanitizers() {
-    let Some(cc) = compiler() else { return };
-    let folder = Folder::new("export-c");
+/// Whether programs that a compiler makes with sanitizers run here.
+fn has_sanitizers(cc: &str, folder: &Folder) -> bool {
     folder.write("empty.c", "int main(void) { return 0; }\n");
-    let mut trial = Command::new(&cc);
+    let mut trial = Command::new(cc);
     trial.args(["-fsanitize=address,undefined", "empty.c", "-o", "empty"]).current_dir(&folder.0);
-    let sanitizers = trial.output().is_ok_and(|o| o.status.success());
-    if !sanitizers {
+    let made = trial.output().is_ok_and(|o| o.status.success());
+    let runs = made && Command::new(folder.path("empty")).output().is_ok_and(|o| o.status.success());
+    if !runs {
         println!("skipped: {cc} has no sanitizers");
     }
+    runs
+}
+
+#[test]
+fn exported_c_compiles_without_a_warning_and_gives_the_numbers_of_the_library_under_sanitizers() {
     // Friction of a belt, springs, and a prismatic joint.
-    let text = include_bytes!("formats/tethered.yaml");
-    let table = parse("tethered.yaml", text).unwrap();
+    let table = parse("tethered.yaml", include_bytes!("formats/tethered.yaml")).unwrap();
     let tethered = RecursiveModel::new(numeric_robot(&table, &base_set(&table))).unwrap();
-    for model in models::all().iter().copied().chain([&tethered as &dyn Model]) {
-        let (robot, n) = (model.robot(), model.robot().joints());
-        let chi = values(3, robot.base.len());
-        for (real, kind, tolerance) in [(Real::Double, "double", 1e-12), (Real::Single, "float", 1e-4)] {
-            let files = export_c(robot, None, real).unwrap();
-            let name = &files.name;
-            folder.write(&format!("{name}.h"), &files.header).write(&format!("{name}.c"), &files.source);
-            folder.write("main.c", &driver(name, kind));
-            let mut command = Command::new(&cc);
-            command.args(WARNINGS).arg("-O1");
-            if sanitizers {
-                command.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+    for cc in compilers() {
+        let folder = Folder::new(&format!("export-{}", cc.replace('/', "-")));
+        let sanitizers = has_sanitizers(&cc, &folder);
+        for model in models::all().iter().copied().chain([&tethered as &dyn Model]) {
+            let (robot, n) = (model.robot(), model.robot().joints());
+            let chi = values(3, robot.base.len());
+            for (real, kind, tolerance) in [(Real::Double, "double", 1e-12), (Real::Single, "float", 1e-4)] {
+                let files = export_c(robot, None, real).unwrap();
+                let name = &files.name;
+                folder.write(&format!("{name}.h"), &files.header).write(&format!("{name}.c"), &files.source);
+                folder.write("main.c", &driver(name, kind));
+                let mut command = Command::new(&cc);
+                command.args(WARNINGS).arg("-O1");
+                if sanitizers {
+                    command.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+                }
+                command.args(["main.c", &format!("{name}.c"), "-lm", "-o", "main"]).current_dir(&folder.0);
+                done(&mut command);
+                let found = printed(&folder, "main", &inputs(&chi, n));
+                assert_close(&found, model, &chi, tolerance, &format!("{name} {kind} {cc}"));
             }
-            command.args(["main.c", &format!("{name}.c"), "-lm", "-o", "main"]).current_dir(&folder.0);
-            done(&mut command);
-            let found = printed(&folder, "main", &inputs(&chi, n));
-            assert_close(&found, model, &chi, tolerance, &format!("{name} {kind}"));
         }
+    }
+}
+
+/// What CasADi does with a library: asks for shapes, lends room, calls; with inputs and outputs that are not there.
+const CASADI_DRIVER: &str = r#"#include "tx40.h"
+#include <stdio.h>
+#include <string.h>
+typedef long long int casadi_int;
+casadi_int casadi_tx40_idm_n_in(void);
+casadi_int casadi_tx40_mass_and_bias_n_out(void);
+const char *casadi_tx40_tau_name_in(casadi_int i);
+const casadi_int *casadi_tx40_idm_sparsity_out(casadi_int i);
+const casadi_int *casadi_tx40_tau_sparsity_in(casadi_int i);
+int casadi_tx40_idm_work(casadi_int *a, casadi_int *b, casadi_int *c, casadi_int *d);
+int casadi_tx40_mass_and_bias_work(casadi_int *a, casadi_int *b, casadi_int *c, casadi_int *d);
+int casadi_tx40_idm(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+int casadi_tx40_tau(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+int casadi_tx40_mass_and_bias(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+static double chi[TX40_NB], q[TX40_N] = {0.3, -1, 2, 0.5, 1, -2}, dq[TX40_N] = {1, 2, -1, 0.5, 3, 1};
+static double w[10000], entries[TX40_ENTRIES], tau[TX40_N], product[TX40_N], bias[TX40_N];
+int main(void)
+{
+    const double *state[4] = {chi, q, dq, 0};
+    double *out[2] = {tau, 0};
+    casadi_int arg, res, iw, room;
+    int column;
+    for (column = 0; column < TX40_NB; column++)
+        chi[column] = 0.1 * column - 2;
+    if (casadi_tx40_idm_n_in() != 3 || strcmp(casadi_tx40_tau_name_in(0), "chi") || casadi_tx40_tau_name_in(4))
+        return 1;
+    if (casadi_tx40_tau_sparsity_in(0)[0] != TX40_NB || casadi_tx40_tau_sparsity_in(0)[2] != 1)
+        return 2;
+    casadi_tx40_idm_work(&arg, &res, &iw, &room);
+    if (arg != 3 || res != 1 || iw != 0 || room > 10000)
+        return 3;
+    /* Accelerations that are not there are zero. */
+    casadi_tx40_tau(state, out, 0, w, 0);
+    out[0] = entries;
+    casadi_tx40_idm(state + 1, out, 0, w, 0);
+    const casadi_int *sparsity = casadi_tx40_idm_sparsity_out(0), *starts = sparsity + 2, *rows = starts + TX40_NB + 1;
+    if (sparsity[0] != TX40_N || sparsity[1] != TX40_NB || starts[TX40_NB] != TX40_ENTRIES)
+        return 4;
+    for (column = 0; column < TX40_NB; column++)
+        for (casadi_int e = starts[column]; e < starts[column + 1]; e++)
+            product[rows[e]] += entries[e] * chi[column];
+    for (int j = 0; j < TX40_N; j++)
+        if (tau[j] - product[j] > 1e-9 || product[j] - tau[j] > 1e-9)
+            return 5;
+    /* A mass matrix that is not wanted. */
+    casadi_tx40_mass_and_bias_work(0, 0, 0, &room);
+    out[0] = 0;
+    out[1] = bias;
+    casadi_tx40_mass_and_bias(state, out, 0, w, 0);
+    out[1] = 0;
+    casadi_tx40_mass_and_bias(state, out, 0, w, 0);
+    return casadi_tx40_mass_and_bias_n_out() == 2 && bias[1] != 0 ? 0 : 6;
+}
+"#;
+
+/// The same by CasADi itself.
+const CASADI_SCRIPT: &str = r#"
+import casadi, numpy as np
+load = lambda name: casadi.external(f"casadi_tx40_{name}", "./tx40.so")
+tau, idm, forward, h = load("tau"), load("idm"), load("mass_and_bias"), load("energy")
+rng = np.random.default_rng(1)
+chi, q, dq, ddq = rng.normal(size=60), *rng.normal(size=(3, 6))
+assert idm.size_out(0) == (6, 60) and idm.nnz_out() == 164
+torque = np.array(tau(chi, q, dq, ddq)).ravel()
+assert np.allclose(torque, np.array(casadi.mtimes(idm(q, dq, ddq), chi)).ravel(), atol=1e-10)
+mass, bias = forward(chi, q, dq)
+column = np.array(tau(chi, q, dq, ddq) - tau(chi, q, dq, 0)).ravel()
+assert np.allclose(np.array(casadi.mtimes(mass, ddq)).ravel(), column, atol=1e-10)
+assert h(q, dq).shape == (1, 60)
+x = casadi.MX.sym("x", 6)
+symbolic = casadi.Function("f", [x], [casadi.sumsqr(tau(chi, x, dq, ddq))])
+assert abs(float(symbolic(q)) - (torque**2).sum()) < 1e-8
+print("as CasADi has it")
+"#;
+
+#[test]
+fn casadi_loads_the_functions_that_are_exported_for_it() {
+    for cc in compilers() {
+        let folder = Folder::new(&format!("export-casadi-{}", cc.replace('/', "-")));
+        let made = folder.run(&["export", "tx40", "--to", "c", "--casadi", "--out", "."]);
+        assert!(made.status.success(), "{}", error_of(&made));
+        folder.write("main.c", CASADI_DRIVER);
+        let mut command = Command::new(&cc);
+        command.args(WARNINGS).arg("-O1").current_dir(&folder.0);
+        if has_sanitizers(&cc, &folder) {
+            command.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+        }
+        done(command.args(["main.c", "tx40.c", "tx40_casadi.c", "-lm", "-o", "main"]));
+        done(&mut Command::new(folder.path("main")));
+        let mut library = Command::new(&cc);
+        library.args(["-O1", "-shared", "-fPIC", "tx40.c", "tx40_casadi.c", "-lm", "-o", "tx40.so"]);
+        done(library.current_dir(&folder.0));
+        let python = std::env::var("DYNID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+        let there = Command::new(&python).args(["-c", "import casadi"]).output();
+        if !there.is_ok_and(|o| o.status.success()) {
+            println!("skipped: {python} has no casadi (DYNID_PYTHON names one that has)");
+            continue;
+        }
+        let ran = done(Command::new(&python).args(["-c", CASADI_SCRIPT]).current_dir(&folder.0));
+        assert!(String::from_utf8_lossy(&ran.stdout).contains("as CasADi has it"));
+    }
+    let folder = Folder::new("export-casadi-refused");
+    for other in [&["rust"][..], &["c", "--real", "f32"]] {
+        let words = [&["export", "tx40", "--casadi", "--out", ".", "--to"][..], other].concat();
+        let refused = folder.run(&words);
+        assert!(refused.status.code() == Some(2) && error_of(&refused).contains("--casadi"));
     }
 }
 
@@ -282,8 +410,14 @@ const EFFECTS: &str = r#"[
    "scale": {"speed": 2.0, "range": 3.0, "torque": 10.0, "duration": 5.0, "gear": 50.0, "prismatic": false}},
   {"effect": "presliding_hysteresis", "place": {"joint": 1}, "joints": [2], "shape": [0.1], "amplitude": [0.5],
    "sigma": [0.0],
-   "scale": {"speed": 2.0, "range": 3.0, "torque": 10.0, "duration": 5.0, "gear": 50.0, "prismatic": false}}
+   "scale": {"speed": 2.0, "range": 3.0, "torque": 10.0, "duration": 5.0, "gear": 50.0, "prismatic": false}},
+  {"effect": "payload", "place": {"link": 1}, "joints": [], "shape": [],
+   "amplitude": [0.0, 0.0, 0.0, 0.0, 0.0, 0.08, 0.3, -0.1, 0.0, 2.0],
+   "sigma": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]}
 ]"#;
+
+/// The payload among them, by the names of the link's parameters.
+const BODY: [(&str, f64); 4] = [("ZZ2", 0.08), ("MX2", 0.3), ("MY2", -0.1), ("M2", 2.0)];
 
 /// An identified planar_2r with effects, as a file; its base parameters.
 fn identified(folder: &Folder) -> Vec<f64> {
@@ -302,8 +436,13 @@ fn identified(folder: &Folder) -> Vec<f64> {
 /// Torques of the identified arm, and what the two laws that are formulas add.
 fn torques_with_laws(chi: &[f64], [q, dq, ddq]: &[Vec<f64>; 3]) -> [f64; 2] {
     let model = models::find("planar_2r").unwrap();
+    let robot = model.robot();
+    let value = |name: &str| BODY.iter().find(|(other, _)| *other == name).map_or(0.0, |(_, value)| *value);
+    let body: Vec<f64> = robot.standard.iter().map(|p| value(&p.name)).collect();
+    let with_body: Vec<f64> = chi.iter().zip(robot.base_from_standard(&body)).map(|(a, b)| a + b).collect();
     let mut tau = [0.0; 2];
-    model.torque(chi, q, dq, ddq, &mut tau);
+    model.torque(&with_body, q, dq, ddq, &mut tau);
+    // The load of a law is that of the parameters that it was fitted beside.
     let (mut mass, mut bias) = ([0.0; 4], [0.0; 2]);
     model.mass_and_bias(chi, q, dq, &mut mass, &mut bias);
     let load = mass[2] * ddq[0] + mass[3] * ddq[1] + bias[1];
@@ -324,6 +463,7 @@ fn an_identified_model_is_exported_with_its_parameters_and_laws_and_says_what_is
     }
     let header = std::fs::read_to_string(folder.path("code/planar_2r.h")).unwrap();
     assert!(header.contains("not in this code") && header.contains("exp("), "{header}");
+    assert!(header.contains("in these: Payload"), "{header}");
     let states: String =
         (0..SAMPLES).flat_map(|t| state(2, t).concat()).map(|x| format!("{x:?}\n")).collect();
 

@@ -62,7 +62,10 @@ mod numeric;
 pub mod robot;
 pub mod symbolic;
 
-pub use export::{CFiles, ExportError, Known, Law, Real, RustFile, export_c, export_rust};
+pub use export::{
+    CFiles, Carried, CasadiFile, ExportError, Known, Law, Real, RustFile, export_c, export_casadi,
+    export_rust,
+};
 pub use generate::{
     Collection, GenerateError, generate, generate_with, operation_counts, read_all, registry,
 };

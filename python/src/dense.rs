@@ -31,12 +31,12 @@ impl<'a> DenseRegressor<'a> {
         Self { model, places, lines: Vec::new(), values, size: joints * columns }
     }
 
-    /// Writes the samples of `range`, whose states are `states`, to their places in `out`, where all that is not an entry
-    /// of the pattern is zero already.
+    /// Writes the samples of `range`, whose states are `states`, to their places in `out`. Where that `is_fresh`, all that is
+    /// not an entry of the pattern is zero already.
     ///
     /// # Panics
     /// Where `out` is too short: a bug of the caller.
-    pub fn write(&mut self, range: &Range<usize>, states: States<'_>, out: &mut [f64]) {
+    pub fn write(&mut self, range: &Range<usize>, states: States<'_>, out: &mut [f64], is_fresh: bool) {
         let (entries, size) = (self.places.len(), self.size);
         let lines = range.len().div_ceil(LINE);
         self.lines.resize(lines * entries, [Lanes::splat(0.0); LINE / LANES]);
@@ -50,6 +50,10 @@ impl<'a> DenseRegressor<'a> {
             let first = range.start + line * LINE;
             for t in 0..LINE.min(range.end - first) {
                 let matrix = &mut out[(first + t) * size..][..size];
+                // Just before it is written to, so that memory is gone through once.
+                if !is_fresh {
+                    matrix.fill(0.0);
+                }
                 for (place, values) in self.places.iter().zip(self.values.chunks_exact(LINE)) {
                     matrix[*place] = values[t];
                 }

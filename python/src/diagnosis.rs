@@ -6,20 +6,26 @@ use std::sync::Arc;
 use dynid::arguments::DiagnosisOptions;
 use dynid::commands::diagnose::compare::{Test, fitted, tested};
 use dynid::commands::diagnose::{
-    confirmation_failure, diagnosis_failure, for_programs, mistakes, of_the_same_robot,
+    confirmation_failure, contradicting, diagnosis_failure, for_programs, improved, mistakes,
+    of_the_same_robot, tell_speeds,
 };
 use dynid::failure::Failure;
 use dynid::output::write;
+use dynid::pages::Prior;
 use dynid::pages::diagnosis::{Extras, page, summary};
 use dynid::recorded::{Measured, left_out_words};
+use dynid::speeds::{and_of_speeds, speed_words};
 use dynid_runtime::confirmation::diagnose_and_confirm;
 use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings};
 use dynid_runtime::recording::Trajectory;
 use pyo3::prelude::*;
 
 use crate::error::{error, of_failure};
+use crate::fit::PyFit;
 use crate::interruptible::{self, Watch};
+use crate::known;
 use crate::recording::{PyRecording, copy, one};
+use crate::robot::again;
 
 /// One effect that was found.
 #[pyclass(module = "dynid", name = "Finding", frozen)]
@@ -122,6 +128,14 @@ impl PyDiagnosis {
         }
     }
 
+    /// The model with the findings, as ``dynid diagnose --out`` saves it: to be saved, or to be the ``reference`` of a later
+    /// diagnosis.
+    #[getter]
+    fn model(&self) -> PyResult<PyFit> {
+        let identified = improved(&self.measured, &self.found.diagnosis, &self.found.extras);
+        Ok(PyFit::of(identified, again(&self.measured.dynamics)?))
+    }
+
     /// The result as ``dynid diagnose --json`` writes it.
     fn json(&self) -> PyResult<String> {
         let value = for_programs(&self.found.diagnosis, &self.found.extras).map_err(of_failure)?;
@@ -150,16 +164,36 @@ impl PyDiagnosis {
 /// Finds out which physics the standard model of a recording leaves out, and whether it holds on held-out motion.
 ///
 /// ``recordings`` is a recording or a list of them; no parameter is fitted to ``test``, which tells how much of each
-/// finding is there; with ``baseline``, recordings from before something changed, only what changed is looked for.
-/// ``progress(share, what)`` is called about every 50 ms. A recording that a wrong sign, order, unit or robot explains far
-/// better is refused, unless ``implausible``.
+/// finding is there; with ``baseline``, recordings from before something changed, only what changed is looked for; with
+/// ``reference``, a :class:`Fit` or the path of a saved model from before, its parameters and laws are no news. ``laws`` are
+/// tried beside those of the catalogue: the path of a YAML, or a list of dictionaries with id, joint, law, and where needed
+/// unit and shapes. ``progress(share, what)`` is called about every 50 ms; ``True`` is a bar of tqdm, where that is installed.
+/// A recording that a wrong sign, order, unit or robot explains far better is refused, unless ``implausible``.
+///
+/// >>> import dynid, numpy as np
+/// >>> r = dynid.Robot("planar_2r")
+/// >>> t = np.arange(0, 12, 0.005)[:, None]
+/// >>> w, phase = np.array([1.1, 1.7]), np.array([0.0, 1.0])
+/// >>> q = np.sin(w * t + phase) + 0.4 * np.sin(2.9 * w * t)
+/// >>> dq = w * np.cos(w * t + phase) + 1.16 * w * np.cos(2.9 * w * t)
+/// >>> ddq = -w**2 * np.sin(w * t + phase) - 3.364 * w**2 * np.sin(2.9 * w * t)
+/// >>> tau = r.torque(r.chi, q, dq, ddq) + np.random.default_rng(1).normal(0, 0.05, q.shape)
+/// >>> tau[:, 1] += 4 * q[:, 1]                       # nobody told the model of this spring
+/// >>> d = dynid.diagnose(dynid.Recording(robot=r, t=t[:, 0], q=q, tau=tau))
+/// >>> [(f.effect, f.joints) for f in d.findings]
+/// [('spring', [2])]
 #[pyfunction]
-#[pyo3(signature = (recordings, *, test = None, baseline = None, implausible = false, threads = 0, progress = None))]
+#[pyo3(signature = (
+    recordings, *, test = None, baseline = None, reference = None, laws = None, implausible = false, threads = 0,
+    progress = None
+))]
 pub(crate) fn diagnose(
     py: Python<'_>,
     recordings: &Bound<'_, PyAny>,
     test: Option<&Bound<'_, PyAny>>,
     baseline: Option<&Bound<'_, PyAny>>,
+    reference: Option<&Bound<'_, PyAny>>,
+    laws: Option<&Bound<'_, PyAny>>,
     implausible: bool,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
@@ -172,12 +206,23 @@ pub(crate) fn diagnose(
             .map_err(of_failure)?;
         Ok(Some((other.path, own)))
     };
+    if baseline.is_some() && reference.is_some() {
+        return Err(error("baseline and reference are both what was before: give one of them"));
+    }
     let (test, baseline) = (other(test, "test")?, other(baseline, "baseline")?);
-    let options = DiagnosisOptions { threads, ..DiagnosisOptions::default() };
     let (path, measured) = (recording.path, recording.measured);
-    let work = Work { path, measured: Arc::clone(&measured), test, options, implausible };
+    let robot = measured.dynamics.model().robot();
+    let mut settings = Settings::default();
+    settings.threads = threads;
+    if let Some(laws) = laws {
+        settings.laws = known::laws(py, laws, robot)?;
+    }
+    let before = reference.map(|given| known::before(given, robot)).transpose()?;
+    settings.reference = before.as_ref().map(|before| Arc::clone(&before.reference));
+    let prior = before.map(|before| before.prior);
+    let work = Work { path, measured: Arc::clone(&measured), test, settings, prior, implausible };
     let before: Vec<Trajectory> = baseline.map_or_else(Vec::new, |(_, measured)| measured.trajectories);
-    let found = interruptible::run(py, progress, move |watch| work.diagnose(&before, watch))?;
+    let found = interruptible::run(py, ("diagnosis", progress), move |watch| work.diagnose(&before, watch))?;
     Ok(PyDiagnosis { measured, found: found.map_err(of_failure)? })
 }
 
@@ -186,36 +231,43 @@ struct Work {
     path: PathBuf,
     measured: Arc<Measured>,
     test: Option<(PathBuf, Measured)>,
-    options: DiagnosisOptions,
+    settings: Settings,
+    prior: Option<Prior>,
     implausible: bool,
 }
 
 impl Work {
     /// As `dynid diagnose`.
     fn diagnose(self, baseline: &[Trajectory], watch: &Watch) -> Result<Diagnosed, Failure> {
-        let Self { path, measured, test, options, implausible } = self;
+        let Self { path, measured, test, settings, prior, implausible } = self;
+        let options = DiagnosisOptions { threads: settings.threads, ..DiagnosisOptions::default() };
         if !implausible {
             mistakes::check(&path, &measured, &options)?;
         }
         let (model, trajectories) = (measured.dynamics.model(), &measured.trajectories);
-        let mut settings = Settings::default();
-        settings.threads = options.threads;
         let test = match test {
             Some((path, measured)) => Some((Test::new(measured, &path, &options)?, path)),
             None => None,
         };
-        let diagnosis = match &test {
+        let speeds = contradicting(&measured, &options);
+        let outcome = match &test {
             Some((test, at)) => {
                 diagnose_and_confirm(model, trajectories, baseline, &test.prepared, &settings, watch)
-                    .map_err(|error| confirmation_failure(&path, Some(at), &error))?
+                    .map_err(|error| confirmation_failure(&path, Some(at), &error))
             }
             None => dynid_runtime::diagnosis::diagnose(model, trajectories, baseline, &settings, watch)
-                .map_err(|error| diagnosis_failure(&path, &error))?,
+                .map_err(|error| diagnosis_failure(&path, &error)),
         };
+        let robot = model.robot();
+        let mut diagnosis =
+            outcome.map_err(|failure| and_of_speeds(failure, &speed_words(&speeds, robot)))?;
+        tell_speeds(&mut diagnosis, speeds, robot);
+        let own = Extras::of(robot);
         let extras = Extras {
             fitted: fitted(&measured, &diagnosis, &options),
             tested: test.as_ref().map(|(test, at)| tested(test, at, &diagnosis)).transpose()?,
-            ..Extras::of(model.robot())
+            prior: prior.or(own.prior.clone()),
+            ..own
         };
         Ok(Diagnosed { diagnosis, extras })
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use dynid::commands::identify::method::Identification;
 use dynid::failure::Failure;
 use dynid::recorded::observe_failure;
 use dynid::robots::Dynamics;
@@ -78,7 +79,7 @@ impl PyFactors {
 pub(crate) fn factor(py: Python<'_>, recording: &Bound<'_, PyAny>, band: Option<f64>) -> PyResult<PyFactors> {
     let recording = one(recording, "recording")?;
     let (path, own) = (recording.path.clone(), copy(&recording.measured)?);
-    let observed = interruptible::run(py, None, move |_| {
+    let observed = interruptible::run(py, ("factor", None), move |_| {
         let settings = RecordedSettings { band, ..RecordedSettings::default() };
         let model = own.dynamics.model();
         observe_trajectories(&own.trajectories, model, &[Equations::Torque], &settings, None)
@@ -114,13 +115,18 @@ pub(crate) fn merge(factors: Vec<PyRef<'_, PyFactors>>) -> PyResult<PyFactors> {
 #[pyfunction]
 #[pyo3(signature = (factors, method = "idim-wls"))]
 pub(crate) fn solve(py: Python<'_>, factors: &PyFactors, method: &str) -> PyResult<PyFit> {
-    let method: Method = method.parse().map_err(|said: String| error(said))?;
-    if method.is_power() {
-        return Err(error(format!("{} needs the recording: factors are of torque equations", method.name())));
-    }
+    let method: Identification = method.parse().map_err(|said: String| error(said))?;
+    let solved_by = match method {
+        Identification::Solved(method) if !method.is_power() => method,
+        other => {
+            let name = other.name();
+            return Err(error(format!("{name} needs the recording: factors are of torque equations")));
+        }
+    };
     let (observation, own, found) =
         (factors.observation.clone(), again(&factors.dynamics)?, factors.found.clone());
-    let identified = interruptible::run(py, None, move |_| solved(&observation, &own, &found, method))?;
+    let identified =
+        interruptible::run(py, ("solve", None), move |_| solved(&observation, &own, &found, solved_by))?;
     Ok(PyFit::of(identified.map_err(of_failure)?, again(&factors.dynamics)?))
 }
 

@@ -1,29 +1,18 @@
 //! Identified models.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use dynid::failure::Failure;
 use dynid::output::write_json;
-use dynid::recorded::{LeftOut, Measured, Recorded, observe_failure};
 use dynid::robots::Dynamics;
 use dynid::saved::{own_dynamics, read_model};
-use dynid::speeds::{and_of_speeds, speed_words};
-use dynid::verdict;
-use dynid_runtime::estimation::observe::{Equations, Observation};
-use dynid_runtime::estimation::{
-    Estimate, EstimateSettings, Method, ObservedRecording, RecordedSettings, estimate, observe_trajectories,
-};
-use dynid_runtime::model_file::{self, EvaluatedRows, Identified};
-use dynid_runtime::prediction::observed_errors;
+use dynid_runtime::model_file::{self, Identified};
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{error, of_failure};
-use crate::interruptible;
-use crate::recording::{copy, one};
 use crate::robot::{PyRobot, again, torques};
 
 /// An identified model: base parameters with their uncertainty, and what it leaves of the torques.
@@ -31,8 +20,10 @@ use crate::robot::{PyRobot, again, torques};
 /// Made by :func:`identify`, or read from a model.json by :func:`load`.
 #[pyclass(module = "dynid", name = "Fit", frozen)]
 pub(crate) struct PyFit {
-    identified: Arc<Identified>,
-    dynamics: Arc<Dynamics>,
+    /// The model as it is saved.
+    pub identified: Arc<Identified>,
+    /// Its robot.
+    pub dynamics: Arc<Dynamics>,
 }
 
 impl PyFit {
@@ -186,114 +177,4 @@ pub(crate) fn load(path: PathBuf) -> PyResult<PyFit> {
     let identified = read_model(&path).map_err(of_failure)?;
     let dynamics = own_dynamics(&identified, &path).map_err(of_failure)?;
     Ok(PyFit { identified: Arc::new(identified), dynamics: Arc::new(dynamics) })
-}
-
-/// Identifies the base parameters of a recording, or of several of one robot.
-///
-/// ``method`` is idim-ols, idim-wls, pim-ols, pim-wls, idim-irls, pim-irls, idim-tls or pim-tls; ``band`` is that of the
-/// equations, Hz. A recording that no such robot can have made is refused, unless ``implausible``.
-///
-/// >>> import dynid, numpy as np
-/// >>> r = dynid.Robot("planar_2r")
-/// >>> t = np.arange(0, 20, 0.005)[:, None]
-/// >>> w, phase = np.array([1.1, 1.7]), np.array([0.0, 1.0])
-/// >>> q = np.sin(w * t + phase) + 0.4 * np.sin(2.9 * w * t)
-/// >>> dq = w * np.cos(w * t + phase) + 1.16 * w * np.cos(2.9 * w * t)
-/// >>> ddq = -w**2 * np.sin(w * t + phase) - 3.364 * w**2 * np.sin(2.9 * w * t)
-/// >>> rec = dynid.Recording(robot=r, t=t[:, 0], q=q, tau=r.torque(r.chi, q, dq, ddq))
-/// >>> fit = dynid.identify(rec, method="idim-wls")
-/// >>> bool(np.abs(fit.values - r.chi).max() < 0.05)
-/// True
-#[pyfunction]
-#[pyo3(signature = (recording, method = "idim-wls", *, band = None, implausible = false, threads = 0))]
-pub(crate) fn identify(
-    py: Python<'_>,
-    recording: &Bound<'_, PyAny>,
-    method: &str,
-    band: Option<f64>,
-    implausible: bool,
-    threads: usize,
-) -> PyResult<PyFit> {
-    let method: Method = method.parse().map_err(|said: String| error(said))?;
-    let recording = one(recording, "recording")?;
-    let work = Work { method, band, implausible, threads };
-    let (path, measured) = (recording.path.clone(), Arc::clone(&recording.measured));
-    let own = copy(&measured)?;
-    let identified = interruptible::run(py, None, move |_| work.identify(&path, own))?.map_err(of_failure)?;
-    let dynamics = Arc::new(again(&recording.measured.dynamics)?);
-    Ok(PyFit { identified: Arc::new(identified), dynamics })
-}
-
-/// What is asked for.
-struct Work {
-    method: Method,
-    band: Option<f64>,
-    implausible: bool,
-    threads: usize,
-}
-
-impl Work {
-    /// As `dynid identify`.
-    fn identify(&self, path: &Path, measured: Measured) -> Result<Identified, Failure> {
-        let mut settings = RecordedSettings { band: self.band, ..RecordedSettings::default() };
-        settings.rows.threads = self.threads;
-        let power = Equations::Power { closed_form: false };
-        let equations: &[Equations] =
-            if self.method.is_power() { &[power, Equations::Torque] } else { &[Equations::Torque] };
-        let model = measured.dynamics.model();
-        let observed = observe_trajectories(&measured.trajectories, model, equations, &settings, None)
-            .map_err(|error| observe_failure(path, &error))?;
-        let ObservedRecording { observations, motions, settings, speeds, left_out, .. } = observed;
-        let rows = LeftOut { too_short: left_out, ..measured.rows };
-        let (title, robot, joints, side) = (measured.title, measured.robot, measured.joints, measured.side);
-        let dynamics = measured.dynamics;
-        let recorded = Recorded { dynamics, title, robot, joints, side, motions, rows, speeds, settings };
-        let [observation, ..] = observations.as_slice() else {
-            return Err(Failure::Data("nothing was observed".to_owned()));
-        };
-        self.solve(path, &recorded, observation, observations.last().unwrap_or(observation))
-    }
-
-    fn solve(
-        &self,
-        path: &Path,
-        recorded: &Recorded,
-        observation: &Observation,
-        torques: &Observation,
-    ) -> Result<Identified, Failure> {
-        let robot = recorded.dynamics.model().robot();
-        let estimated = estimate(observation, &EstimateSettings::for_method(self.method));
-        if estimated.degrees_of_freedom == 0 {
-            return Err(Failure::Data(format!(
-                "{}: {} equations cannot determine {} parameters: record longer, or raise the band",
-                path.display(),
-                estimated.rows,
-                robot.base.len(),
-            )));
-        }
-        let mut warnings = speed_words(&recorded.speeds, robot);
-        if !self.implausible {
-            let doubts = doubts(path, recorded, torques, &estimated);
-            warnings.extend(doubts.map_err(|failure| and_of_speeds(failure, &warnings))?);
-        }
-        let errors = observed_errors(torques, &estimated.chi());
-        let mut rows = EvaluatedRows::observed(observation, recorded.settings.band, &estimated, errors);
-        rows.rows_left_out = Some(recorded.rows.rows.left_out);
-        let mut identified = Identified::new(robot, &recorded.robot, rows, &estimated);
-        identified.warnings.extend(warnings);
-        Ok(identified)
-    }
-}
-
-/// What is doubtful in the data, by the weighted estimate of the torques.
-fn doubts(
-    path: &Path,
-    recorded: &Recorded,
-    torques: &Observation,
-    found: &Estimate,
-) -> Result<Vec<String>, Failure> {
-    if found.method == Method::IdimWls {
-        return verdict::check(path, &recorded.judged(), torques, found);
-    }
-    verdict::check(path, &recorded.judged(), torques, &estimate(torques, &EstimateSettings::default()))
 }

@@ -10,6 +10,7 @@ use std::time::Duration;
 use dynid_runtime::diagnosis::Progress;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 
 /// How often signals are looked at and progress is told, and so how long Ctrl-C takes.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -53,11 +54,34 @@ impl Progress for Watch {
 }
 
 /// Does work in a thread of its own while the interpreter is free for others. `progress` is called with the share that is
-/// done, 0 to 1, and what is being done.
+/// done, 0 to 1, and what is being done; `True` for it is a bar with this title, where there is tqdm.
 ///
 /// # Errors
 /// What `progress` raises, and KeyboardInterrupt on Ctrl-C; the work then ends by itself at its next report.
 pub(crate) fn run<T: Send + 'static>(
+    py: Python<'_>,
+    (title, progress): (&str, Option<&Bound<'_, PyAny>>),
+    work: impl FnOnce(&Watch) -> T + Send + 'static,
+) -> PyResult<T> {
+    let bar = match progress {
+        Some(asked) if asked.is_instance_of::<PyBool>() => {
+            if asked.is_truthy()? {
+                Some(py.import("dynid._bar")?.getattr("Bar")?.call1((title,))?)
+            } else {
+                None
+            }
+        }
+        other => return watched(py, other, work),
+    };
+    let result = watched(py, bar.as_ref(), work);
+    if let Some(bar) = bar {
+        bar.call_method1("close", (result.is_ok(),))?;
+    }
+    result
+}
+
+/// As [`run`], with a function for `progress` or none.
+fn watched<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&Watch) -> T + Send + 'static,

@@ -5,7 +5,9 @@ mod diagnosis;
 mod error;
 mod factor;
 mod fit;
+mod identify;
 mod interruptible;
+mod known;
 mod recording;
 mod robot;
 mod signals;
@@ -29,7 +31,7 @@ fn _dynid(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(robot::_robot, m)?)?;
     m.add_function(wrap_pyfunction!(recording::open, m)?)?;
     m.add_function(wrap_pyfunction!(recording::_recording, m)?)?;
-    m.add_function(wrap_pyfunction!(fit::identify, m)?)?;
+    m.add_function(wrap_pyfunction!(identify::identify, m)?)?;
     m.add_function(wrap_pyfunction!(fit::load, m)?)?;
     m.add_function(wrap_pyfunction!(fit::_fit, m)?)?;
     m.add_function(wrap_pyfunction!(diagnosis::diagnose, m)?)?;

@@ -189,7 +189,8 @@ pub(crate) fn open(
     end: Option<f64>,
 ) -> PyResult<PyRecording> {
     let source = Source { recording: path.clone(), robot, from: start, to: end };
-    let measured = interruptible::run(py, None, move |_| measure(&source))?.map_err(of_failure)?;
+    let measured =
+        interruptible::run(py, ("reading", None), move |_| measure(&source))?.map_err(of_failure)?;
     Ok(PyRecording { measured: Arc::new(measured), path })
 }
 

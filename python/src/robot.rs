@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dynid::models;
 use dynid::robots::{Dynamics, recursive, resolve};
-use dynid_runtime::model::{Model, RecursiveModel, Robot};
+use dynid_runtime::model::{Model, RecursiveModel, Robot, energies};
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -143,11 +143,8 @@ impl PyRobot {
         let numbers = writable.as_slice_mut().map_err(|why| error(format!("out: {why}")))?;
         let (views, model, is_fresh) = (signals.views(), self.model(), out.is_none());
         py.detach(|| {
-            if !is_fresh {
-                numbers.fill(0.0);
-            }
             let mut dense = DenseRegressor::new(model);
-            views.blocks(|range, states| dense.write(&range, states, numbers));
+            views.blocks(|range, states| dense.write(&range, states, numbers, is_fresh));
         });
         drop(writable);
         if signals.single && out.is_none() {
@@ -180,7 +177,31 @@ impl PyRobot {
         (rows.collect::<Vec<_>>().into_pyarray(py), columns.collect::<Vec<_>>().into_pyarray(py))
     }
 
-    /// Energy regressor h (N, p): the energy is h chi, J. Columns of friction and offsets are zero.
+    /// Energy (N,) of base parameters chi, J, kinetic and potential: its rate is the power without friction. The zero of its
+    /// potential is that of the base parameters.
+    fn energy<'py>(
+        &self,
+        py: Python<'py>,
+        chi: &Bound<'py, PyAny>,
+        q: &Bound<'py, PyAny>,
+        dq: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (chi, model) = (self.chi_of(chi)?, self.model());
+        let signals = Signals::read(self.joints(), &[("q", q), ("dq", dq)])?;
+        let views = signals.views();
+        let found = py.detach(|| {
+            let mut all = Vec::with_capacity(views.samples());
+            views.blocks(|_, states| all.extend(energies(model, &chi, states)));
+            all
+        });
+        match (signals.single, found.as_slice()) {
+            (true, [one]) => Ok(one.into_pyobject(py)?.into_any()),
+            _ => Ok(found.into_pyarray(py).into_any()),
+        }
+    }
+
+    /// Energy regressor h (N, p): h chi is the energy, J, but for what is in offsets (:meth:`energy` has all of it). Columns
+    /// of friction and offsets are zero.
     fn energy_regressor<'py>(
         &self,
         py: Python<'py>,

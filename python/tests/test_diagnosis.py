@@ -1,6 +1,7 @@
 """Diagnoses."""
 
 import json
+import pickle
 import signal
 import subprocess
 import sys
@@ -55,6 +56,59 @@ def test_nothing_is_found_where_nothing_is_hidden_or_nothing_changed(planar):
     assert dynid.diagnose(plain).findings == []
     before, after = ([recorded(planar, seed=s, added=spring, duration=10)[0] for s in seeds] for seeds in ((1, 2), (6, 7)))
     assert dynid.diagnose(after, baseline=before).findings == []
+
+
+def test_what_a_reference_knows_is_no_news(planar, found, tmp_path):
+    d, _ = found
+    d.model.save(tmp_path / "normal.json")
+    assert json.loads((tmp_path / "normal.json").read_text())["effects"][0]["effect"] == "spring"
+    later = [recorded(planar, seed=s, added=spring, duration=10)[0] for s in (11, 12)]
+    for reference in [d.model, tmp_path / "normal.json", pickle.loads(pickle.dumps(d.model))]:
+        assert dynid.diagnose(later, reference=reference).findings == []
+    without = dynid.identify([recorded(planar, seed=s, duration=10)[0] for s in (1, 2, 3)])
+    assert [f.effect for f in dynid.diagnose(later, reference=without).findings] == ["spring"]
+
+
+def test_a_reference_of_another_robot_or_beside_a_baseline_is_refused(planar, tx40):
+    rec = recorded(planar, duration=10)[0]
+    other = dynid.identify(recorded(tx40, duration=10)[0])
+    with pytest.raises(dynid.Error, match="reference: a model of tx40, not of the planar_2r"):
+        dynid.diagnose(rec, reference=other)
+    with pytest.raises(dynid.Error, match="expected a dynid.Fit or the path"):
+        dynid.diagnose(rec, reference=3)
+    with pytest.raises(dynid.Error, match="baseline and reference"):
+        dynid.diagnose(rec, reference=dynid.identify(rec), baseline=rec)
+
+
+MAGNET = {"id": "magnet", "joint": 2, "law": "k1*sin(5*q2) + k2*cos(5*q2)"}
+
+
+def magnet(q, dq, ddq):
+    return np.stack([np.zeros(len(q)), 3 * np.sin(5 * q[:, 1]) + 2 * np.cos(5 * q[:, 1])], axis=1)
+
+
+def test_a_law_of_the_user_is_found_by_its_name(planar, tmp_path):
+    recordings = [recorded(planar, seed=s, added=magnet, duration=10)[0] for s in (1, 2, 3)]
+    path = tmp_path / "laws.yaml"
+    path.write_text('- {id: magnet, joint: 2, law: "k1*sin(5*q2) + k2*cos(5*q2)"}')
+    told = [dynid.diagnose(recordings, laws=laws) for laws in ([MAGNET], path)]
+    assert [f.effect for f in told[0].findings] == ["magnet"]
+    assert told[0].json() == told[1].json()
+    parameters = told[0].findings[0].parameters
+    assert abs(parameters["k1"][0] - 3) < 0.1 and abs(parameters["k2"][0] - 2) < 0.1
+
+
+def test_what_is_no_law_is_told_with_its_place(planar):
+    rec = recorded(planar, duration=10)[0]
+    for laws, words in [
+        ([MAGNET, MAGNET | {"id": "b", "law": "sin(k*q2)"}], "laws:2:"),
+        ([MAGNET | {"joint": 3}], "planar_2r has no joint 3"),
+        ([], "the list is empty"),
+        (3, "laws: expected a path, or a list of dictionaries"),
+    ]:
+        with pytest.raises(dynid.Error) as said:
+            dynid.diagnose(rec, laws=laws)
+        assert words in str(said.value)
 
 
 def test_progress_goes_from_nothing_to_all(found):

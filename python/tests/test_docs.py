@@ -1,6 +1,9 @@
 """What the documentation shows is run."""
 
+import ast
 import doctest
+import inspect
+import runpy
 import textwrap
 from pathlib import Path
 
@@ -18,7 +21,7 @@ def test_examples_of_docstrings(name):
     finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner()
     for example in finder.find(getattr(dynid, name), name, module=False):
         assert runner.run(example).failed == 0, example.name
-    if name in ("Robot", "Recording", "identify"):
+    if name in ("Robot", "Recording", "identify", "diagnose"):
         assert runner.tries > 0, "its examples were not found"
 
 
@@ -38,6 +41,42 @@ def test_the_snippet_of_the_readme_of_the_project():
     assert names["W"].shape == (len(t), 6, 60)
     assert names["fit"].relative_error < 0.05
     assert names["d"].findings == []
+
+
+def test_the_story(capsys):
+    runpy.run_path(str(PYTHON / "examples" / "story.py"))
+    said = capsys.readouterr().out
+    assert "worst is joint 2" in said
+    assert "stribeck" in said and "the same robot, later: []" in said
+
+
+def test_the_examples_fit_the_stubs():
+    api = pytest.importorskip("mypy.api", reason="mypy is not installed: the examples were not type-checked")
+    said, complaint, status = api.run(["--strict-optional", "--check-untyped-defs", str(PYTHON / "examples" / "story.py")])
+    assert status == 0, said + complaint
+
+
+def test_stubs_have_the_arguments_that_are_there():
+    """Names, order and defaults of every function and method, as the module tells them."""
+    tree = ast.parse((PYTHON / "pysrc/dynid/__init__.pyi").read_text())
+    checked = 0
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef):
+            checked += has_arguments_of(getattr(dynid, node.name), node)
+        elif isinstance(node, ast.ClassDef):
+            for member in node.body:
+                is_property = any(isinstance(d, ast.Name) and d.id == "property" for d in getattr(member, "decorator_list", []))
+                if isinstance(member, ast.FunctionDef) and not member.name.startswith("_") and not is_property:
+                    checked += has_arguments_of(getattr(getattr(dynid, node.name), member.name), member)
+    assert checked > 20
+
+
+def has_arguments_of(function, node):
+    arguments = node.args.posonlyargs + node.args.args + node.args.kwonlyargs
+    stub = [a.arg for a in arguments if a.arg != "self"]
+    there = [name for name in inspect.signature(function).parameters if name != "self"]
+    assert stub == there, f"{node.name}: {stub} in the stubs, {there} in the module"
+    return 1
 
 
 @pytest.mark.parametrize("name", dynid.__all__)

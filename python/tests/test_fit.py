@@ -1,5 +1,6 @@
 """Identification, and recordings."""
 
+import json
 import os
 import pickle
 import subprocess
@@ -119,3 +120,65 @@ def test_a_recording_with_a_wrong_sign_is_refused_unless_asked_for(planar):
     with pytest.raises(dynid.Error, match="the opposite sign of the torque of joint 2"):
         dynid.identify(rec)
     assert dynid.identify(rec, implausible=True).relative_error > 0
+
+
+def followed(robot, seeds=(0, 1)):
+    """A recording of a robot that follows its plan, and the plan: what both methods simulate."""
+    plan = [motion(robot, duration=12, seed=s) for s in seeds]
+    parts = [recorded(robot, seed=s, duration=12)[0] for s in seeds]
+    return sum(parts[1:], parts[0]), plan
+
+
+@pytest.mark.parametrize("method", ["idim-iv", "idim-didim"])
+def test_methods_that_simulate_the_plan_find_the_parameters(planar, method):
+    rec, plan = followed(planar)
+    fit = dynid.identify(rec, method=method, planned=plan)
+    assert fit.method == method
+    # The plan itself is what was recorded here: the controller that is simulated lags a little behind it.
+    np.testing.assert_allclose(fit.values, planar.chi, rtol=0.02, atol=0.02)
+    assert json.loads(fit.json())["simulated"]["compared_with"] == "idim-wls"
+
+
+def test_a_plan_may_be_a_file(planar, tmp_path):
+    rec, plan = followed(planar, seeds=(0,))
+    path = tmp_path / "motion1.csv"
+    np.savetxt(path, np.column_stack(plan[0]), delimiter=",", header="t,q1,q2,dq1,dq2,ddq1,ddq2", comments="", fmt="%.17g")
+    from_arrays = dynid.identify(rec, method="idim-iv", planned=plan)
+    for place in [path, str(tmp_path)]:
+        np.testing.assert_array_equal(dynid.identify(rec, method="idim-iv", planned=place).values, from_arrays.values)
+
+
+def test_a_plan_that_is_none_of_the_recording_is_refused(planar):
+    rec, plan = followed(planar, seeds=(0,))
+    t, q, dq, ddq = plan[0]
+    uneven = t.copy()
+    uneven[3] += 0.002
+    cases = [
+        (dict(method="idim-iv"), "the method of instrumental variables needs the planned motions"),
+        (dict(method="idim-wls", planned=plan), "idim-wls does not simulate"),
+        (dict(method="idim-iv", planned=3), "planned: expected a path, or a list with (t, q, dq, ddq)"),
+        (dict(method="idim-iv", planned=[plan[0][:3]]), "planned: expected a path, or a list with (t, q, dq, ddq)"),
+        (dict(method="idim-iv", planned=[(uneven, q, dq, ddq)]), "planned[0]: the rows must be equally spaced in time"),
+        (dict(method="idim-iv", planned=[(t[1:], q, dq, ddq)]), "planned[0]: q has 2400 rows, and t has 2399 values"),
+        (dict(method="idim-iv", planned=[(t, q * np.nan, dq, ddq)]), "planned[0]: a value is not a finite number"),
+        (dict(method="idim-iv", planned=plan * 2), "planned: "),
+        (dict(method="idim-iv", planned="nowhere.csv"), "nowhere.csv"),
+    ]
+    for options, words in cases:
+        with pytest.raises(dynid.Error) as said:
+            dynid.identify(rec, **options)
+        assert words in str(said.value)
+
+
+def test_progress_of_an_identification_is_told_and_shown(planar, capsys):
+    rec, _ = recorded(planar)
+    told = []
+    plain = dynid.identify(rec)
+    np.testing.assert_array_equal(dynid.identify(rec, progress=lambda *at: told.append(at)).values, plain.values)
+    assert all(0 <= share <= 1 and what for share, what in told)
+    pytest.importorskip("tqdm", reason="tqdm is not installed: no bar was shown")
+    dynid.identify(rec, progress=True)
+    shown = capsys.readouterr().err
+    assert "identification: 100%" in shown
+    dynid.identify(rec, progress=False)
+    assert capsys.readouterr().err == ""

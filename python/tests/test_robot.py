@@ -72,6 +72,18 @@ def test_the_energy_regressor_changes_by_the_power(tx40):
     np.testing.assert_allclose(rate[:, friction], power[:, friction], rtol=1e-5, atol=1e-6)
 
 
+@pytest.mark.parametrize("name", ["scara4", "stanford", "tx40"])
+def test_the_rate_of_the_energy_is_the_power_without_friction(name):
+    r = dynid.Robot(name)
+    q, dq, ddq = states(r, 20)
+    chi = np.random.default_rng(2).normal(size=len(r.names))
+    chi[[n.startswith(("Fv", "Fc")) for n in r.names]] = 0
+    step = 1e-6
+    after, before = (r.energy(chi, q + s * dq, dq + s * ddq) for s in (step, -step))
+    np.testing.assert_allclose((after - before) / (2 * step), r.power_regressor(q, dq, ddq) @ chi, rtol=1e-5, atol=1e-5)
+    assert r.energy(chi, q[0], dq[0]) == pytest.approx(r.energy(chi, q, dq)[0], rel=1e-12)
+
+
 def test_every_layout_of_an_array_has_the_same_numbers(tx40):
     q, dq, ddq = states(tx40)
     expected = tx40.regressor(q, dq, ddq)

@@ -3,7 +3,7 @@
 pub mod compare;
 mod extras;
 pub mod mistakes;
-mod reference;
+pub mod reference;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use dynid_runtime::confirmation::{ConfirmationError, diagnose_and_confirm};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, diagnose};
 use dynid_runtime::estimation::choose_bandwidth;
 use dynid_runtime::law_file;
-use dynid_runtime::model::JointIndex;
+use dynid_runtime::model::{JointIndex, Robot};
 use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, difference};
 use dynid_runtime::report::capital;
 use dynid_runtime::signal::{Preparation, SpeedFault, contradicting_speeds};
@@ -116,12 +116,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
     let robot = model.robot();
     let mut diagnosis =
         outcome.map_err(|error| and_of_speeds(failure(error), &speed_words(&speeds, robot)))?;
-    // The speed of a joint that stands is noise.
-    let moves = |f: &SpeedFault| {
-        !diagnosis.not_judged.iter().any(|n| n.joint == robot.joint_number(JointIndex(f.joint)).0)
-    };
-    let speeds: Vec<SpeedFault> = speeds.into_iter().filter(moves).collect();
-    diagnosis.verdict.extend(speed_words(&speeds, robot).iter().map(|words| format!("{}.", capital(words))));
+    tell_speeds(&mut diagnosis, speeds, robot);
     let tested = match (&test, &arguments.test) {
         (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
         _ => None,
@@ -207,8 +202,18 @@ fn simulated(measured: &Measured, diagnosis: &Diagnosis, asked: bool) -> Option<
     )
 }
 
+/// Tells of columns of speeds that contradict the positions, where their joints moved.
+pub fn tell_speeds(diagnosis: &mut Diagnosis, speeds: Vec<SpeedFault>, robot: &Robot) {
+    // The speed of a joint that stands is noise.
+    let moves = |f: &SpeedFault| {
+        !diagnosis.not_judged.iter().any(|n| n.joint == robot.joint_number(JointIndex(f.joint)).0)
+    };
+    let speeds: Vec<SpeedFault> = speeds.into_iter().filter(moves).collect();
+    diagnosis.verdict.extend(speed_words(&speeds, robot).iter().map(|words| format!("{}.", capital(words))));
+}
+
 /// Columns of speeds that contradict the positions, in the band of the diagnosis.
-fn contradicting(measured: &Measured, options: &DiagnosisOptions) -> Vec<SpeedFault> {
+pub fn contradicting(measured: &Measured, options: &DiagnosisOptions) -> Vec<SpeedFault> {
     let chosen = || choose_bandwidth(&measured.trajectories).ok().map(|chosen| chosen.cutoff);
     let cutoff = options.cutoff.or_else(chosen);
     contradicting_speeds(&measured.trajectories, &Preparation { cutoff, ..Preparation::default() })
@@ -239,7 +244,7 @@ impl Progress for Bar {
 }
 
 /// The model with the findings, in the form that `validate` and `simulate` read.
-fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Identified {
+pub fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> Identified {
     let robot = measured.dynamics.model().robot();
     let parameters = named(robot, &diagnosis.model);
     let own = || EvaluatedRows {

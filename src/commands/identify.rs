@@ -2,11 +2,11 @@
 
 mod gains;
 mod load;
-mod method;
+pub mod method;
 mod payload;
 mod physical;
 mod rows;
-mod simulated;
+pub mod simulated;
 
 use std::path::{Path, PathBuf};
 
@@ -158,16 +158,13 @@ fn identify(
     }
     let mut simulated = None;
     if let Some(plan) = &arguments.planned {
-        let paths = [arguments.recording.recording.as_path(), plan.as_path()];
-        let found = simulated::identify(
-            arguments.method,
-            recorded,
-            whole,
-            paths,
-            torques,
-            &estimate,
-            arguments.r_sigma,
-        )?;
+        let recording = arguments.recording.recording.as_path();
+        simulated::at_once(whole, recording)?;
+        let plan = simulated::Plan::read(plan, model.robot().joints())?;
+        let method = arguments.method;
+        let task =
+            simulated::Task { method, recorded, recording, plan: &plan, r_sigma: Some(arguments.r_sigma) };
+        let found = task.identify(torques, &estimate)?;
         estimate = found.estimate;
         simulated = Some(found.simulated);
         warnings.extend(found.warnings);

@@ -6,7 +6,7 @@ pub mod diagnose;
 mod effects;
 mod excite;
 mod export;
-mod identify;
+pub mod identify;
 mod import;
 mod init;
 mod look;

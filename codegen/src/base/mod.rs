@@ -33,6 +33,7 @@ mod friction;
 mod placement;
 mod random_states;
 mod regroup;
+mod relation;
 mod springs;
 
 use crate::exact::Form;
@@ -85,19 +86,15 @@ fn base_parameter(
         })
         .collect();
     let parameter = &standard[kept];
-    let mut relation = parameter.name.to_string();
+    let named: Vec<(&str, &Form)> = regrouped.iter().map(|&(k, f)| (standard[k].name.as_ref(), f)).collect();
     let mut combination = vec![(kept, 1.0)];
-    for &(column, factor) in &regrouped {
-        let (sign, product) = factor.signed_product(&standard[column].name);
-        relation.push_str(&format!(" {sign} {product}"));
-        combination.push((column, factor.value().real()));
-    }
+    combination.extend(regrouped.iter().map(|&(column, factor)| (column, factor.value().real())));
     combination.sort_by_key(|&(column, _)| column);
     BaseParameter {
         name: format!("{}{}", parameter.name, if regrouped.is_empty() { "" } else { "R" }).into(),
         standard: kept,
         combination: combination.into(),
-        relation: relation.into(),
+        relation: relation::relation(&parameter.name, &named).into(),
         unit: parameter.kind.unit(robot.frames[parameter.frame].kind).into(),
     }
 }

@@ -45,7 +45,19 @@ pub(super) fn regroup(robot: &RobotTable, standard: &[StandardParameter]) -> Reg
         if let Some(joint) = joint {
             let preference = if frame.kind == JointKind::Revolute { REVOLUTE } else { PRISMATIC };
             let order: Vec<usize> = preference.into_iter().chain(OFFSET..SPEEDS + joints).collect();
-            for (pivot, direction) in visible[k].reduced(&order) {
+            let mut directions = visible[k].reduced(&order);
+            let has = |kind| {
+                candidates.iter().any(|c| standard[c.column].frame == k && standard[c.column].kind == kind)
+            };
+            if frame.kind == JointKind::Prismatic && has(ParameterKind::Ia) && has(ParameterKind::M) {
+                let moving_base = ancestors(robot, k).any(|frame| joint_of(frame).is_some());
+                let by_rotor: Vec<usize> = [SPEEDS + joint, OFFSET].into_iter().chain(order).collect();
+                let by_rotor = visible[k].reduced(&by_rotor);
+                if rotor_takes_mass(&by_rotor, moving_base) {
+                    directions = by_rotor;
+                }
+            }
+            for (pivot, direction) in directions {
                 keep_one(&mut candidates, standard, (k, joint), pivot, &direction);
             }
         }
@@ -56,6 +68,24 @@ pub(super) fn regroup(robot: &RobotTable, standard: &[StandardParameter]) -> Reg
     let nonzero =
         |taken: BTreeMap<usize, Form>| taken.into_iter().filter(|(_, factor)| !factor.is_zero()).collect();
     candidates.into_iter().map(|c| (c.column, nonzero(c.taken))).collect()
+}
+
+/// The frames that a frame stands on, without the base.
+fn ancestors(robot: &RobotTable, frame: usize) -> impl Iterator<Item = usize> {
+    std::iter::successors(robot.frames[frame].parent.checked_sub(1), |&k| {
+        robot.frames[k].parent.checked_sub(1)
+    })
+}
+
+/// Whether the rotor inertia of a prismatic joint is kept and the mass of its link regrouped, not the other way round: where
+/// rotor and offset leave nothing of the mass to be shown by this joint, and the mass shows elsewhere, in the weight or in what
+/// the joint stands on. The rotor does not: kept instead of it, the mass would put minus the rotor's inertia into parameters
+/// that the rotor has no part in.
+fn rotor_takes_mass(by_rotor: &[(usize, Vec<Number>)], moving_base: bool) -> bool {
+    let of_mass = ParameterKind::M as usize;
+    let weighs =
+        |(pivot, direction): &(usize, Vec<Number>)| *pivot == OFFSET && !direction[of_mass].is_zero();
+    by_rotor.iter().all(|(pivot, _)| *pivot != of_mass) && (moving_base || by_rotor.iter().any(weighs))
 }
 
 /// A standard column less kept columns: a function that does not depend on the joints done so far.

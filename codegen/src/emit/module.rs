@@ -11,20 +11,18 @@ use quote::quote;
 
 /// The source of a robot's module, formatted.
 pub fn module(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> Result<String, syn::Error> {
-    let tokens = tokens(robot, set, equations);
-    let file = syn::parse2(tokens)?;
-    let code = comments::restore(&prettyplease::unparse(&file));
-    Ok(format!("{}\n{code}", header::header(robot, set, equations)))
+    let formatted = |tokens| Ok::<_, syn::Error>(prettyplease::unparse(&syn::parse2(tokens)?));
+    let opening = formatted(opening(robot, set, equations))?;
+    let statics = data::statics(&numeric_robot(robot, set), equations);
+    let code = comments::restore(&formatted(code(robot, set, equations))?);
+    Ok(format!("{}\n{opening}{statics}{code}", header::header(robot, set, equations)))
 }
 
-fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStream {
+/// What the module uses, and its sizes.
+fn opening(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStream {
     let n = Literal::usize_unsuffixed(equations.idm.len());
     let nb = Literal::usize_unsuffixed(set.base.len());
     let entries = Literal::usize_unsuffixed(equations.pattern().len());
-    let statics = data::statics(&numeric_robot(robot, set), equations);
-    let functions = rust_functions(robot, set, equations);
-    let (lines, model) = (lines(), model());
-    let operations = operations(equations);
     // A robot without values for simulation does not name their type.
     let nominal = robot.nominal.as_ref().map(|_| quote!(Nominal,));
     let dependent = (!robot.dependent.is_empty()).then(|| quote!(DependentFrame,));
@@ -46,8 +44,14 @@ fn tokens(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStre
         pub const NB: usize = #nb;
         /// Number of entries of IDM that are not identically zero.
         pub const ENTRIES: usize = #entries;
+    }
+}
 
-        #statics
+/// The functions, and the `Model` that calls them.
+fn code(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStream {
+    let functions = rust_functions(robot, set, equations);
+    let (operations, lines, model) = (operations(equations), lines(), model());
+    quote! {
         #operations
         #functions
         #lines

@@ -172,18 +172,17 @@ impl Form {
         }
     }
 
-    /// `coefficient * what` as a term of a sum: its sign, and the text without it. A coefficient of several terms is
-    /// bracketed.
-    pub fn signed_product(&self, what: &str) -> (char, String) {
+    /// As a factor of a product in a sum: its sign, and the text without it, which is empty for 1. A sum is bracketed.
+    pub fn signed_factor(&self) -> (char, String) {
         let text = self.to_string();
         if with_cosines(&self.terms).len() > 1 {
-            return ('+', format!("({text})*{what}"));
+            return ('+', format!("({text})"));
         }
         let (sign, rest) = match text.strip_prefix('-') {
             Some(rest) => ('-', rest),
             None => ('+', text.as_str()),
         };
-        (sign, if rest == "1" { what.to_owned() } else { format!("{rest}*{what}") })
+        (sign, if rest == "1" { String::new() } else { rest.to_owned() })
     }
 }
 
@@ -290,10 +289,10 @@ mod tests {
     }
 
     #[test]
-    fn coefficients_carry_their_sign_before_what_they_multiply() {
+    fn factors_carry_their_sign_before_what_they_multiply() {
         let d = symbol("d3", 0.5);
-        assert_eq!(Form::one().signed_product("YY2"), ('+', "YY2".to_owned()));
-        assert_eq!(d.scaled(Number::from(-2)).signed_product("MZ3"), ('-', "2*d3*MZ3".to_owned()));
-        assert_eq!(d.plus(&Form::one()).signed_product("M3"), ('+', "(d3 + 1)*M3".to_owned()));
+        assert_eq!(Form::one().signed_factor(), ('+', String::new()));
+        assert_eq!(d.scaled(Number::from(-2)).signed_factor(), ('-', "2*d3".to_owned()));
+        assert_eq!(d.plus(&Form::one()).signed_factor(), ('+', "(d3 + 1)".to_owned()));
     }
 }

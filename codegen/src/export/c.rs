@@ -100,7 +100,7 @@ impl Printer<'_> {
         for function in &functions {
             self.function(&mut text, function);
         }
-        if let Some(known) = export.known {
+        if export.known.is_some() {
             let literals = |values: &[f64]| values.iter().map(|&x| self.literal(x)).collect::<Vec<_>>();
             let kind = format!("const {}", self.real());
             let mut array = |kind: &str, array: &str, values: &[f64]| {
@@ -110,7 +110,7 @@ impl Printer<'_> {
                     wrapped(&literals(values))
                 );
             };
-            array(&kind, "chi", &known.chi);
+            array(&kind, "chi", &export.parameters());
             if export.needs_loads() {
                 array(&format!("static {kind}"), "chi_load", &export.load_parameters());
             }
@@ -365,7 +365,7 @@ fn comment(lines: &[String]) -> String {
 }
 
 /// Values of an array, a few on a line.
-fn wrapped(values: &[String]) -> String {
+pub fn wrapped(values: &[String]) -> String {
     let mut text = String::new();
     let mut line = String::new();
     for value in values {

@@ -9,7 +9,8 @@ pub fn lines(export: &Export<'_>) -> Vec<String> {
     let Some(known) = export.known else { return lines };
     lines.push(String::new());
     lines.push("Torques of the identified model: its base parameters and".to_owned());
-    if known.laws.is_empty() {
+    lines.extend(known.bodies.iter().map(|body| format!("- in these: {}", body.title)));
+    if known.laws.is_empty() && known.bodies.is_empty() {
         lines.push("- nothing beside them.".to_owned());
     }
     lines.extend(known.laws.iter().map(|law| format!("- {}: {}", law.title, law.text)));

@@ -4,6 +4,7 @@
 //! under the same names.
 
 mod c;
+mod casadi;
 mod header;
 mod law;
 mod rust;
@@ -20,10 +21,21 @@ use law::LawFormula;
 pub struct Known {
     /// Base parameters, in the robot's order.
     pub chi: Vec<f64>,
+    /// Bodies that the robot carries beside it.
+    pub bodies: Vec<Carried>,
     /// Torques that its standard model leaves out.
     pub laws: Vec<Law>,
     /// What belongs to the model and is not in the code, each with its reason.
     pub left_out: Vec<String>,
+}
+
+/// A body that a link carries.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Carried {
+    /// What it is, for a comment.
+    pub title: String,
+    /// What it adds to the base parameters, in the robot's order. The loads that laws look at are those without it.
+    pub chi: Vec<f64>,
 }
 
 /// A torque on one joint by a formula of the motion.
@@ -86,6 +98,15 @@ pub struct CFiles {
     pub source: String,
 }
 
+/// A source beside those of C.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CasadiFile {
+    /// What the file is called, without `.c`.
+    pub name: String,
+    /// Its text.
+    pub source: String,
+}
+
 /// A Rust module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RustFile {
@@ -103,6 +124,14 @@ pub struct RustFile {
 /// A robot without a model, parameters of another one, a law that cannot be read.
 pub fn export_c(robot: &Robot, known: Option<&Known>, real: Real) -> Result<CFiles, ExportError> {
     Ok(c::files(&Export::new(robot, known)?, real))
+}
+
+/// The functions of [`export_c`] with double numbers as CasADi loads them from a library: `casadi_<robot>_tau` and so on.
+///
+/// # Errors
+/// As [`export_c`].
+pub fn export_casadi(robot: &Robot, known: Option<&Known>) -> Result<CasadiFile, ExportError> {
+    Ok(casadi::file(&Export::new(robot, known)?))
 }
 
 /// A robot as a Rust module that depends on nothing but `core`.
@@ -133,8 +162,9 @@ impl<'a> Export<'a> {
         let equations = Equations::derive(&table, &set)?;
         let mut laws = Vec::new();
         if let Some(known) = known {
-            let (found, expected) = (known.chi.len(), set.base.len());
-            if found != expected {
+            let expected = set.base.len();
+            let counts = known.bodies.iter().map(|body| body.chi.len()).chain([known.chi.len()]);
+            if let Some(found) = counts.into_iter().find(|&found| found != expected) {
                 return Err(ExportError::Parameters { found, expected });
             }
             let numbers: Vec<usize> = table.joint_frames().iter().map(|&f| table.frames[f].j).collect();
@@ -155,6 +185,16 @@ impl<'a> Export<'a> {
         let entries = self.equations.pattern();
         let rows = (0..=self.equations.idm.len()).map(|i| entries.iter().filter(|e| e.0 < i).count());
         (rows.collect(), entries.iter().map(|e| e.1).collect())
+    }
+
+    /// The known parameters with those of the bodies that are carried.
+    fn parameters(&self) -> Vec<f64> {
+        let Some(known) = self.known else { return Vec::new() };
+        let mut chi = known.chi.clone();
+        for body in &known.bodies {
+            chi.iter_mut().zip(&body.chi).for_each(|(value, added)| *value += added);
+        }
+        chi
     }
 
     /// The known parameters with those of friction and offsets zero: their torques are the loads.

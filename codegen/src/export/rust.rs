@@ -137,7 +137,7 @@ fn number(export: &Export<'_>) -> TokenStream {
 /// Parameters and torques of the identified model.
 fn known(export: &Export<'_>) -> TokenStream {
     let Some(known) = export.known else { return TokenStream::new() };
-    let chi = known.chi.iter().map(|&x| float(x));
+    let chi = export.parameters().into_iter().map(float);
     let inputs: BTreeSet<_> = export.laws.iter().flat_map(LawFormula::inputs).collect();
     let inputs = inputs.iter().filter(|i| i.array != "load").map(|input| {
         let (name, array, joint) =

@@ -86,7 +86,23 @@ impl Equations {
             }
         }
         best.torque = TorqueEquations::derive(robot, set)?;
+        best.factor();
         Ok(best)
+    }
+
+    /// Takes common factors out of the sums of each function, where that saves operations of it.
+    fn factor(&mut self) {
+        let g = &mut self.graph;
+        self.energy = g.factored(&self.energy);
+        self.power = g.factored(&self.power);
+        let rows = g.factored(&self.idm.concat());
+        for (row, factored) in self.idm.iter_mut().zip(rows.chunks(self.power.len())) {
+            row.copy_from_slice(factored);
+        }
+        let forward = g.factored(&[self.mass.as_slice(), &self.bias].concat());
+        let (mass, bias) = forward.split_at(self.mass.len());
+        (self.mass, self.bias) = (mass.to_vec(), bias.to_vec());
+        self.torque.torques = self.torque.graph.factored(&self.torque.torques);
     }
 
     pub(super) fn derive_as(robot: &RobotTable, set: &BaseSet, variant: Variant) -> Result<Self, ModelError> {

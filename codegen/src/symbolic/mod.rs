@@ -18,6 +18,7 @@ mod count;
 mod differentiate;
 mod evaluate;
 mod expr;
+mod factor;
 mod graph;
 mod schedule;
 mod trigonometry;

@@ -1,12 +1,15 @@
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
-Path = str | PathLike[str]
+Array: TypeAlias = NDArray[np.float64]
+Path: TypeAlias = str | PathLike[str]
+Progress: TypeAlias = Callable[[float, str], object] | bool
+
+__all__: list[str]
 
 class Error(ValueError): ...
 
@@ -30,6 +33,7 @@ class Robot:
     def pattern(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
     def regressor(self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike, out: Array | None = None) -> Array: ...
     def regressor_entries(self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike) -> Array: ...
+    def energy(self, chi: ArrayLike, q: ArrayLike, dq: ArrayLike) -> Array: ...
     def energy_regressor(self, q: ArrayLike, dq: ArrayLike) -> Array: ...
     def power_regressor(self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike) -> Array: ...
     def torque(self, chi: ArrayLike, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike) -> Array: ...
@@ -111,6 +115,8 @@ class Diagnosis:
     def held_out(self) -> tuple[float, float]: ...
     @property
     def on_test(self) -> tuple[float | None, float | None] | None: ...
+    @property
+    def model(self) -> Fit: ...
     def json(self) -> str: ...
     def report(self, path: Path) -> None: ...
 
@@ -134,9 +140,11 @@ def identify(
     recording: Recording | Sequence[Recording],
     method: str = "idim-wls",
     *,
+    planned: Path | Iterable[tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]] | None = None,
     band: float | None = None,
     implausible: bool = False,
     threads: int = 0,
+    progress: Progress | None = None,
 ) -> Fit: ...
 def load(path: Path) -> Fit: ...
 def diagnose(
@@ -144,7 +152,9 @@ def diagnose(
     *,
     test: Recording | Sequence[Recording] | None = None,
     baseline: Recording | Sequence[Recording] | None = None,
+    reference: Fit | Path | None = None,
+    laws: Path | Iterable[Mapping[str, Any]] | None = None,
     implausible: bool = False,
     threads: int = 0,
-    progress: Callable[[float, str], object] | None = None,
+    progress: Progress | None = None,
 ) -> Diagnosis: ...

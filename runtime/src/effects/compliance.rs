@@ -222,7 +222,8 @@ pub fn stretch_at_start(link: &LinkSide<'_>, missing: &[f64], t: &Transmission, 
         }
     }
     let determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
-    if !(determinant > LEAST_DETERMINANT * a[0][0] * a[1][1]) {
+    let are_apart = determinant > LEAST_DETERMINANT * a[0][0] * a[1][1];
+    if !are_apart {
         return rest;
     }
     let x = (a[1][1] * b[0] - a[0][1] * b[1]) / determinant;

@@ -44,7 +44,8 @@ pub trait Model: Send + Sync {
 
     /// Energy row h(q, dq) of (10): nb values, J per unit parameter. Friction columns are zero, those of offsets too, and springs have their potential:
     /// where the weight that a prismatic joint lifts was regrouped into its offset (`off2R`), h chi lacks its potential,
-    /// which is the offset times q of that joint, and the power row has its rate.
+    /// which is the offset times q of that joint, and the power row has its rate. [`energies`](super::energies) are
+    /// complete.
     fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]);
 
     /// Power row dh(q, dq, ddq) of (10), friction included: nb values, W per unit parameter.

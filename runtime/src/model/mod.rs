@@ -27,6 +27,7 @@ mod block;
 pub(crate) mod cholesky;
 mod dual;
 mod dynamics;
+mod energy;
 mod lanes;
 mod number;
 mod recursive;
@@ -44,6 +45,7 @@ pub use dynid_description::{
     BaseParameter, Coupling, CouplingLaw, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber,
     Limits, Motion, Nominal, ParameterKind, Robot, StandardParameter, standard_parameters,
 };
+pub use energy::{energies, energy_at};
 pub use lanes::{LANES, Lanes};
 pub use number::Number;
 pub use recursive::{

@@ -72,7 +72,7 @@ pub use extra::{ExtraTorque, Instant};
 pub use motion_file::{MotionFileError, from_csv, sampled, to_csv};
 pub use planned::{PlanError, Planned, apart};
 pub use plant::Plant;
-pub use reference::{Reference, SampledReference};
+pub use reference::{Reference, SampledReference, SampledReferenceError};
 pub use residue::Residue;
 pub use scheme::Scheme;
 pub use sensors::SensorSettings;

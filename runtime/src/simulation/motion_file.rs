@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::reference::{Reference, SampledReference};
+use super::reference::{Reference, SampledReference, SampledReferenceError};
 
 /// What of a motion's file cannot be.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -81,20 +81,13 @@ pub fn from_csv(text: &str, joints: usize) -> Result<SampledReference, MotionFil
             if place == 0 { time.push(value) } else { signals[place - 1].push(value) }
         }
     }
-    if time.len() < 2 {
-        return Err(wrong(1, "a motion needs two rows at least".to_owned()));
-    }
-    let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    for (k, pair) in time.windows(2).enumerate() {
-        if (pair[1] - pair[0] - step).abs() > 1e-3 * step || step <= 0.0 {
-            return Err(wrong(k + 3, format!("the rows must be equally spaced in time, every {step:.6} s")));
-        }
-    }
     let ddq = signals.split_off(2 * joints);
     let dq = signals.split_off(joints);
-    let still = |j: usize| signals[j].iter().all(|&x| x == signals[j][0]);
-    let fixed = (0..joints).filter(|&j| still(j)).collect();
-    Ok(SampledReference { step, q: signals, dq, ddq, fixed })
+    SampledReference::new(&time, [signals, dq, ddq]).map_err(|error| match error {
+        // The first line has the names.
+        SampledReferenceError::Spacing { sample, .. } => wrong(sample + 2, error.to_string()),
+        SampledReferenceError::TooShort => wrong(1, error.to_string()),
+    })
 }
 
 #[cfg(test)]

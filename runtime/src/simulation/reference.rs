@@ -33,6 +33,43 @@ pub struct SampledReference {
     pub fixed: Vec<usize>,
 }
 
+/// Samples that are no motion.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SampledReferenceError {
+    /// Fewer than two samples.
+    #[error("a motion needs two rows at least")]
+    TooShort,
+    /// A sample (from 0) at another distance than the mean from the one before.
+    #[error("the rows must be equally spaced in time, every {step:.6} s")]
+    Spacing {
+        /// The sample.
+        sample: usize,
+        /// The mean distance, s.
+        step: f64,
+    },
+}
+
+impl SampledReference {
+    /// A motion that was sampled at `time`, s, which begins at its first sample; `[q, dq, ddq]` with `signal[joint][sample]`,
+    /// as many samples each. Joints whose position is one number stand still.
+    ///
+    /// # Errors
+    /// Samples that are too few or not equally spaced.
+    pub fn new(time: &[f64], [q, dq, ddq]: [Vec<Vec<f64>>; 3]) -> Result<Self, SampledReferenceError> {
+        let ([first, .., last], samples) = (time, time.len()) else {
+            return Err(SampledReferenceError::TooShort);
+        };
+        let step = (last - first) / (samples - 1) as f64;
+        let uneven = |pair: &[f64]| (pair[1] - pair[0] - step).abs() > 1e-3 * step || step <= 0.0;
+        if let Some(k) = time.windows(2).position(uneven) {
+            return Err(SampledReferenceError::Spacing { sample: k + 1, step });
+        }
+        let still = |positions: &Vec<f64>| positions.iter().all(|&x| x == positions[0]);
+        let fixed = (0..q.len()).filter(|&j| still(&q[j])).collect();
+        Ok(Self { step, q, dq, ddq, fixed })
+    }
+}
+
 impl Reference for SampledReference {
     fn joints(&self) -> usize {
         self.q.len()

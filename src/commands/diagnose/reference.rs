@@ -4,21 +4,28 @@ use std::path::Path;
 
 use dynid_runtime::diagnosis::Reference;
 use dynid_runtime::model::Robot;
-use dynid_runtime::model_file::difference;
+use dynid_runtime::model_file::{Identified, difference};
 
 use crate::failure::Failure;
 use crate::saved::{own_dynamics, read_model};
 
 /// What a saved model says of the robot that is diagnosed.
 ///
-/// Parameters mean something with the table that they were identified with, so that a model with another one is refused.
-///
 /// # Errors
 /// [`Failure::Input`] where the file is no model, or one of another robot.
 pub(super) fn read(path: &Path, robot: &Robot) -> Result<Reference, Failure> {
     let saved = read_model(path)?;
     let own = own_dynamics(&saved, path)?;
-    let its = own.model().robot();
+    of(&saved, own.model().robot(), path, robot)
+}
+
+/// What a model of a robot (`its`) says of the robot that is diagnosed; errors call it `path`.
+///
+/// Parameters mean something with the table that they were identified with, so that a model with another one is refused.
+///
+/// # Errors
+/// [`Failure::Input`] where it is a model of another robot.
+pub fn of(saved: &Identified, its: &Robot, path: &Path, robot: &Robot) -> Result<Reference, Failure> {
     if let Some(what) = difference(its, robot) {
         return Err(Failure::Input(format!(
             "{}: a model of {}, not of the {} that is diagnosed ({what}); identify it again with the table that the \

@@ -31,6 +31,9 @@ pub(super) struct Arguments {
     /// The floating-point type of C; Rust is generic over it
     #[arg(long, value_enum)]
     real: Option<Real>,
+    /// Beside the C, a source by which CasADi loads its functions from a library
+    #[arg(long)]
+    casadi: bool,
     /// URDF of the same robot: its inertials are the prior of what the data do not determine, its names and frames are kept;
     /// `--to urdf` writes into a copy of it
     #[arg(long)]
@@ -72,6 +75,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.real.is_some() && arguments.to != Target::C {
         return Err(Failure::Input("--real is for --to c; the Rust module takes any number type".to_owned()));
+    }
+    if arguments.casadi && arguments.to != Target::C {
+        return Err(Failure::Input("--casadi is for --to c".to_owned()));
     }
     match arguments.to {
         Target::C => c::run(arguments),

@@ -6,7 +6,7 @@ use dynid_runtime::estimation::Method;
 
 /// How parameters are identified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Identification {
+pub enum Identification {
     /// From the recording alone.
     Solved(Method),
     /// Instrumental variables: the columns along simulated motions are the instruments of the measured ones.

@@ -1,6 +1,6 @@
 //! Methods that simulate the planned motions: instrumental variables and DIDIM.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use dynid_runtime::estimation::observe::{Equations, Observation, ObserveSettings, observe};
 use dynid_runtime::estimation::{
@@ -10,7 +10,8 @@ use dynid_runtime::model_file::SimulatedStates;
 use dynid_runtime::report::{percent, significant};
 use dynid_runtime::signal::Motion;
 use dynid_runtime::simulation::{
-    DidimError, DidimEstimate, DidimSettings, Experiment, Planned, Reference, apart, didim, simulated_motions,
+    DidimError, DidimEstimate, DidimSettings, Experiment, Planned, Reference, SampledReference, apart, didim,
+    simulated_motions,
 };
 
 use super::method::Identification;
@@ -26,10 +27,31 @@ const CONTROL: f64 = 5000.0;
 const FAR: f64 = 0.05;
 
 /// What such a method gives.
-pub(super) struct Outcome {
+pub struct Outcome {
+    /// The parameters.
     pub estimate: Estimate,
+    /// What was simulated, and how far from the recording.
     pub simulated: SimulatedStates,
+    /// What to know before believing it, in sentences.
     pub warnings: Vec<String>,
+}
+
+/// The motions that were planned, one for each that was recorded.
+pub struct Plan {
+    /// The motions; time 0 of each is that of its recording.
+    pub motions: Vec<SampledReference>,
+    /// What errors call it: its file or folder.
+    pub path: PathBuf,
+}
+
+impl Plan {
+    /// Reads a CSV or a folder as `dynid excite` writes it.
+    ///
+    /// # Errors
+    /// As of [`crate::motions::read`].
+    pub fn read(path: &Path, joints: usize) -> Result<Self, Failure> {
+        Ok(Self { motions: read_motions(path, joints)?, path: path.to_path_buf() })
+    }
 }
 
 /// What a method that simulates needs beside the recording, where it was not given.
@@ -51,68 +73,88 @@ pub(super) fn check(method: Identification, planned: Option<&Path>) -> Result<()
     }
 }
 
-/// Identifies with simulated states, from the weighted estimate of the torques.
+/// Whether a recording is read at once, which a simulation needs.
 ///
 /// # Errors
-/// [`Failure::Input`] where the plan is none of this recording's, [`Failure::Data`] where nothing comes out.
-pub(super) fn identify(
-    method: Identification,
-    recorded: &Recorded,
-    whole: bool,
-    paths: [&Path; 2],
-    torques: &Observation,
-    weighted: &Estimate,
-    r_sigma: f64,
-) -> Result<Outcome, Failure> {
-    let [recording, plan] = paths;
-    let model = recorded.dynamics.model();
-    let robot = model.robot();
-    if !whole {
-        return Err(Failure::Data(format!(
-            "{}: too long to be simulated at once: choose a part with --from and --to",
-            recording.display()
-        )));
+/// [`Failure::Data`] where only the motions of its first pieces are there.
+pub(super) fn at_once(whole: bool, recording: &Path) -> Result<(), Failure> {
+    if whole {
+        return Ok(());
     }
-    let read = read_motions(plan, robot.joints())?;
-    let references: Vec<&dyn Reference> = read.iter().map(|motion| motion as &dyn Reference).collect();
-    let values = weighted.chi();
-    let refused = |what: String| Failure::Data(format!("{}: {what}", recording.display()));
-    let planned = Planned::new(model, &values, &references, &recorded.motions, CONTROL)
-        .map_err(|error| Failure::Input(format!("{}: {error}", plan.display())))?;
-    let mut warnings = Vec::new();
-    let experiments = planned.experiments();
-    let mut start = values.clone();
-    let mut first = simulated_motions(model, &experiments, &start);
-    if let Err(error) = &first
-        && let Some(fit) = physical_fit(robot, torques, weighted)
-    {
-        warnings.push(format!(
-            "the parameters of {} cannot be simulated ({error}): the motions are simulated with the nearest ones that a \
-             robot can have",
-            weighted.method.name()
-        ));
-        start = fit.chi;
-        first = simulated_motions(model, &experiments, &start);
-    }
-    let mut motions = first.map_err(|error| refused(format!("its motions cannot be simulated: {error}")))?;
-    let rows =
-        ObserveSettings { acceleration_noise: Vec::new(), keep_rows: true, ..recorded.settings.clone() };
-    let by = BySimulation { recorded, recording, rows: &rows, refused: &refused };
-    let (estimate, changes) = match method {
-        Identification::Didim => {
-            let found = by.didim(&experiments, &start, r_sigma)?;
-            warnings.extend(not_converged(&found));
-            if let Ok(last) = simulated_motions(model, &experiments, &found.estimate.chi()) {
-                motions = last;
-            }
-            (found.estimate, found.changes)
+    Err(Failure::Data(format!(
+        "{}: too long to be simulated at once: choose a part with --from and --to",
+        recording.display()
+    )))
+}
+
+/// What is identified with simulated states.
+pub struct Task<'a> {
+    /// One of the methods that simulate.
+    pub method: Identification,
+    /// The recording, all of its motions.
+    pub recorded: &'a Recorded,
+    /// What errors call it: its file.
+    pub recording: &'a Path,
+    /// What was planned.
+    pub plan: &'a Plan,
+    /// Ratio of relative standard deviations among essential parameters, where these are wanted.
+    pub r_sigma: Option<f64>,
+}
+
+impl Task<'_> {
+    /// Identifies with simulated states, from the weighted estimate of the torques.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where the plan is none of this recording's, [`Failure::Data`] where nothing comes out.
+    pub fn identify(&self, torques: &Observation, weighted: &Estimate) -> Result<Outcome, Failure> {
+        let Self { method, recorded, recording, plan, r_sigma } = *self;
+        let model = recorded.dynamics.model();
+        let references: Vec<&dyn Reference> =
+            plan.motions.iter().map(|motion| motion as &dyn Reference).collect();
+        let values = weighted.chi();
+        let refused = |what: String| Failure::Data(format!("{}: {what}", recording.display()));
+        let planned = Planned::new(model, &values, &references, &recorded.motions, CONTROL)
+            .map_err(|error| Failure::Input(format!("{}: {error}", plan.path.display())))?;
+        let mut warnings = Vec::new();
+        let experiments = planned.experiments();
+        let mut start = values.clone();
+        let mut first = simulated_motions(model, &experiments, &start);
+        if let Err(error) = &first
+            && let Some(fit) = physical_fit(model.robot(), torques, weighted)
+        {
+            warnings.push(format!(
+                "the parameters of {} cannot be simulated ({error}): the motions are simulated with the nearest ones that a \
+                 robot can have",
+                weighted.method.name()
+            ));
+            start = fit.chi;
+            first = simulated_motions(model, &experiments, &start);
         }
-        _ => (by.instrumental_variables(&motions, torques, weighted)?, Vec::new()),
-    };
-    let apart = apart(&motions, &recorded.motions);
-    warnings.extend(far(&apart, recorded, &motions));
-    let compared_with = weighted.method.name().to_owned();
-    Ok(Outcome { estimate, simulated: SimulatedStates { compared_with, values, apart, changes }, warnings })
+        let mut motions =
+            first.map_err(|error| refused(format!("its motions cannot be simulated: {error}")))?;
+        let rows =
+            ObserveSettings { acceleration_noise: Vec::new(), keep_rows: true, ..recorded.settings.clone() };
+        let by = BySimulation { recorded, recording, rows: &rows, refused: &refused };
+        let (estimate, changes) = match method {
+            Identification::Didim => {
+                let found = by.didim(&experiments, &start, r_sigma)?;
+                warnings.extend(not_converged(&found));
+                if let Ok(last) = simulated_motions(model, &experiments, &found.estimate.chi()) {
+                    motions = last;
+                }
+                (found.estimate, found.changes)
+            }
+            _ => (by.instrumental_variables(&motions, torques, weighted)?, Vec::new()),
+        };
+        let apart = apart(&motions, &recorded.motions);
+        warnings.extend(far(&apart, recorded, &motions));
+        let compared_with = weighted.method.name().to_owned();
+        Ok(Outcome {
+            estimate,
+            simulated: SimulatedStates { compared_with, values, apart, changes },
+            warnings,
+        })
+    }
 }
 
 /// What both methods work on.
@@ -131,9 +173,9 @@ impl BySimulation<'_> {
         &self,
         experiments: &[Experiment<'_>],
         start: &[f64],
-        r_sigma: f64,
+        r_sigma: Option<f64>,
     ) -> Result<DidimEstimate, Failure> {
-        let estimate = EstimateSettings { r_sigma: Some(r_sigma), ..EstimateSettings::default() };
+        let estimate = EstimateSettings { r_sigma, ..EstimateSettings::default() };
         let settings = DidimSettings { observe: self.rows.clone(), estimate, ..DidimSettings::default() };
         let model = self.recorded.dynamics.model();
         didim(model, experiments, start, &settings).map_err(|error| match error {
