@@ -6,7 +6,7 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::tuning::Tuning;
 
 impl ExtendedModel<'_> {
-    /// Moves the shape of every law to where all laws together leave least.
+    /// Moves the shape of every law to where all laws together leave least, if that is less by more than noise.
     ///
     /// # Errors
     /// [`SingularDesign`] where a model on the way has no fit.
@@ -17,7 +17,9 @@ impl ExtendedModel<'_> {
                 let mut tuning = Tuning::within(self, k)?;
                 let before = tuning.squares();
                 tuning.run()?;
-                if tuning.squares() < before {
+                // Along a valley that is flat within its noise a shape is as good anywhere, and stays where it was found.
+                let noise = self.terms[k].inflation * self.terms[k].inflation;
+                if before - tuning.squares() > noise {
                     self.terms[k].shape = tuning.shape().to_vec();
                     self.refit()?;
                     moved = true;
