@@ -30,7 +30,7 @@ impl Search<'_> {
             }
             // What explains anything may explain more at the end of its valley.
             let mut tuning = Tuning::beside(model, &Accepted::tried(candidate, shape)).ok()?;
-            tuning.run().ok()?;
+            tuning.run();
             Some(trial(tuning.shape()))
         });
         for (candidate, trial) in self.fast.iter_mut().zip(polished) {
@@ -92,7 +92,7 @@ impl Search<'_> {
         let tuned = parallel::map(self.threads, starts.len(), |k| {
             let shape = self.refined(regression, candidate, &starts[k]);
             let mut tuning = Tuning::beside(&self.model, &Accepted { shape, ..term.clone() }).ok()?;
-            tuning.run().ok()?;
+            tuning.run();
             Some((tuning.shape().to_vec(), tuning.squares()))
         });
         let mut ends: Vec<(Vec<f64>, f64)> = tuned.into_iter().flatten().collect();

@@ -16,7 +16,7 @@ impl ExtendedModel<'_> {
             for k in 0..self.terms.len() {
                 let mut tuning = Tuning::within(self, k)?;
                 let before = tuning.squares();
-                tuning.run()?;
+                tuning.run();
                 // Along a valley that is flat within its noise a shape is as good anywhere, and stays where it was found.
                 let noise = self.terms[k].inflation * self.terms[k].inflation;
                 if before - tuning.squares() > noise {

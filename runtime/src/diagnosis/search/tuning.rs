@@ -65,15 +65,15 @@ impl<'a> Tuning<'a> {
         Ok(Self { model, sigma, search, columns, term: term.clone(), design, fit, squares })
     }
 
-    /// Moves the shape to where least is left.
-    pub fn run(&mut self) -> Result<(), SingularDesign> {
+    /// Moves the shape to where least is left, or to where a step has no fit.
+    pub fn run(&mut self) {
         for _ in 0..MOST_STEPS {
             let before = self.squares;
-            if !self.step()? || before - self.squares < LEAST_FALL * before {
+            let went = self.step().unwrap_or(false);
+            if !went || before - self.squares < LEAST_FALL * before {
                 break;
             }
         }
-        Ok(())
     }
 
     /// The shape.
