@@ -147,6 +147,11 @@ impl ParameterKind {
         matches!(self, K | KR)
     }
 
+    /// Whether its torque is part of a joint's load: inertia, gravity, rotors and springs, which store energy.
+    pub fn is_load(self) -> bool {
+        self <= Ia || self.is_spring()
+    }
+
     /// SI unit, where the frame that the parameter belongs to moves like this.
     ///
     /// ```

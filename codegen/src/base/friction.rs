@@ -2,7 +2,7 @@
 
 use super::dependent::dependencies;
 use super::regroup::Regrouping;
-use crate::exact::{Form, Number, decimal};
+use crate::exact::{Form, Number};
 use crate::robot::RobotTable;
 use dynid_description::StandardParameter;
 use num_rational::BigRational;
@@ -54,23 +54,4 @@ fn ratio(c: &[BigRational], d: &[BigRational]) -> Option<BigRational> {
     let first = d.iter().position(|x| *x != zero)?;
     let factor = &c[first] / &d[first];
     (factor != zero && c.iter().zip(d).all(|(x, y)| *x == &factor * y)).then_some(factor)
-}
-
-/// The exact combination as one number per joint.
-impl RobotTable {
-    pub(super) fn acts_on(&self, parameter: &StandardParameter) -> Vec<BigRational> {
-        let joint_frames = self.joint_frames();
-        let mut form = vec![BigRational::from_integer(0.into()); joint_frames.len()];
-        if let Some(coupling) = parameter.coupling {
-            self.couplings[coupling].terms.iter().for_each(|&(joint, c)| form[joint] = decimal(c));
-        } else if let Some(joint) = joint_frames.iter().position(|&f| f == parameter.frame) {
-            use dynid_description::ParameterKind::{Fcm, Fvm};
-            let row = &self.drive.gear[joint];
-            match parameter.kind {
-                Fvm | Fcm => form = row.iter().map(|&x| decimal(x) / decimal(row[joint])).collect(),
-                _ => form[joint] = BigRational::from_integer(1.into()),
-            }
-        }
-        form
-    }
 }

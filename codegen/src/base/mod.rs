@@ -28,6 +28,7 @@
 //! ```
 
 mod attainable;
+mod combination;
 mod dependent;
 mod friction;
 mod placement;

@@ -13,7 +13,7 @@ use crate::base::BaseSet;
 use crate::mechanics::{Equations, ModelError};
 use crate::numeric::table_of;
 use crate::robot::RobotTable;
-use dynid_description::{ParameterKind, Robot};
+use dynid_description::Robot;
 use law::LawFormula;
 
 /// What is known of one robot beside its table: an identified model.
@@ -199,8 +199,7 @@ impl<'a> Export<'a> {
 
     /// The known parameters with those of friction and offsets zero: their torques are the loads.
     fn load_parameters(&self) -> Vec<f64> {
-        let kind = |k: usize| self.set.standard[self.set.base[k].standard].kind;
-        let moves = |k: usize| kind(k) <= ParameterKind::Ia || kind(k).is_spring();
+        let moves = |k: usize| self.set.standard[self.set.base[k].standard].kind.is_load();
         let chi = self.known.map_or(&[][..], |known| &known.chi);
         chi.iter().enumerate().map(|(k, &x)| if moves(k) { x } else { 0.0 }).collect()
     }

@@ -171,10 +171,7 @@ fn left(
             design.push(column.clone());
         }
         design.refresh_from(first);
-        let fit = Fit::whole(design, sigma)?;
-        let squares = |j: usize| (0..design.segments.len()).map(|g| fit.squares(design, j, g)).sum::<f64>();
-        let all: f64 = (0..design.joints).map(|j| squares(j) / (sigma[j] * sigma[j])).sum();
-        least = least.min(all.sqrt());
+        least = least.min(Fit::whole(design, sigma)?.weighted_squares(design).sqrt());
     }
     Ok(least)
 }

@@ -42,10 +42,10 @@ pub trait Model: Send + Sync {
     /// Which entries of IDM are computed; the others are zero for every state.
     fn pattern(&self) -> &Pattern;
 
-    /// Energy row h(q, dq) of (10): nb values, J per unit parameter. Friction columns are zero, those of offsets too, and springs have their potential:
-    /// where the weight that a prismatic joint lifts was regrouped into its offset (`off2R`), h chi lacks its potential,
-    /// which is the offset times q of that joint, and the power row has its rate. [`energies`](super::energies) are
-    /// complete.
+    /// Energy row h(q, dq) of (10): nb values, J per unit parameter; springs have their potential. Friction columns are zero,
+    /// those of offsets too: where the weight that a prismatic joint lifts was regrouped into its offset (`off2R`), h chi
+    /// lacks its potential, which is the offset times q of that joint, and the power row has its rate.
+    /// [`energies`](super::energies) are complete.
     fn energy(&self, q: &[f64], dq: &[f64], h: &mut [f64]);
 
     /// Power row dh(q, dq, ddq) of (10), friction included: nb values, W per unit parameter.

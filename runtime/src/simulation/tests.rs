@@ -9,8 +9,7 @@ use rand::{RngExt, SeedableRng};
 
 fn without_friction(model: &RecursiveModel, chi: &[f64]) -> Vec<f64> {
     let kinds = model.robot().standard.iter().map(|p| p.kind);
-    let stores = |kind: ParameterKind| kind <= ParameterKind::Ia || kind.is_spring();
-    chi.iter().zip(kinds).map(|(&x, kind)| if stores(kind) { x } else { 0.0 }).collect()
+    chi.iter().zip(kinds).map(|(&x, kind)| if kind.is_load() { x } else { 0.0 }).collect()
 }
 
 fn energy(model: &RecursiveModel, chi: &[f64], state: &State) -> f64 {

@@ -3,6 +3,7 @@
 use crate::diagnosis::contact::force::{JointRow, UnitForces, as_torques};
 use crate::diagnosis::contact::moving::told;
 use crate::diagnosis::contact::scan::Noise;
+use crate::diagnosis::contact::squares::{Squares, mean_beside};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{FELT, FORCE_EXPLAINS, FORCE_LEAVES, LINKS_ALIKE, UNDETERMINED_FORCE};
@@ -81,40 +82,21 @@ impl Felt {
         known.then_some(sigma)
     }
 
-    /// Squares of these joints' rows, in units of the noise.
+    /// Squares of these joints' rows.
     pub fn squares(&self, around: &Around<'_>, joints: &[usize]) -> Squares {
         let mut all = Squares::default();
         for (joint, rows, _) in self.joints.iter().filter(|(j, _, _)| joints.contains(j)) {
             let weight = 1.0 / (around.sigma[*joint] * around.sigma[*joint]);
+            let residual: Vec<f64> = rows.iter().map(|&r| around.residual[r]).collect();
             for (i, &r) in rows.iter().enumerate() {
-                let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten();
-                let beside: Vec<f64> =
-                    beside.filter_map(|k| rows.get(k)).map(|&k| around.residual[k]).collect();
-                let mean = beside.iter().sum::<f64>() / beside.len().max(1) as f64;
-                all.before += weight * around.residual[r].powi(2);
-                all.after += weight * (around.residual[r] - mean).powi(2);
-                all.torque += weight * around.design.y[r].powi(2);
+                all += Squares {
+                    before: weight * residual[i].powi(2),
+                    after: weight * (residual[i] - mean_beside(&residual, i)).powi(2),
+                    torque: weight * around.design.y[r].powi(2),
+                };
             }
         }
         all
-    }
-}
-
-/// Squares of the rows in a window, in units of the noise.
-#[derive(Debug, Clone, Copy, Default)]
-pub(in crate::diagnosis) struct Squares {
-    /// Of the residual.
-    pub before: f64,
-    /// Of what the mean of the neighbouring rows leaves of it.
-    pub after: f64,
-    /// Of the torque.
-    pub torque: f64,
-}
-
-impl Squares {
-    /// Whether the residual changes from row to row as much as it is large: it swings, and nothing pushes.
-    pub fn swing(&self) -> bool {
-        self.after > self.before
     }
 }
 

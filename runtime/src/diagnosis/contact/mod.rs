@@ -10,6 +10,7 @@ pub(in crate::diagnosis) mod residual;
 pub(in crate::diagnosis) mod rest;
 pub(in crate::diagnosis) mod scan;
 pub(in crate::diagnosis) mod search;
+pub(in crate::diagnosis) mod squares;
 pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod white;
 pub(in crate::diagnosis) mod windows;

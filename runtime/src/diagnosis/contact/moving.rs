@@ -104,9 +104,7 @@ pub(in crate::diagnosis) fn seen(around: &Around<'_>, look: &Look) -> Option<Con
         let window = [wrench.window[0] - CONTACT_MARGIN, wrench.window[1] + CONTACT_MARGIN];
         contacts.windows[clearest.motion].push(window);
         contacts.doubt = contacts.doubt.min(doubt);
-        contacts.before += squares.before;
-        contacts.after += squares.after;
-        contacts.torque += squares.torque;
+        contacts.squares += squares;
         contacts.wrenches.push(wrench);
     }
     let targets = around.context.signals.iter().filter(|s| s.is_target);

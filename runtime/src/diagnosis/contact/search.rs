@@ -2,6 +2,7 @@
 
 use crate::diagnosis::contact::force::{JointRow, PushedLink, UnitForces, best_link};
 use crate::diagnosis::contact::residual::{Energies, RobustResidual, energies};
+use crate::diagnosis::contact::squares::Squares;
 use crate::diagnosis::contact::windows::{duration, windows};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
@@ -20,12 +21,8 @@ pub(in crate::diagnosis) struct Contacts {
     /// Times per signal that no other row may use.
     pub windows: Vec<Vec<[f64; 2]>>,
     pub wrenches: Vec<ContactForce>,
-    /// Residual squares in the windows in units of the noise, without a force and with the force of the neighbouring
-    /// instants.
-    pub before: f64,
-    pub after: f64,
-    /// Squares of the torque itself in the windows, same units.
-    pub torque: f64,
+    /// Of the rows in the windows.
+    pub squares: Squares,
     /// Probability that the clearest of them is an accident.
     pub doubt: f64,
 }
@@ -36,9 +33,7 @@ impl Contacts {
         Self {
             windows: vec![Vec::new(); motions],
             wrenches: Vec::new(),
-            before: 0.0,
-            after: 0.0,
-            torque: 0.0,
+            squares: Squares::default(),
             doubt: 1.0,
         }
     }
@@ -53,23 +48,16 @@ impl Contacts {
             windows.extend(more);
         }
         all.wrenches.extend(other.wrenches);
-        all.before += other.before;
-        all.after += other.after;
-        all.torque += other.torque;
+        all.squares += other.squares;
         all.doubt = all.doubt.min(other.doubt);
         Some(all)
     }
 }
 
-/// A window that one force explains, with squares in units of the noise.
+/// A window that one force explains.
 struct Explained {
     wrench: ContactForce,
-    /// Of the residual.
-    before: f64,
-    /// Of what the force of the neighbouring instants leaves.
-    after: f64,
-    /// Of the torque.
-    torque: f64,
+    squares: Squares,
 }
 
 /// Rows of all joints per instant of a window.
@@ -95,9 +83,7 @@ pub(in crate::diagnosis) fn find(
                     continue;
                 }
                 contacts.wrenches.push(explained.wrench);
-                contacts.before += explained.before;
-                contacts.after += explained.after;
-                contacts.torque += explained.torque;
+                contacts.squares += explained.squares;
             }
         }
     }
@@ -155,9 +141,7 @@ fn explain(
 ) -> Option<Explained> {
     let s = &context.signals[signal];
     let instants = instants(design, robust, s, signal, window);
-    let squares = |of: &dyn Fn(&JointRow) -> f64| -> f64 {
-        instants.values().flatten().map(|row| (of(row) / row.sigma).powi(2)).sum()
-    };
+    let torque = instants.values().flatten().map(|row| (row.y / row.sigma).powi(2)).sum();
     let mut before = 0.0;
     for rows in instants.values() {
         before += rows.iter().map(|row| (row.residual / row.sigma).powi(2)).sum::<f64>();
@@ -188,7 +172,7 @@ fn explain(
         mean_force: [mean[0], mean[1], mean[2]],
         ..ContactForce::default()
     };
-    Some(Explained { wrench, before, after, torque: squares(&|row| row.y) })
+    Some(Explained { wrench, squares: Squares { before, after, torque } })
 }
 
 /// Rows within a window.

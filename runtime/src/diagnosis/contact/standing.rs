@@ -3,6 +3,7 @@
 use crate::diagnosis::contact::force::{JointRow, as_torques, best_link};
 use crate::diagnosis::contact::rest::{Load, Push, Seen, Standing, look, stretches};
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::contact::squares::{Squares, mean_beside};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, STICTION};
@@ -12,8 +13,8 @@ use nalgebra::Vector3;
 /// What is seen of the outside while the robot holds still.
 pub(in crate::diagnosis) struct AtRest {
     pub wrenches: Vec<ContactForce>,
-    /// Squares beyond gravity, what the neighbouring instants leave of them, and of the torque, while pushed.
-    pub squares: [f64; 3],
+    /// Of the torques beyond gravity while pushed.
+    pub squares: Squares,
     /// Least probability that static friction explains a push.
     pub doubt: f64,
     /// Torques that are off for as long as the robot stands, with the index of their motion.
@@ -30,13 +31,10 @@ pub(in crate::diagnosis) struct AtRest {
 impl AtRest {
     /// The pushes; rows that are at rest are not used for anything else anyway.
     pub fn contacts(&self, motions: usize) -> Option<Contacts> {
-        let [before, after, torque] = self.squares;
         (!self.wrenches.is_empty()).then(|| Contacts {
             windows: vec![Vec::new(); motions],
             wrenches: self.wrenches.clone(),
-            before,
-            after,
-            torque,
+            squares: self.squares,
             doubt: self.doubt,
         })
     }
@@ -54,7 +52,7 @@ pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, known: &[bool], slowe
         .collect();
     let mut found = AtRest {
         wrenches: Vec::new(),
-        squares: [0.0; 3],
+        squares: Squares::default(),
         doubt: 1.0,
         loads: Vec::new(),
         time: 0.0,
@@ -186,7 +184,7 @@ fn wrench(
     offset: usize,
     standing: &Standing<'_>,
     push: &Push,
-    squares: &mut [f64; 3],
+    squares: &mut Squares,
 ) -> ContactForce {
     let sample = |time: f64| (((time - standing.start) * standing.rate).round().max(0.0)) as usize;
     let last = standing.still.len().saturating_sub(1);
@@ -205,18 +203,15 @@ fn wrench(
             })
             .collect()
     };
+    let course = |beyond: &Vec<f64>| -> Vec<f64> { instants.iter().map(|&t| beyond[t]).collect() };
+    let courses: Vec<Vec<f64>> = standing.beyond.iter().map(course).collect();
     for (i, &t) in instants.iter().enumerate() {
         for JointRow { joint: j, residual: beyond, y: torque, sigma } in rows(t) {
-            let neighbours: Vec<f64> = [i.checked_sub(1), Some(i + 1)]
-                .into_iter()
-                .flatten()
-                .filter_map(|k| instants.get(k))
-                .map(|&k| standing.beyond[j][k])
-                .collect();
-            let mean = neighbours.iter().sum::<f64>() / neighbours.len().max(1) as f64;
-            for (sum, x) in squares.iter_mut().zip([beyond, beyond - mean, torque]) {
-                *sum += (x / sigma).powi(2);
-            }
+            *squares += Squares {
+                before: (beyond / sigma).powi(2),
+                after: ((beyond - mean_beside(&courses[j], i)) / sigma).powi(2),
+                torque: (torque / sigma).powi(2),
+            };
         }
     }
     let felt = push.joints.iter();

@@ -150,12 +150,13 @@ pub(in crate::diagnosis) fn of_contacts(robot: &Robot, contacts: &Contacts) -> F
         parameters.insert("largest_joint_torque".into(), torque);
         parameters.insert("joint".into(), value(most.joint as f64, "1"));
     }
+    let squares = contacts.squares;
     let mut finding = Finding {
         confidence: told(1.0 - contacts.doubt),
         parameters,
-        held_out_before: (contacts.before / contacts.torque).sqrt(),
-        held_out_after: (contacts.after / contacts.torque).sqrt(),
-        share: 1.0 - contacts.after / contacts.before,
+        held_out_before: (squares.before / squares.torque).sqrt(),
+        held_out_after: (squares.after / squares.torque).sqrt(),
+        share: 1.0 - squares.after / squares.before,
         contacts: contacts.wrenches.clone(),
         ..Finding::of(EffectTerm {
             wrenches: contacts.wrenches.clone(),

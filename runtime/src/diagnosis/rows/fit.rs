@@ -74,7 +74,7 @@ impl Fit {
     /// Standard deviation of the residual of a joint on all segments, bounded from below.
     fn deviation(&self, design: &Design, joint: usize) -> f64 {
         let rows = design.of_joint(joint);
-        let squares: f64 = (0..design.segments.len()).map(|g| self.squares(design, joint, g)).sum();
+        let squares = self.squares_of_joint(design, joint);
         let count = rows.len().max(1) as f64;
         let largest = design.y[rows].iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         (squares / count).sqrt().max(LEAST_RELATIVE_SIGMA * largest).max(LEAST_SIGMA)
@@ -94,6 +94,17 @@ impl Fit {
             sum += self.chi[i] * (product - 2.0 * gram.with_y(i));
         }
         sum.max(0.0)
+    }
+
+    /// The same in all segments.
+    fn squares_of_joint(&self, design: &Design, joint: usize) -> f64 {
+        (0..design.segments.len()).map(|g| self.squares(design, joint, g)).sum()
+    }
+
+    /// Squared residuals on all rows, in units of the joints' noise.
+    pub fn weighted_squares(&self, design: &Design) -> f64 {
+        let of_joint = |j: usize| self.squares_of_joint(design, j) / (self.sigma[j] * self.sigma[j]);
+        (0..design.joints).map(of_joint).sum()
     }
 
     /// Residual of every row.

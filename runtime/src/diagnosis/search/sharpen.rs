@@ -14,6 +14,9 @@ impl ExtendedModel<'_> {
         for _ in 0..SHARPENING_SWEEPS {
             let mut moved = false;
             for k in 0..self.terms.len() {
+                if self.terms[k].shape.is_empty() {
+                    continue;
+                }
                 let mut tuning = Tuning::within(self, k)?;
                 let before = tuning.squares();
                 tuning.run();

@@ -19,10 +19,13 @@ pub(in crate::diagnosis) struct Tuning<'a> {
     model: &'a ExtendedModel<'a>,
     sigma: &'a [f64],
     search: ShapeSearch,
-    columns: Range<usize>,
     term: Accepted,
+    /// Its columns on the rows, and where the design has them: nowhere where its amplitude is fixed.
+    columns: Vec<Vec<f64>>,
+    places: Range<usize>,
     design: Design,
     fit: Fit,
+    /// What the fit leaves of all rows, in units of the joints' noise.
     squares: f64,
 }
 
@@ -31,29 +34,32 @@ impl<'a> Tuning<'a> {
     pub fn within(model: &'a ExtendedModel<'a>, k: usize) -> Result<Self, SingularDesign> {
         let term = &model.terms[k];
         let side = model.regression(term.effect.properties().window);
-        Self::new(model, term, side.design.clone(), side.term_columns[k].clone())
+        let columns = model.columns_of(&side.design, term);
+        Self::new(model, term, columns, side.design.clone(), side.term_columns[k].clone())
     }
 
     /// A law that is not in the model, beside those that are.
     pub fn beside(model: &'a ExtendedModel<'a>, term: &Accepted) -> Result<Self, SingularDesign> {
         let mut design = model.regression(term.effect.properties().window).design.clone();
         let first = design.columns.len();
-        for column in model.columns_of(&design, term) {
+        let columns = model.columns_of(&design, term);
+        for column in &columns {
             match term.fixed {
-                Some(a) => design.y.iter_mut().zip(&column).for_each(|(y, c)| *y -= a * c),
-                None => design.push(column),
+                Some(a) => design.y.iter_mut().zip(column).for_each(|(y, c)| *y -= a * c),
+                None => design.push(column.clone()),
             }
         }
         design.refresh_from(first);
-        let columns = first..design.columns.len();
-        Self::new(model, term, design, columns)
+        let places = first..design.columns.len();
+        Self::new(model, term, columns, design, places)
     }
 
     fn new(
         model: &'a ExtendedModel<'a>,
         term: &Accepted,
+        columns: Vec<Vec<f64>>,
         design: Design,
-        columns: Range<usize>,
+        places: Range<usize>,
     ) -> Result<Self, SingularDesign> {
         let sigma = &model.regression(term.effect.properties().window).sigma;
         let (form, scales) = (term.effect.form(), &model.context.scales);
@@ -61,8 +67,8 @@ impl<'a> Tuning<'a> {
         let grid: Vec<&[f64]> = grid.iter().map(Vec::as_slice).collect();
         let search = form.shape_search(term.place, scales, &grid);
         let fit = Fit::whole(&design, sigma)?;
-        let squares = squares(&fit, &design);
-        Ok(Self { model, sigma, search, columns, term: term.clone(), design, fit, squares })
+        let squares = fit.weighted_squares(&design);
+        Ok(Self { model, sigma, search, term: term.clone(), columns, places, design, fit, squares })
     }
 
     /// Moves the shape to where least is left, or to where a step has no fit.
@@ -95,10 +101,12 @@ impl<'a> Tuning<'a> {
             if shape == self.term.shape {
                 return Ok(false);
             }
-            let (design, fit) = self.with(&shape)?;
-            let left = squares(&fit, &design);
+            let (columns, design) = self.with(&shape);
+            let fit = Fit::whole(&design, self.sigma)?;
+            let left = fit.weighted_squares(&design);
             if left < self.squares {
-                (self.term.shape, self.design, self.fit, self.squares) = (shape, design, fit, left);
+                (self.term.shape, self.columns) = (shape, columns);
+                (self.design, self.fit, self.squares) = (design, fit, left);
                 return Ok(true);
             }
         }
@@ -108,7 +116,7 @@ impl<'a> Tuning<'a> {
     /// How each number of the shape changes to where the derivatives of the torques have nothing left; numbers that would
     /// leave their bounds stay there.
     fn direction(&mut self) -> Result<Vec<(usize, f64)>, SingularDesign> {
-        let amplitude: Vec<f64> = self.columns.clone().map(|c| self.fit.chi[c]).collect();
+        let amplitude: Vec<f64> = self.places.clone().map(|c| self.fit.chi[c]).collect();
         let mut free = tangents(self.model, &self.design, &self.term, &amplitude);
         let start = self.design.columns.len();
         loop {
@@ -149,38 +157,23 @@ impl<'a> Tuning<'a> {
         shape
     }
 
-    /// The rows with another shape of the law, and their fit.
-    fn with(&self, shape: &[f64]) -> Result<(Design, Fit), SingularDesign> {
+    /// The columns of another shape of the law, and the rows with them.
+    fn with(&self, shape: &[f64]) -> (Vec<Vec<f64>>, Design) {
         let mut design = self.design.clone();
-        let of = |shape: &[f64]| {
-            self.model.columns_of(&self.design, &Accepted { shape: shape.to_vec(), ..self.term.clone() })
-        };
-        let first = match self.term.fixed {
-            Some(amplitude) => {
-                for (old, new) in of(&self.term.shape).iter().zip(&of(shape)) {
-                    let change = old.iter().zip(new).map(|(old, new)| amplitude * (old - new));
-                    design.y.iter_mut().zip(change).for_each(|(y, change)| *y += change);
-                }
-                design.columns.len()
+        let moved = Accepted { shape: shape.to_vec(), ..self.term.clone() };
+        let columns = self.model.columns_of(&self.design, &moved);
+        if let Some(amplitude) = self.term.fixed {
+            for (old, new) in self.columns.iter().zip(&columns) {
+                let change = old.iter().zip(new).map(|(old, new)| amplitude * (old - new));
+                design.y.iter_mut().zip(change).for_each(|(y, change)| *y += change);
             }
-            None => {
-                for (column, new) in self.columns.clone().zip(of(shape)) {
-                    design.columns[column] = new;
-                }
-                self.columns.start
-            }
-        };
+        }
+        for (place, new) in self.places.clone().zip(&columns) {
+            design.columns[place].clone_from(new);
+        }
+        // Nothing but y changes where no column is the law's.
+        let first = if self.places.is_empty() { design.columns.len() } else { self.places.start };
         design.refresh_from(first);
-        let fit = Fit::whole(&design, self.sigma)?;
-        Ok((design, fit))
+        (columns, design)
     }
-}
-
-/// What a fit leaves of all rows, in units of the joints' noise.
-fn squares(fit: &Fit, design: &Design) -> f64 {
-    let of_joint = |j: usize| -> f64 {
-        let left: f64 = (0..design.segments.len()).map(|g| fit.squares(design, j, g)).sum();
-        left / (fit.sigma[j] * fit.sigma[j])
-    };
-    (0..design.joints).map(of_joint).sum()
 }

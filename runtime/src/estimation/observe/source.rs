@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::block::BLOCK;
 use super::error::ObserveError;
 use super::settings::{Equations, ExtraColumns};
-use crate::model::{JointIndex, LINE, Lanes, Line, Model, ParameterKind, Robot, States};
+use crate::model::{JointIndex, LINE, Lanes, Line, Model, Robot, States};
 use crate::signal::Motion;
 
 /// Most joints that an observation can have.
@@ -68,8 +68,7 @@ pub(super) fn source<'a>(
         Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
         Equations::Power { closed_form } => {
             let inertial = (0..model.robot().base.len())
-                .map(|c| model.robot().standard[model.robot().base[c].standard].kind)
-                .map(|kind| kind <= ParameterKind::Ia || kind.is_spring())
+                .map(|c| model.robot().standard[model.robot().base[c].standard].kind.is_load())
                 .collect();
             let filtered = (0..=model.robot().base.len()).collect();
             Box::new(Power { model, signals, closed_form, inertial, filtered, n })
