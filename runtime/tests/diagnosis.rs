@@ -16,6 +16,8 @@ use dynid_runtime::effects::{EffectKind, Place};
 use dynid_runtime::model::Robot;
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 /// Motions of a recording.
 const MOTIONS: u64 = 3;
@@ -385,6 +387,24 @@ fn nothing_is_named_on_a_planar_arm_that_hides_nothing() {
 #[test]
 fn nothing_is_named_on_an_arm_with_a_slide_that_hides_nothing() {
     assert!(diagnosed(scara(), &Hidden::nothing()).findings.is_empty());
+}
+
+#[test]
+fn noise_of_the_positions_whose_torque_nobody_feels_is_no_spring() {
+    let wobbling = |trajectory: &mut Trajectory| {
+        let mut rng = Pcg64::seed_from_u64((trajectory.position[0][0].abs() * 1e9) as u64);
+        for q in &mut trajectory.position {
+            // As of a coarse encoder at low speed: slower than white, faster than the motion.
+            let mut wave = || (rng.random_range(4.0..16.0), rng.random_range(0.0..6.3));
+            let waves: Vec<(f64, f64)> = (0..40).map(|_| wave()).collect();
+            for (q, t) in q.iter_mut().zip(&trajectory.time) {
+                *q += waves.iter().map(|(f, phase)| 2e-5 * (6.283 * f * t + phase).sin()).sum::<f64>();
+            }
+        }
+    };
+    for bench in [planar(), scara()] {
+        assert!(diagnosed(bench, &Hidden::in_recording(wobbling)).findings.is_empty());
+    }
 }
 
 #[test]

@@ -193,6 +193,12 @@ pub(super) const LEAST_FRICTION_CHANGE: f64 = 0.05;
 /// Displacement, as a fraction of a joint's travel, over which friction builds up after a reversal in the nuisance
 /// column: the shortest of the grid of the law itself. Mechanics.
 pub(super) const PRESLIDING_NUISANCE: f64 = 0.002;
+/// Where the parts of the acceleration begin that may be noise of the encoder, as a fraction of the rate of the rows:
+/// octaves below the highest frequency that they show. Statistics.
+pub(super) const NOISE_OCTAVES: [f64; 3] = [0.0625, 0.125, 0.25];
+/// Most of the noise's squares that columns an octave wide may miss: its share of the acceleration grows from none to all,
+/// and is described to within a half. Statistics.
+pub(super) const NOISE_MISSED: f64 = 0.25;
 
 // ---- Search -------------------------------------------------------------------------------------------------------
 

@@ -110,6 +110,27 @@ fn dense(design: &Design, column: &Sparse) -> Vec<f64> {
     full
 }
 
+/// Columns of every motion on all rows of the design, zero where a column does not act.
+pub(super) fn on_rows(
+    context: &Context<'_>,
+    design: &Design,
+    of_motion: impl Fn(usize) -> Vec<Series>,
+) -> Vec<Vec<f64>> {
+    let mut out: Vec<Sparse> = Vec::new();
+    for k in 0..context.signals.len() {
+        let columns = of_motion(k);
+        if out.is_empty() {
+            out = columns.iter().map(|c| c.iter().map(|(j, _)| (*j, Vec::new())).collect()).collect();
+        }
+        for (column, series) in out.iter_mut().zip(&columns) {
+            for ((j, rows), (_, values)) in column.iter_mut().zip(series) {
+                design.sample(*j, k, values, rows);
+            }
+        }
+    }
+    out.iter().map(|column| dense(design, column)).collect()
+}
+
 /// Columns of k that must have a part of their own. Of the ten columns of a body the standard model makes some, of the
 /// three of a rotor at times its inertia: the others still count. A wave of which only the sine can be seen is none.
 fn columns_needed(k: usize) -> usize {

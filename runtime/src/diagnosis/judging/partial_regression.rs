@@ -106,6 +106,12 @@ impl Residualised {
         &self.squares
     }
 
+    /// Squares of the residual that the columns take away with the best factor on all of them, if it is positive.
+    fn alike(&self) -> f64 {
+        let with_residual = self.with_residual.sum().max(0.0);
+        with_residual * with_residual / self.squares.sum().max(f64::MIN_POSITIVE)
+    }
+
     /// Squares of the residual that amplitudes take away.
     fn gain(&self, a: &DVector<f64>) -> f64 {
         2.0 * a.dot(&self.with_residual) - a.dot(&(&self.squares * a))
@@ -135,6 +141,13 @@ impl Regression {
     pub fn best_trial(&self, candidate: &Candidate) -> Option<usize> {
         let gains = candidate.trials.iter().map(|trial| self.gain_of(candidate, trial));
         gains.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
+    }
+
+    /// The shape whose course over time is nearest to what is left, however large.
+    pub fn nearest(&self, candidate: &Candidate) -> Option<Vec<f64>> {
+        let alike = |trial: &Trial| self.fit.project_out(trial).map_or(0.0, |part| part.alike());
+        let of = |trial: &Trial| (alike(trial), trial.shape.clone());
+        candidate.trials.iter().map(of).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, shape)| shape)
     }
 
     /// For each value of the first number of a candidate's shapes the shape with the largest in-sample gain over all

@@ -252,6 +252,17 @@ impl<'a> Context<'a> {
         self.links(signal).compliant((self.model, &self.chi), motion, j, &t)
     }
 
+    /// How a joint with a transmission of this shape rings in a motion, from a stretch and from a rate at its start.
+    pub fn ringing(&self, signal: usize, j: usize, shape: &[f64]) -> Vec<Series> {
+        let t = self.transmission(j, shape);
+        self.links(signal).ringing((self.model, &self.chi), &self.signals[signal], j, &t)
+    }
+
+    /// The torques on all joints that an acceleration of joint j asks for in a motion.
+    pub fn inertial(&self, signal: usize, j: usize, acceleration: &[f64]) -> Series {
+        self.links(signal).inertial(j, acceleration)
+    }
+
     fn links(&self, signal: usize) -> &Links {
         self.links[signal].get_or_init(|| Links::new(self.model, &self.chi, &self.signals[signal]))
     }

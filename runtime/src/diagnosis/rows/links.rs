@@ -49,6 +49,13 @@ impl Links {
         &self.mass[j * self.joints + j]
     }
 
+    /// The torques on all joints that an acceleration of joint j asks for.
+    pub fn inertial(&self, j: usize, acceleration: &[f64]) -> Series {
+        let n = self.joints;
+        let on = |i: usize| acceleration.iter().zip(&self.mass[i * n + j]).map(|(a, m)| m * a).collect();
+        (0..n).map(|i| (i, on(i))).collect()
+    }
+
     /// The torques on all joints beyond those of the rigid model where joint j has this transmission.
     pub fn compliant(
         &self,
@@ -57,12 +64,8 @@ impl Links {
         j: usize,
         t: &Transmission,
     ) -> Series {
-        let n = self.joints;
-        let bent = self.bent[j].get_or_init(|| bent(robot, signals, j));
-        let of_link = |m: &f64| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9);
-        let inertia: Vec<f64> = self.inertia(j).iter().map(of_link).collect();
-        let load: Vec<f64> = self.load[j].iter().zip(&signals.ddq[j]).map(|(l, a)| l - t.rotor * a).collect();
-        let link = LinkSide { load: &load, inertia: &inertia, stiffness: &bent[j], rate: signals.rate };
+        let side = self.driven(robot, signals, j, t);
+        let link = side.link(signals.rate);
         let measured = &signals.torque[j];
         let start = if measured.iter().any(|x| *x != 0.0) {
             let rigid = &torques.total[j];
@@ -70,15 +73,62 @@ impl Links {
             stretch_at_start(&link, &missing, t, signals.edge_samples)
         } else {
             // A motion that nobody has measured.
-            Stretch::under(load.first().copied().unwrap_or(0.0), t)
+            Stretch::under(side.load.first().copied().unwrap_or(0.0), t)
         };
-        let (mut x, mut swung) = (vec![0.0; load.len()], vec![0.0; load.len()]);
-        deflection(&link, t, start, [&mut x, &mut swung]);
+        self.swung(&side, &link, t, start)
+    }
+
+    /// The torques of a transmission that rings without a load, from one unit of stretch at the start and from one of its
+    /// rate, such that both are torques of one size.
+    pub fn ringing(&self, robot: Parametrised<'_>, s: &Signals, j: usize, t: &Transmission) -> Vec<Series> {
+        let side = self.driven(robot, s, j, t);
+        let unloaded = vec![0.0; side.load.len()];
+        let link = LinkSide { load: &unloaded, ..side.link(s.rate) };
+        let spring = Transmission { play: 0.0, ..*t };
+        let angular = 2.0 * std::f64::consts::PI * t.frequency;
+        let starts =
+            [Stretch { x: 1.0 / t.stiffness, dx: 0.0 }, Stretch { x: 0.0, dx: angular / t.stiffness }];
+        starts.map(|start| self.swung(&side, &link, &spring, start)).into()
+    }
+
+    /// What a transmission of joint j drives.
+    fn driven(&self, robot: Parametrised<'_>, s: &Signals, j: usize, t: &Transmission) -> Driven<'_> {
+        let bent = self.bent[j].get_or_init(|| bent(robot, s, j));
+        let of_link = |m: &f64| (m - t.rotor).max(LEAST_LINK_INERTIA * m.abs()).max(1e-9);
+        Driven {
+            joint: j,
+            load: self.load[j].iter().zip(&s.ddq[j]).map(|(l, a)| l - t.rotor * a).collect(),
+            inertia: self.inertia(j).iter().map(of_link).collect(),
+            bent,
+        }
+    }
+
+    /// What a link that swings behind its joint adds to the torques of all joints.
+    fn swung(&self, side: &Driven<'_>, link: &LinkSide<'_>, t: &Transmission, start: Stretch) -> Series {
+        let j = side.joint;
+        let (mut x, mut swung) = (vec![0.0; link.load.len()], vec![0.0; link.load.len()]);
+        deflection(link, t, start, [&mut x, &mut swung]);
+        let n = self.joints;
         let on = |i: usize| {
-            let share = |k: usize| if i == j { 1.0 } else { self.mass[i * n + j][k] / inertia[k] };
-            (i, (0..x.len()).map(|k| swung[k] * share(k) - bent[i][k] * x[k]).collect())
+            let share = |k: usize| if i == j { 1.0 } else { self.mass[i * n + j][k] / side.inertia[k] };
+            (i, (0..x.len()).map(|k| swung[k] * share(k) - side.bent[i][k] * x[k]).collect())
         };
         (0..n).map(on).collect()
+    }
+}
+
+/// The links behind a transmission.
+struct Driven<'a> {
+    joint: usize,
+    load: Vec<f64>,
+    inertia: Vec<f64>,
+    /// How the torques of all joints change with the position of this one.
+    bent: &'a [Vec<f64>],
+}
+
+impl Driven<'_> {
+    fn link(&self, rate: f64) -> LinkSide<'_> {
+        LinkSide { load: &self.load, inertia: &self.inertia, stiffness: &self.bent[self.joint], rate }
     }
 }
 

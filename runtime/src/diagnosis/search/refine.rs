@@ -24,14 +24,19 @@ impl Search<'_> {
                 let columns = columns(&model.context, design, effect, place, shape, model.change);
                 Trial::new(design, shape.to_vec(), columns)
             };
-            let refined = trial(&shape);
-            if regression.gain_of(candidate, &refined) <= 0.0 {
-                return Some(refined);
-            }
+            // A sharp resonance beside its place explains less than nothing, and is still alike.
+            let mut starts = Vec::from_iter(regression.nearest(candidate));
             // What explains anything may explain more at the end of its valley.
-            let mut tuning = Tuning::beside(model, &Accepted::tried(candidate, shape)).ok()?;
-            tuning.run();
-            Some(trial(tuning.shape()))
+            if regression.gain_of(candidate, &trial(&shape)) > 0.0 {
+                starts.push(shape.clone());
+            }
+            let ends = starts.into_iter().filter_map(|shape| {
+                let mut tuning = Tuning::beside(model, &Accepted::tried(candidate, shape)).ok()?;
+                tuning.run();
+                Some((tuning.shape().to_vec(), tuning.squares()))
+            });
+            let best = ends.min_by(|a, b| a.1.total_cmp(&b.1));
+            Some(trial(&best.map_or(shape, |(shape, _)| shape)))
         });
         for (candidate, trial) in self.fast.iter_mut().zip(polished) {
             candidate.trials.extend(trial);

@@ -106,7 +106,9 @@ impl Search<'_> {
         let gate = self.judged_by_gate(round, ranked, k, least);
         let Outcome::Passes { confidence, significance, inflation } = gate else { return Weight::Fails };
         let confidence = 1.0 - rounds * (1.0 - confidence);
-        if !self.is_told_from_simpler(round, ranked, k, least) {
+        if !self.is_told_from_simpler(round, ranked, k, least)
+            || !self.is_told_from_noise(round, ranked, k, least)
+        {
             return Weight::Fails;
         }
         match self.standing(round, ranked, k, least) {

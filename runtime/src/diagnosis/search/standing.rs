@@ -1,11 +1,13 @@
 //! Whether what a law explains could as well be a law at another place.
 
+use crate::diagnosis::candidates::position_noise::position_noise;
+use crate::diagnosis::candidates::ringing::ringing;
 use crate::diagnosis::judging::calibration::{Calibrated, beside, rival_p_value};
-use crate::diagnosis::rules::{COMPARABLE, MOST_COMPARED, TOLD_APART};
+use crate::diagnosis::rules::{COMPARABLE, MOST_COMPARED, NOISE_MISSED, TOLD_APART};
 use crate::diagnosis::search::gate::{Gate, RoundEvidence};
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
-use crate::effects::ToldBy;
+use crate::effects::{Form, ToldBy};
 use crate::parallel;
 
 /// How a candidate stands against rivals at other places.
@@ -102,6 +104,29 @@ impl Search<'_> {
         })
     }
 
+    /// Whether a compliant transmission is more than noise of the positions and than ringing that motions happen to begin
+    /// with: it must explain what neither can, and not merely what the noise's columns miss of it.
+    pub(in crate::diagnosis) fn is_told_from_noise(
+        &self,
+        round: &RoundEvidence,
+        ranked: &[Ranked],
+        candidate: usize,
+        least_confidence: f64,
+    ) -> bool {
+        let (regression, law) = self.of(&ranked[candidate]);
+        let (Form::Compliance(_), Some(joint)) = (law.effect.form(), law.place.joint()) else { return true };
+        let Some(own) = self.gate(round, ranked, candidate) else { return false };
+        let (context, design) = (&self.model.context, &regression.design);
+        let noise = position_noise(context, design);
+        let left = self.left_beside(round, &ranked[candidate], own, &noise);
+        if left.is_none_or(|left| left.squares < NOISE_MISSED * own.calibrated.squares) {
+            return false;
+        }
+        let shape = &law.trials[ranked[candidate].verdict.trial].shape;
+        let both = [noise, ringing(context, design, joint, shape)].concat();
+        self.certain_beside(round, &ranked[candidate], own, &both, least_confidence)
+    }
+
     /// Whether a candidate is certain beside a rival, given as columns over all rows, too.
     fn certain_beside(
         &self,
@@ -111,11 +136,22 @@ impl Search<'_> {
         rival: &[Vec<f64>],
         least_confidence: f64,
     ) -> bool {
+        let left = self.left_beside(round, candidate, own, rival);
+        left.is_some_and(|left| left.evidence().confidence(self.tries()) >= least_confidence)
+    }
+
+    /// The evidence for a candidate beside a rival, given as columns over all rows.
+    fn left_beside(
+        &self,
+        round: &RoundEvidence,
+        candidate: &Ranked,
+        own: &Gate,
+        rival: &[Vec<f64>],
+    ) -> Option<Calibrated> {
         let (bench, design) = (self.model.bench(candidate.window), &self.of(candidate).0.design);
-        let Some(background) = round.of(candidate.window).get() else { return false };
+        let background = round.of(candidate.window).get()?;
         let columns = self.columns(candidate);
         let law = self.law(candidate, &columns, &own.left);
         beside(&bench.units, &bench.regressors(design), background, &law, &own.calibrated, rival)
-            .is_some_and(|left| left.evidence().confidence(self.tries()) >= least_confidence)
     }
 }
