@@ -23,9 +23,10 @@ const WORN: &str = "Fc2";
 /// First day: 2026-03-01.
 const FIRST: Day = 20_513;
 
-/// Standard deviation of what distinguishes siblings, and of a robot's friction from day to day.
+/// Standard deviation of what distinguishes the friction of siblings, and that of a robot from day to day. Real friction
+/// varies more, with temperature.
 const BETWEEN_ROBOTS: f64 = 0.03;
-const DAY_TO_DAY: f64 = 0.01;
+const DAY_TO_DAY: f64 = 0.002;
 
 /// By how much the friction of the worn gear has grown on the last day.
 const WEAR: f64 = 0.6;

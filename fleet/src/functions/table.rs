@@ -26,7 +26,7 @@ pub fn work_schema() -> SchemaRef {
         field("recording", DataType::Utf8, false),
         field("key", DataType::Utf8, false),
         field("robot_table", DataType::Utf8, true),
-        field("band", DataType::Float64, true),
+        field("asked_band", DataType::Float64, true),
         field("temperature", DataType::Float64, true),
         field("load", DataType::Float64, true),
     ]))
@@ -109,7 +109,7 @@ impl TableFunctionImpl for FactorsFunction {
         let reduce = ScalarUDF::from(Reduce::new());
         let own = ["robot", "day", "recording"];
         let motion = || col("motion_of_recording");
-        let motions = reduce.call(vec![col("recording"), col("robot_table"), col("band")]);
+        let motions = reduce.call(vec![col("recording"), col("robot_table"), col("asked_band")]);
         let columns = own.map(col).into_iter().chain([motions.alias("motion_of_recording")]);
         let fields: Vec<Expr> = own
             .map(col)

@@ -7,6 +7,7 @@ use dynid_runtime::estimation::ReducedEstimate;
 
 use super::day::{RobotDay, clear_pending, gather, robots};
 use super::findings::{Risen, findings};
+use super::history::History;
 use super::folder::OutFolder;
 use super::references::References;
 use super::rows::{
@@ -27,6 +28,7 @@ use crate::work::Item;
 pub async fn finish(
     (engine, fleet, out): (&Engine, &FleetFile, &OutFolder),
     references: &mut References<'_>,
+    history: &mut History,
     day: Day,
     items: &[&Item],
 ) -> Result<()> {
@@ -44,7 +46,8 @@ pub async fn finish(
         for (recording, factor) in &own.recordings {
             let Some(rise) = rise(factor, &chi) else { continue };
             rises.insert(recording.as_str(), rise);
-            if fleet.diagnosis.enabled && rise.certain && rise.ratio > fleet.diagnosis.error_rises {
+            let news = rise.ratio > fleet.diagnosis.error_rises * history.before(robot, day);
+            if fleet.diagnosis.enabled && rise.certain && news {
                 let table = items.iter().find(|i| &i.recording == recording).and_then(|i| i.table.clone());
                 let reference = reference.clone();
                 risen.push(Risen { robot: robot.clone(), recording: recording.clone(), table, reference });
@@ -54,7 +57,9 @@ pub async fn finish(
     references.keep()?;
     tables::write(&out.of_day("parameters", day), &parameters.batch(day)?)?;
     tables::write(&out.of_day("findings", day), &findings(engine, day, &risen, fleet.diagnosis.rows).await?)?;
-    tables::write(&out.of_day("screening", day), &screening(&factors, day, &rises, &left_out)?)?;
+    let screening = screening(&factors, day, &rises, &left_out)?;
+    tables::write(&out.of_day("screening", day), &screening)?;
+    history.add(day, &screening);
     clear_pending(out, items);
     Ok(())
 }

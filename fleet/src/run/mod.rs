@@ -15,6 +15,7 @@ mod day;
 mod findings;
 mod finishing;
 mod folder;
+mod history;
 mod references;
 mod reducing;
 pub mod rows;
@@ -29,6 +30,7 @@ use crate::error::{FleetError, Result};
 use crate::fleet_file::FleetFile;
 use crate::work::{Item, work};
 use folder::OutFolder;
+use history::History;
 use references::References;
 
 /// What a run did.
@@ -74,8 +76,9 @@ pub async fn run(fleet: &FleetFile, path: &Path, engine: &Engine, since: Option<
     }
     reducing::reduce_missing(engine, &out, &missing).await?;
     let mut references = References::read(fleet, &out)?;
+    let mut history = History::read(&out)?;
     for &one in &unfinished {
-        finishing::finish((engine, fleet, &out), &mut references, one, &by_day[&one]).await?;
+        finishing::finish((engine, fleet, &out), &mut references, &mut history, one, &by_day[&one]).await?;
     }
     Ok(Summary { recordings: items.len(), reduced: missing.len(), days: unfinished.len() })
 }

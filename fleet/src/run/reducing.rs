@@ -2,9 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use datafusion::arrow::array::{Array, ArrayRef, AsArray, RecordBatch};
+use datafusion::arrow::array::{Array, ArrayRef, AsArray, RecordBatch, UInt32Array};
 use datafusion::arrow::compute::take;
-use datafusion::arrow::array::UInt32Array;
 
 use super::folder::OutFolder;
 use super::rows::{batch, factors_schema, text};
@@ -17,7 +16,7 @@ use crate::work::Item;
 /// Recordings of a job: what a cluster that fails does again at most.
 const JOB: usize = 64;
 
-const QUERY: &str = "SELECT key, dynid_reduce(recording, robot_table, band) AS motions FROM work";
+const QUERY: &str = "SELECT key, dynid_reduce(recording, robot_table, asked_band) AS motions FROM work";
 
 /// Reduces recordings and keeps what comes of them beside the tables.
 ///
