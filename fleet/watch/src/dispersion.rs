@@ -128,9 +128,8 @@ fn own_scale(centred: &[(i64, f64)]) -> Option<f64> {
 /// is thought too long late ones.
 fn memory(robots: &[Vec<(i64, f64)>]) -> Memory {
     let days = robots.iter().map(Vec::len).sum::<usize>() / robots.len().max(1);
-    let assumed = |m: Memory| -> f64 {
-        -0.5 * ASSUMED_SIBLINGS * days as f64 * (m.at(1) - ASSUMED.at(1)).powi(2)
-    };
+    let assumed =
+        |m: Memory| -> f64 { -0.5 * ASSUMED_SIBLINGS * days as f64 * (m.at(1) - ASSUMED.at(1)).powi(2) };
     let mut grid: Vec<(Memory, f64)> = (0..=10)
         .flat_map(|s| (2..=19).map(move |r| Memory { share: 0.1 * f64::from(s), rho: 0.05 * f64::from(r) }))
         .map(|m| (m, assumed(m) + robots.iter().map(|r| ln_likelihood(r, m)).sum::<f64>()))

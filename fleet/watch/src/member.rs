@@ -56,7 +56,8 @@ impl Member {
         let slope = |k: usize| {
             (group.covariates.slope[k] / sigma, group.covariates.slope_variance[k] / (sigma * sigma))
         };
-        let filter = Filter::new([slope(0), slope(1)], group.dispersion.memory, (scale.prior, scale.prior_dof));
+        let filter =
+            Filter::new([slope(0), slope(1)], group.dispersion.memory, (scale.prior, scale.prior_dof));
         let mut member = Self {
             centre,
             scale,

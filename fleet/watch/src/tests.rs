@@ -143,7 +143,8 @@ fn no_input_is_too_strange() {
     let odd = [f64::NAN, f64::INFINITY, -f64::INFINITY, 0.0, 1e308, -1e308, 1e-308, f64::MAX, 1e99, -1e99];
     let mut noise = Noise::new(28);
     let mut pick = || odd[(noise.uniform() * odd.len() as f64) as usize % odd.len()];
-    let mut all = vec![series("empty", []), series("one", [1.0]), series("same", [0.0; 40]), series("x", [5.0; 40])];
+    let mut all =
+        vec![series("empty", []), series("one", [1.0]), series("same", [0.0; 40]), series("x", [5.0; 40])];
     for robot in 0..12 {
         let observations = (0..40)
             .map(|day| Observation {
