@@ -44,9 +44,11 @@ pub struct FindingRow {
 pub fn diagnose(recording: &str, table: Option<&str>, against: Against<'_>, rows: usize) -> Vec<FindingRow> {
     let told = |sentence: String| vec![FindingRow { sentence, ..FindingRow::default() }];
     match catch_unwind(AssertUnwindSafe(|| found(recording, table, against, rows))) {
-        Ok(Ok(diagnosis)) if diagnosis.findings.is_empty() => {
-            told(if diagnosis.verdict.is_empty() { "Nothing stands out.".into() } else { diagnosis.verdict.join(" ") })
-        }
+        Ok(Ok(diagnosis)) if diagnosis.findings.is_empty() => told(if diagnosis.verdict.is_empty() {
+            "Nothing stands out.".into()
+        } else {
+            diagnosis.verdict.join(" ")
+        }),
         Ok(Ok(diagnosis)) => rows_of(&diagnosis),
         Ok(Err((outcome, why))) => told(format!("Not diagnosed, {}: {why}", outcome.name())),
         Err(_) => told("dynid failed on this recording; please report it".to_owned()),
@@ -77,7 +79,8 @@ fn found(recording: &str, table: Option<&str>, against: Against<'_>, rows: usize
 
 /// The first rows of a recording: a diagnosis holds all of its rows.
 fn beginning(fetched: &Fetched, rows: usize) -> Result<Vec<Trajectory>, Why> {
-    let unreadable = |error: dynid_runtime::recording::RecordingError| (Outcome::Unreadable, error.to_string());
+    let unreadable =
+        |error: dynid_runtime::recording::RecordingError| (Outcome::Unreadable, error.to_string());
     let mut loader =
         Loader::new(&fetched.manifest, fetched.dynamics.model().robot(), rows).map_err(unreadable)?;
     let mut trajectories: Vec<Trajectory> = Vec::new();
@@ -102,7 +105,9 @@ fn reference(against: Against<'_>, robot: &Robot) -> Result<Reference, Why> {
         Against::Factor(bytes) => {
             let reduced = Reduced::from_bytes(bytes).map_err(|error| refused(error.to_string()))?;
             if reduced.fingerprint() != fingerprint(robot) {
-                return Err(refused("the reference is of another robot table: give both days one".to_owned()));
+                return Err(refused(
+                    "the reference is of another robot table: give both days one".to_owned(),
+                ));
             }
             let found = reduced.solve();
             let count = found.parameters.len();

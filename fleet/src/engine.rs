@@ -31,12 +31,17 @@ const SUBMISSIONS: usize = 3;
 
 /// A context of this process with dynid's functions. Rows come in one order, whatever the number of processors.
 pub fn embedded() -> SessionContext {
-    let config = SessionConfig::new().with_target_partitions(1);
+    let config = plain_columns(SessionConfig::new().with_target_partitions(1));
     let context = SessionContext::new_with_state(
         SessionStateBuilder::new().with_config(config).with_default_features().build(),
     );
     register(&context);
     context
+}
+
+/// Tables read from Parquet have the kinds of columns that dynid's functions take and give: no views.
+pub(crate) fn plain_columns(config: SessionConfig) -> SessionConfig {
+    config.set_bool("datafusion.execution.parquet.schema_force_view_types", false)
 }
 
 impl Engine {
@@ -59,7 +64,13 @@ impl Engine {
     ///
     /// # Errors
     /// What the engine or `keep` says; a cluster that failed as often as it may.
-    pub async fn over(&self, rows: &RecordBatch, query: &str, keep: Keep<'_>, complete: Complete<'_>) -> Result<()> {
+    pub async fn over(
+        &self,
+        rows: &RecordBatch,
+        query: &str,
+        keep: Keep<'_>,
+        complete: Complete<'_>,
+    ) -> Result<()> {
         let Engine::Cluster { scheduler, timeout } = self else {
             let parts = submitted(&embedded(), rows, query, keep).await?;
             let wrong = |what| FleetError::Engine(format!("the engine returned another result: {what}"));

@@ -103,7 +103,8 @@ impl FleetFile {
         };
         let root = read_positions_of(bytes, "fleet").map_err(fail)?;
         let Some(root) = root.filter(Node::is_mapping) else {
-            let message = "this is no fleet: it needs the key recordings, a table or a path with {robot} and {day}";
+            let message =
+                "this is no fleet: it needs the key recordings, a table or a path with {robot} and {day}";
             return Err(fail(Mistake { place: Place::START, message: message.to_owned() }));
         };
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -123,7 +124,9 @@ impl FleetFile {
         {
             return Err(at(
                 &["store"],
-                &format!("`{store}` is no address; expected http://host/folder, s3://bucket/folder or file:///folder"),
+                &format!(
+                    "`{store}` is no address; expected http://host/folder, s3://bucket/folder or file:///folder"
+                ),
             ));
         }
         if raw.references.as_ref().is_some_and(|path| !path.contains("{robot}")) {
@@ -148,7 +151,8 @@ impl FleetFile {
     /// The table of a robot, where the fleet file says one: a name, or a path.
     pub fn table_of(&self, robot: &str) -> Option<String> {
         let named = self.robots.get(robot).or_else(|| self.robots.get("*"))?;
-        let is_path = [".yaml", ".yml", ".urdf"].iter().any(|end| named.ends_with(end)) || named.contains('/');
+        let is_path =
+            [".yaml", ".yml", ".urdf"].iter().any(|end| named.ends_with(end)) || named.contains('/');
         Some(if is_path { self.folder.join(named).display().to_string() } else { named.clone() })
     }
 
@@ -163,9 +167,10 @@ fn recordings(raw: &Raw, folder: &Path, root: &Node) -> std::result::Result<Reco
     let place = |offset| node.map_or(Place::START, |node| node.place_of_text(offset));
     let text = &raw.recordings;
     if Pattern::is_pattern(text) || text.contains(['{', '*']) {
-        return Pattern::parse(text)
-            .map(Recordings::Pattern)
-            .map_err(|(offset, what)| Mistake { place: place(offset), message: format!("recordings: {what}") });
+        return Pattern::parse(text).map(Recordings::Pattern).map_err(|(offset, what)| Mistake {
+            place: place(offset),
+            message: format!("recordings: {what}"),
+        });
     }
     if [".csv", ".parquet"].iter().any(|end| text.ends_with(end)) {
         return Ok(Recordings::Table(folder.join(text)));
@@ -215,10 +220,16 @@ mod tests {
             mistake("band: 3\n"),
             "fleet.yaml:1:1: a fleet has no 'recordings': a table, or a path with {robot} and {day}"
         );
-        assert!(mistake("recordings: a.txt\n").starts_with("fleet.yaml:1:13: recordings: `a.txt` is neither"));
-        assert!(mistake("recordings: a/{robto}/{day}\n").starts_with("fleet.yaml:1:15: recordings: expected"));
+        assert!(
+            mistake("recordings: a.txt\n").starts_with("fleet.yaml:1:13: recordings: `a.txt` is neither")
+        );
+        assert!(
+            mistake("recordings: a/{robto}/{day}\n").starts_with("fleet.yaml:1:15: recordings: expected")
+        );
         assert!(mistake("recordings: a.csv\nband: -1\n").starts_with("fleet.yaml:2:1: band: a positive"));
-        assert!(mistake("recordings: a.csv\nbands: 1\n").starts_with("fleet.yaml:2:1: unknown field `bands`"));
+        assert!(
+            mistake("recordings: a.csv\nbands: 1\n").starts_with("fleet.yaml:2:1: unknown field `bands`")
+        );
         assert!(
             mistake("recordings: a.csv\ndiagnosis:\n  error_rises: 0.5\n")
                 .starts_with("fleet.yaml:3:3: diagnosis.error_rises: a ratio")

@@ -149,7 +149,10 @@ mod tests {
     #[test]
     fn robots_and_days_are_read_out_of_paths() {
         let one = |robot: &str, day: &str| Some((robot.to_owned(), day.to_owned()));
-        assert_eq!(walk("{robot}/{day}/recording.yaml", "r1/2026-01-01/recording.yaml"), one("r1", "2026-01-01"));
+        assert_eq!(
+            walk("{robot}/{day}/recording.yaml", "r1/2026-01-01/recording.yaml"),
+            one("r1", "2026-01-01")
+        );
         assert_eq!(walk("logs/{robot}_{day}-*.yaml", "logs/r_1_2026-x.yaml"), one("r", "1_2026"));
         assert_eq!(walk("{robot}/{robot}-{day}.yaml", "a/a-1.yaml"), one("a", "1"));
         assert_eq!(walk("{robot}/{robot}-{day}.yaml", "a/b-1.yaml"), None);

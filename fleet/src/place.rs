@@ -28,7 +28,9 @@ impl Folder {
         if let Some(path) = text.strip_prefix("file://") {
             return Ok(Self::Local(PathBuf::from(path)));
         }
-        let Some((scheme, rest)) = text.split_once("://") else { return Ok(Self::Local(PathBuf::from(text))) };
+        let Some((scheme, rest)) = text.split_once("://") else {
+            return Ok(Self::Local(PathBuf::from(text)));
+        };
         let failed = |message: String| FleetError::Store { url: text.to_owned(), message };
         let (host, path) = rest.split_once('/').unwrap_or((rest, ""));
         let base = format!("{scheme}://{host}");
@@ -89,7 +91,8 @@ impl Folder {
         };
         let url = self.at(relative);
         let failed = |message: String| FleetError::Store { url: url.clone(), message };
-        let whole = [path.as_ref(), relative].into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join("/");
+        let whole =
+            [path.as_ref(), relative].into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join("/");
         let whole = StorePath::parse(&whole).map_err(|error| failed(error.to_string()))?;
         let answer = store.get(&whole).await.map_err(|error| failed(said(base, &error)))?;
         let write = |error: std::io::Error| FleetError::io(to, "write it", &error);
@@ -116,7 +119,8 @@ fn store(scheme: &str, host: &str, base: &str) -> std::result::Result<Arc<dyn Ob
         #[cfg(feature = "http")]
         "http" | "https" => {
             let options = object_store::ClientOptions::new().with_allow_http(true);
-            let built = object_store::http::HttpBuilder::new().with_url(base).with_client_options(options).build();
+            let built =
+                object_store::http::HttpBuilder::new().with_url(base).with_client_options(options).build();
             built.map(|store| Arc::new(store) as Arc<dyn ObjectStore>).map_err(|error| error.to_string())
         }
         #[cfg(feature = "s3")]
@@ -126,12 +130,14 @@ fn store(scheme: &str, host: &str, base: &str) -> std::result::Result<Arc<dyn Ob
         }
         #[cfg(feature = "gs")]
         "gs" => {
-            let built = object_store::gcp::GoogleCloudStorageBuilder::from_env().with_bucket_name(host).build();
+            let built =
+                object_store::gcp::GoogleCloudStorageBuilder::from_env().with_bucket_name(host).build();
             built.map(|store| Arc::new(store) as Arc<dyn ObjectStore>).map_err(|error| error.to_string())
         }
         #[cfg(feature = "az")]
         "az" => {
-            let built = object_store::azure::MicrosoftAzureBuilder::from_env().with_container_name(host).build();
+            let built =
+                object_store::azure::MicrosoftAzureBuilder::from_env().with_container_name(host).build();
             built.map(|store| Arc::new(store) as Arc<dyn ObjectStore>).map_err(|error| error.to_string())
         }
         #[cfg(not(all(feature = "http", feature = "s3", feature = "gs", feature = "az")))]

@@ -65,10 +65,18 @@ pub fn simulate(folder: &Path, plan: &Plan) -> Result<PathBuf> {
             let day = FIRST + past as Day;
             let wears = robot + 1 == plan.robots;
             let since = past as f64 / (plan.days.max(2) - 1) as f64;
-            let today = today(model, &own, random(plan, [2, robot as u64, past as u64]), if wears { WEAR * since } else { 0.0 });
+            let today = today(
+                model,
+                &own,
+                random(plan, [2, robot as u64, past as u64]),
+                if wears { WEAR * since } else { 0.0 },
+            );
             let mut noise = random(plan, [3, robot as u64, past as u64]);
-            let recorded: Vec<Trajectory> =
-                signals.iter().enumerate().map(|(k, s)| recorded(model, &today, s, (k, plan.rate), &mut noise)).collect();
+            let recorded: Vec<Trajectory> = signals
+                .iter()
+                .enumerate()
+                .map(|(k, s)| recorded(model, &today, s, (k, plan.rate), &mut noise))
+                .collect();
             let place = folder.join("logs").join(&name).join(day::written(day));
             let form = (DataFormat::Csv, &[][..]);
             let title = format!("{name}, simulated");
@@ -89,7 +97,8 @@ pub fn simulate(folder: &Path, plan: &Plan) -> Result<PathBuf> {
 
 /// A generator of its own for each thing that is drawn, so that a longer fleet begins like a shorter one.
 fn random(plan: &Plan, place: [u64; 3]) -> Pcg64 {
-    let mixed = place.iter().fold(plan.seed, |all, x| all.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(x + 1));
+    let mixed =
+        place.iter().fold(plan.seed, |all, x| all.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(x + 1));
     Pcg64::seed_from_u64(mixed)
 }
 
@@ -110,9 +119,11 @@ fn motions(model: &dyn Model, chi: &[f64], plan: &Plan) -> Result<Vec<Signals>> 
         };
         let planned = excite(model, Some(chi), &settings, &|_| {});
         let planned = planned.map_err(|error| FleetError::Engine(error.to_string()))?;
-        planned.motions.first().map(|motion| sampled(motion, plan.rate)).ok_or_else(|| {
-            FleetError::Engine("no motion could be planned".to_owned())
-        })
+        planned
+            .motions
+            .first()
+            .map(|motion| sampled(motion, plan.rate))
+            .ok_or_else(|| FleetError::Engine("no motion could be planned".to_owned()))
     };
     (0..plan.motions).map(one).collect()
 }
@@ -124,7 +135,8 @@ fn is_friction(name: &str) -> bool {
 /// The parameters of a sibling: friction differs, bodies do not.
 fn own_parameters(model: &dyn Model, chi: &[f64], mut random: Pcg64) -> Vec<f64> {
     let base = model.robot().base.iter().zip(chi);
-    base.map(|(b, &x)| if is_friction(&b.name) { x * (1.0 + BETWEEN_ROBOTS * draw(&mut random)) } else { x }).collect()
+    base.map(|(b, &x)| if is_friction(&b.name) { x * (1.0 + BETWEEN_ROBOTS * draw(&mut random)) } else { x })
+        .collect()
 }
 
 /// The parameters of a robot on a day, with what its gear has worn.
@@ -152,7 +164,9 @@ fn recorded(
     let noise = |of: fn(&dynid_runtime::model::Nominal) -> &[f64], joint: usize| {
         nominal.and_then(|nominal| of(nominal).get(joint).copied()).unwrap_or(0.0)
     };
-    let mut noisy = |signal: &[f64], sigma: f64| -> Vec<f64> { signal.iter().map(|x| x + sigma * draw(random)).collect() };
+    let mut noisy = |signal: &[f64], sigma: f64| -> Vec<f64> {
+        signal.iter().map(|x| x + sigma * draw(random)).collect()
+    };
     let position = q.iter().enumerate().map(|(j, q)| noisy(q, noise(|n| &n.position_noise, j))).collect();
     let torque = exact.iter().enumerate().map(|(j, t)| noisy(t, noise(|n| &n.torque_noise, j))).collect();
     let samples = q.first().map_or(0, Vec::len);

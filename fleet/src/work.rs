@@ -128,7 +128,9 @@ async fn listed(path: &Path, folder: &Folder) -> Result<Vec<Item>> {
     if let Some(missing) = ["robot", time, "recording"].into_iter().find(|name| !has(name)) {
         return Err(FleetError::file(path, format!("it has no column {missing}")));
     }
-    let number = |name: &str| if has(name) { format!("CAST(\"{name}\" AS DOUBLE)") } else { "CAST(NULL AS DOUBLE)".into() };
+    let number = |name: &str| {
+        if has(name) { format!("CAST(\"{name}\" AS DOUBLE)") } else { "CAST(NULL AS DOUBLE)".into() }
+    };
     let query = format!(
         "SELECT CAST(robot AS VARCHAR), CAST(\"{time}\" AS DATE), CAST(recording AS VARCHAR), {}, {} FROM listed",
         number("temperature"),
@@ -137,17 +139,28 @@ async fn listed(path: &Path, folder: &Folder) -> Result<Vec<Item>> {
     let batches = context.sql(&query).await.map_err(failed)?.collect().await.map_err(failed)?;
     let mut items = Vec::new();
     for batch in &batches {
-        let texts = [0, 2].map(|column| datafusion::arrow::compute::cast(batch.column(column), &datafusion::arrow::datatypes::DataType::Utf8));
-        let [robots, recordings] = texts.map(|text| text.map_err(|error| FleetError::file(path, error.to_string())));
+        let texts = [0, 2].map(|column| {
+            datafusion::arrow::compute::cast(
+                batch.column(column),
+                &datafusion::arrow::datatypes::DataType::Utf8,
+            )
+        });
+        let [robots, recordings] =
+            texts.map(|text| text.map_err(|error| FleetError::file(path, error.to_string())));
         let (robots, recordings) = (robots?, recordings?);
         let (robots, recordings) = (robots.as_string::<i32>(), recordings.as_string::<i32>());
         let days = batch.column(1).as_primitive::<Date32Type>();
         let [temperatures, loads] = [3, 4].map(|column| batch.column(column).as_primitive::<Float64Type>());
         for k in 0..batch.num_rows() {
             if robots.is_null(k) || recordings.is_null(k) || days.is_null(k) {
-                return Err(FleetError::file(path, format!("row {}: robot, {time} or recording is empty", k + 1)));
+                return Err(FleetError::file(
+                    path,
+                    format!("row {}: robot, {time} or recording is empty", k + 1),
+                ));
             }
-            let known = |column: &datafusion::arrow::array::Float64Array| (!column.is_null(k)).then(|| column.value(k));
+            let known = |column: &datafusion::arrow::array::Float64Array| {
+                (!column.is_null(k)).then(|| column.value(k))
+            };
             let mut one = item(robots.value(k).into(), days.value(k), place(folder, recordings.value(k)));
             (one.temperature, one.load) = (known(temperatures), known(loads));
             items.push(one);
@@ -159,7 +172,12 @@ async fn listed(path: &Path, folder: &Folder) -> Result<Vec<Item>> {
 /// The recordings of a CSV with a header.
 fn of_csv(path: &Path, folder: &Folder) -> Result<Vec<Item>> {
     let file = path.display().to_string();
-    let at = |line: usize, column: usize, message: String| FleetError::Place { file: file.clone(), line, column, message };
+    let at = |line: usize, column: usize, message: String| FleetError::Place {
+        file: file.clone(),
+        line,
+        column,
+        message,
+    };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|error| {
         match error.into_kind() {
             csv::ErrorKind::Io(error) => FleetError::io(path, "read the recordings", &error),
@@ -170,7 +188,14 @@ fn of_csv(path: &Path, folder: &Folder) -> Result<Vec<Item>> {
     let columns: BTreeMap<&str, usize> = header.iter().enumerate().map(|(k, name)| (name, k)).collect();
     let needed = |names: &[&str]| {
         names.iter().find_map(|name| columns.get(name).copied()).ok_or_else(|| {
-            at(1, 1, format!("no column {}; a table of recordings has robot, time and recording", names.join(" or ")))
+            at(
+                1,
+                1,
+                format!(
+                    "no column {}; a table of recordings has robot, time and recording",
+                    names.join(" or ")
+                ),
+            )
         })
     };
     let (robot, time, recording) = (needed(&["robot"])?, needed(&["time", "day"])?, needed(&["recording"])?);
@@ -181,9 +206,12 @@ fn of_csv(path: &Path, folder: &Folder) -> Result<Vec<Item>> {
             at(line, 1, error.to_string())
         })?;
         let line = record.position().map_or(1, |position| position.line() as usize);
-        let field = |k: usize| record.get(k).filter(|text| !text.is_empty()).ok_or_else(|| {
-            at(line, k + 1, format!("field {} ({}) is empty", k + 1, &header[k]))
-        });
+        let field = |k: usize| {
+            record
+                .get(k)
+                .filter(|text| !text.is_empty())
+                .ok_or_else(|| at(line, k + 1, format!("field {} ({}) is empty", k + 1, &header[k])))
+        };
         let written = field(time)?;
         let day = day::parse(written).ok_or_else(|| {
             at(line, time + 1, format!("`{written}` is no time; expected 2026-03-01 or 2026-03-01T07:30:00"))

@@ -64,7 +64,11 @@ impl LogicalExtensionCodec for LogicalCodec {
     }
 
     // The defaults of the trait know no file formats.
-    fn try_decode_file_format(&self, bytes: &[u8], context: &TaskContext) -> Result<Arc<dyn FileFormatFactory>> {
+    fn try_decode_file_format(
+        &self,
+        bytes: &[u8],
+        context: &TaskContext,
+    ) -> Result<Arc<dyn FileFormatFactory>> {
         self.0.try_decode_file_format(bytes, context)
     }
 

@@ -38,7 +38,8 @@ pub async fn serve_executor(options: &ExecutorOptions) -> Result<()> {
     let failed = |error: String| {
         FleetError::Cluster(format!("cannot work for the scheduler at {}: {error}", options.scheduler))
     };
-    let (host, port) = options.scheduler.rsplit_once(':').ok_or_else(|| failed("expected HOST:PORT".into()))?;
+    let (host, port) =
+        options.scheduler.rsplit_once(':').ok_or_else(|| failed("expected HOST:PORT".into()))?;
     let port = port.parse().map_err(|_| failed(format!("`{port}` is no port")))?;
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let state = state(config())?;
@@ -47,7 +48,10 @@ pub async fn serve_executor(options: &ExecutorOptions) -> Result<()> {
         scheduler_port: port,
         external_host: Some(options.host.clone()),
         port: options.port,
-        grpc_port: options.port.checked_add(1).ok_or_else(|| failed("--port must be less than 65535".into()))?,
+        grpc_port: options
+            .port
+            .checked_add(1)
+            .ok_or_else(|| failed("--port must be less than 65535".into()))?,
         vcores: options.slots.unwrap_or(processors),
         work_dir: options.work_dir.as_ref().map(|path| path.display().to_string()),
         executor_heartbeat_interval_seconds: 2,

@@ -38,7 +38,8 @@ pub async fn serve_scheduler(options: &SchedulerOptions) -> Result<()> {
         override_logical_codec: Some(Arc::new(codec::LogicalCodec::default())),
         ..SchedulerConfig::default()
     };
-    let cluster = BallistaCluster::new_from_config(&config).await.map_err(|error| failed(error.to_string()))?;
+    let cluster =
+        BallistaCluster::new_from_config(&config).await.map_err(|error| failed(error.to_string()))?;
     eprintln!("dynid-fleet: scheduler at {}", options.bind);
     start_server(cluster, options.bind, Arc::new(config)).await.map_err(|error| failed(error.to_string()))
 }

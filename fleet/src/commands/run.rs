@@ -34,7 +34,6 @@ pub(super) struct Options {
     timeout: u64,
 }
 
-
 fn a_day(text: &str) -> std::result::Result<Day, String> {
     day::parse(text).ok_or_else(|| "expected a day such as 2026-03-01".to_owned())
 }

@@ -17,13 +17,13 @@ pub(super) struct Options {
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=1000))]
     robots: u16,
     /// Days, each with a recording of each robot
-    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     days: u16,
     /// Motions of 8 s in a recording
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=2000))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=2000))]
     motions: u16,
     /// Rows a second, Hz
-    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u16).range(50..=5000))]
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(50..=5000))]
     rate: u16,
     /// The same seed gives the same fleet
     #[arg(long, default_value_t = 1)]

@@ -34,7 +34,9 @@ pub(super) async fn run(options: &Options) -> Result<()> {
     let out = out_of(&fleet, options.out.as_deref());
     let engine = match &options.cluster {
         None => Engine::Embedded,
-        Some(scheduler) => Engine::Cluster { scheduler: scheduler.clone(), timeout: Duration::from_secs(3600) },
+        Some(scheduler) => {
+            Engine::Cluster { scheduler: scheduler.clone(), timeout: Duration::from_secs(3600) }
+        }
     };
     let context = engine.context().await?;
     register_results(&context, &out).await?;

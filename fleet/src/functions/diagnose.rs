@@ -39,8 +39,7 @@ pub(super) struct Diagnose {
 
 impl Diagnose {
     pub(super) fn new() -> Self {
-        let types =
-            vec![DataType::Utf8, DataType::Utf8, DataType::Binary, DataType::Utf8, DataType::Int64];
+        let types = vec![DataType::Utf8, DataType::Utf8, DataType::Binary, DataType::Utf8, DataType::Int64];
         Self { signature: Signature::exact(types, Volatility::Volatile) }
     }
 }

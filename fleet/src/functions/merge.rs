@@ -51,10 +51,13 @@ impl Merged {
         let factors = values.first().and_then(|column| column.as_binary_opt::<i32>());
         let factors = factors.ok_or_else(|| exec_datafusion_err!("dynid_merge takes factors"))?;
         for bytes in factors.iter().flatten() {
-            let factor = Reduced::from_bytes(bytes).map_err(|error| exec_datafusion_err!("dynid_merge: {error}"))?;
+            let factor =
+                Reduced::from_bytes(bytes).map_err(|error| exec_datafusion_err!("dynid_merge: {error}"))?;
             match &mut self.0 {
                 None => self.0 = Some(factor),
-                Some(all) => all.merge(&factor).map_err(|error| exec_datafusion_err!("dynid_merge: {error}"))?,
+                Some(all) => {
+                    all.merge(&factor).map_err(|error| exec_datafusion_err!("dynid_merge: {error}"))?
+                }
             }
         }
         Ok(())

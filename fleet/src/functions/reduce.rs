@@ -80,7 +80,9 @@ impl ScalarUDFImpl for Reduce {
 
 fn arrays_of(motions: &[Motion]) -> Vec<ArrayRef> {
     let counts = |of: fn(&Motion) -> u64| -> ArrayRef {
-        Arc::new(Int64Array::from_iter_values(motions.iter().map(|m| i64::try_from(of(m)).unwrap_or(i64::MAX))))
+        Arc::new(Int64Array::from_iter_values(
+            motions.iter().map(|m| i64::try_from(of(m)).unwrap_or(i64::MAX)),
+        ))
     };
     vec![
         Arc::new(StringArray::from_iter(motions.iter().map(|m| m.name.as_deref()))),

@@ -45,7 +45,9 @@ impl ScalarUDFImpl for Rise {
         let mut rises = Vec::with_capacity(args.number_rows);
         for row in 0..args.number_rows {
             rises.push(match (read(0, row)?, read(1, row)?) {
-                (Some(factor), Some(reference)) => rise(&factor, &reference.solve().chi()).map(|rise| rise.ratio),
+                (Some(factor), Some(reference)) => {
+                    rise(&factor, &reference.solve().chi()).map(|rise| rise.ratio)
+                }
                 _ => None,
             });
         }

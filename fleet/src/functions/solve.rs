@@ -54,7 +54,8 @@ impl ScalarUDFImpl for Solve {
                 lengths.push(0);
                 continue;
             };
-            let factor = Reduced::from_bytes(bytes).map_err(|error| exec_datafusion_err!("dynid_solve: {error}"))?;
+            let factor =
+                Reduced::from_bytes(bytes).map_err(|error| exec_datafusion_err!("dynid_solve: {error}"))?;
             let found = factor.solve();
             lengths.push(found.parameters.len());
             for (parameter, (_, unit)) in found.parameters.iter().zip(factor.parameters()) {

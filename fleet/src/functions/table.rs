@@ -37,8 +37,11 @@ pub fn work_schema() -> SchemaRef {
 /// # Errors
 /// None that these columns can have.
 pub fn work_batch(items: &[Item]) -> Result<RecordBatch> {
-    let text = |of: fn(&Item) -> &str| -> ArrayRef { Arc::new(StringArray::from_iter_values(items.iter().map(of))) };
-    let number = |of: fn(&Item) -> Option<f64>| -> ArrayRef { Arc::new(Float64Array::from_iter(items.iter().map(of))) };
+    let text =
+        |of: fn(&Item) -> &str| -> ArrayRef { Arc::new(StringArray::from_iter_values(items.iter().map(of))) };
+    let number = |of: fn(&Item) -> Option<f64>| -> ArrayRef {
+        Arc::new(Float64Array::from_iter(items.iter().map(of)))
+    };
     Ok(RecordBatch::try_new(
         work_schema(),
         vec![
@@ -90,7 +93,8 @@ impl TableProvider for WorkTable {
         _: &[Expr],
         _: Option<usize>,
     ) -> Result<Arc<dyn ExecutionPlan>> {
-        let partitions: Vec<Vec<RecordBatch>> = (0..self.0.num_rows()).map(|k| vec![self.0.slice(k, 1)]).collect();
+        let partitions: Vec<Vec<RecordBatch>> =
+            (0..self.0.num_rows()).map(|k| vec![self.0.slice(k, 1)]).collect();
         Ok(MemorySourceConfig::try_new_exec(&partitions, self.0.schema(), projection.cloned())?)
     }
 }
@@ -105,7 +109,8 @@ impl TableFunctionImpl for FactorsFunction {
             return plan_err!("dynid_factors('fleet.yaml') takes the path of a fleet");
         };
         let rows = work_batch(&listed(path)?)?;
-        let scan = LogicalPlanBuilder::scan("recordings", provider_as_source(Arc::new(WorkTable::new(rows))), None)?;
+        let scan =
+            LogicalPlanBuilder::scan("recordings", provider_as_source(Arc::new(WorkTable::new(rows))), None)?;
         let reduce = ScalarUDF::from(Reduce::new());
         let own = ["robot", "day", "recording"];
         let motion = || col("motion_of_recording");

@@ -7,7 +7,7 @@ use datafusion::arrow::compute::{concat_batches, filter_record_batch};
 use dynid_runtime::estimation::Reduced;
 
 use super::folder::OutFolder;
-use super::rows::{bytes, factors_schema, screening_schema, text};
+use super::rows::{bytes, factors_schema, number, screening_schema, text};
 use super::tables;
 use crate::day::Day;
 use crate::error::{FleetError, Result};
@@ -19,6 +19,10 @@ pub struct RobotDay {
     pub all: Reduced,
     /// Each of them, by its path or address.
     pub recordings: BTreeMap<String, Reduced>,
+    /// Mean temperature of these recordings, °C, where they say one.
+    pub temperature: Option<f64>,
+    /// Mean of their loads, where they say one.
+    pub load: Option<f64>,
 }
 
 /// Keys of the recordings that a day was done with; none where it was not done.
@@ -55,8 +59,9 @@ pub fn gather(out: &OutFolder, day: Day, items: &[&Item]) -> Result<RecordBatch>
     let mut parts = Vec::new();
     let mut have = BTreeSet::new();
     if let Some(before) = tables::read(&path, &schema)? {
-        let still: BooleanArray =
-            (0..before.num_rows()).map(|k| Some(text(&before, "key", k).is_some_and(|key| wanted.contains(key)))).collect();
+        let still: BooleanArray = (0..before.num_rows())
+            .map(|k| Some(text(&before, "key", k).is_some_and(|key| wanted.contains(key))))
+            .collect();
         have.extend(keys(&before));
         parts.push(filter_record_batch(&before, &still).map_err(failed)?);
     }
@@ -124,9 +129,21 @@ pub fn robots(factors: &RecordBatch) -> Result<(BTreeMap<String, RobotDay>, BTre
             },
             None => {
                 let recordings = BTreeMap::from([(recording, factor.clone())]);
-                robots.insert(robot, RobotDay { all: factor, recordings });
+                robots.insert(robot, RobotDay { all: factor, recordings, temperature: None, load: None });
             }
         }
     }
+    for (robot, day) in &mut robots {
+        day.temperature = mean(factors, robot, "temperature");
+        day.load = mean(factors, robot, "load");
+    }
     Ok((robots, left_out))
+}
+
+/// Mean of a column over the motions of a robot that are used.
+fn mean(factors: &RecordBatch, robot: &str, column: &str) -> Option<f64> {
+    let of_robot = (0..factors.num_rows())
+        .filter(|&k| text(factors, "robot", k) == Some(robot) && bytes(factors, "factor", k).is_some());
+    let values: Vec<f64> = of_robot.filter_map(|k| number(factors, column, k)).collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }

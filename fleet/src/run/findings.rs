@@ -52,7 +52,8 @@ pub async fn findings(engine: &Engine, day: Day, risen: &[Risen], rows: usize) -
         let answers = answers.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         for one in job {
             let found = answers.get(&one.recording).and_then(|found| found.as_struct_opt());
-            let found = found.ok_or_else(|| FleetError::Engine(format!("{}: no diagnosis came back", one.recording)))?;
+            let found = found
+                .ok_or_else(|| FleetError::Engine(format!("{}: no diagnosis came back", one.recording)))?;
             let same = |text: &str| texts(std::iter::repeat_n(Some(text), found.len()).collect::<Vec<_>>());
             let mut columns =
                 vec![same(&one.robot), days(std::iter::repeat_n(day, found.len())), same(&one.recording)];
@@ -85,7 +86,8 @@ fn work(job: &[Risen], rows: usize) -> Result<RecordBatch> {
 
 fn take(part: &RecordBatch, answers: &mut BTreeMap<String, ArrayRef>) -> Result<()> {
     let wrong = || FleetError::Engine("the engine returned other columns than were asked for".to_owned());
-    let found = part.column_by_name("found").and_then(|column| column.as_list_opt::<i32>()).ok_or_else(wrong)?;
+    let found =
+        part.column_by_name("found").and_then(|column| column.as_list_opt::<i32>()).ok_or_else(wrong)?;
     for k in 0..part.num_rows() {
         answers.insert(text(part, "recording", k).ok_or_else(wrong)?.to_owned(), found.value(k));
     }

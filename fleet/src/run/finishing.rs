@@ -7,8 +7,8 @@ use dynid_runtime::estimation::ReducedEstimate;
 
 use super::day::{RobotDay, clear_pending, gather, robots};
 use super::findings::{Risen, findings};
-use super::history::History;
 use super::folder::OutFolder;
+use super::history::History;
 use super::references::References;
 use super::rows::{
     batch, counts, days, flags, number, numbers, parameters_schema, screening_schema, text, texts,
@@ -41,8 +41,11 @@ pub async fn finish(
         let reference = references.of(robot, day, &own.all.to_bytes())?;
         let found = own.all.solve();
         parameters.add(robot, &found, own, &reference.values);
-        let chi: Vec<f64> =
-            found.parameters.iter().map(|p| reference.values.get(&p.name).copied().unwrap_or(p.value)).collect();
+        let chi: Vec<f64> = found
+            .parameters
+            .iter()
+            .map(|p| reference.values.get(&p.name).copied().unwrap_or(p.value))
+            .collect();
         for (recording, factor) in &own.recordings {
             let Some(rise) = rise(factor, &chi) else { continue };
             rises.insert(recording.as_str(), rise);
@@ -72,10 +75,23 @@ struct Parameters {
     sigmas: Vec<Option<f64>>,
     references: Vec<Option<f64>>,
     units: Vec<String>,
+    tables: Vec<String>,
+    temperatures: Vec<Option<f64>>,
+    loads: Vec<Option<f64>>,
 }
 
 impl Parameters {
-    fn add(&mut self, robot: &str, found: &ReducedEstimate, day: &RobotDay, reference: &BTreeMap<String, f64>) {
+    fn add(
+        &mut self,
+        robot: &str,
+        found: &ReducedEstimate,
+        day: &RobotDay,
+        reference: &BTreeMap<String, f64>,
+    ) {
+        let count = found.parameters.len();
+        self.tables.extend(std::iter::repeat_n(day.all.fingerprint().to_owned(), count));
+        self.temperatures.extend(std::iter::repeat_n(day.temperature, count));
+        self.loads.extend(std::iter::repeat_n(day.load, count));
         for (parameter, (_, unit)) in found.parameters.iter().zip(day.all.parameters()) {
             self.robots.push(robot.to_owned());
             self.names.push(parameter.name.clone());
@@ -95,6 +111,9 @@ impl Parameters {
             numbers(self.sigmas),
             numbers(self.references),
             texts(self.units.iter().map(|t| Some(t.as_str()))),
+            texts(self.tables.iter().map(|t| Some(t.as_str()))),
+            numbers(self.temperatures),
+            numbers(self.loads),
         ];
         batch(&parameters_schema(), columns)
     }
@@ -110,7 +129,8 @@ fn screening(
     // Rows of a recording stand together.
     let mut first: Vec<(usize, i64, i64)> = Vec::new();
     let count = |column: &str, k: usize| {
-        let column = factors.column_by_name(column)?.as_primitive_opt::<datafusion::arrow::datatypes::Int64Type>()?;
+        let column =
+            factors.column_by_name(column)?.as_primitive_opt::<datafusion::arrow::datatypes::Int64Type>()?;
         (!column.is_null(k)).then(|| column.value(k))
     };
     for k in 0..factors.num_rows() {
@@ -125,7 +145,9 @@ fn screening(
     }
     let column = |name: &str| texts(first.iter().map(|(k, ..)| text(factors, name, *k)));
     let recording = |k: usize| text(factors, "recording", k).unwrap_or_default();
-    let outcome = |k: usize| if left_out.contains_key(recording(k)) { Some("refused") } else { text(factors, "outcome", k) };
+    let outcome = |k: usize| {
+        if left_out.contains_key(recording(k)) { Some("refused") } else { text(factors, "outcome", k) }
+    };
     let message = |k: usize| left_out.get(recording(k)).map(String::as_str).or(text(factors, "message", k));
     let rise = |k: usize| rises.get(recording(k));
     let columns = vec![

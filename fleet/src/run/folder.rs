@@ -30,7 +30,9 @@ impl OutFolder {
         let lock = File::create(&name).map_err(|error| FleetError::io(&name, "make it", &error))?;
         match lock.try_lock() {
             Ok(()) => Ok(Self { path: path.to_path_buf(), _lock: lock }),
-            Err(_) => Err(FleetError::file(path, "another run writes to it; wait for it, or choose another --out")),
+            Err(_) => {
+                Err(FleetError::file(path, "another run writes to it; wait for it, or choose another --out"))
+            }
         }
     }
 

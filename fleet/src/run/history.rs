@@ -43,6 +43,9 @@ impl History {
 
     /// The largest ratio of a robot before a day, at least 1.
     pub fn before(&self, robot: &str, day: Day) -> f64 {
-        self.0.range(..day).filter_map(|(_, robots)| robots.get(robot)).fold(1.0, |largest, rise| rise.max(largest))
+        self.0
+            .range(..day)
+            .filter_map(|(_, robots)| robots.get(robot))
+            .fold(1.0, |largest, rise| rise.max(largest))
     }
 }

@@ -16,10 +16,11 @@ mod findings;
 mod finishing;
 mod folder;
 mod history;
-mod references;
 mod reducing;
+mod references;
 pub mod rows;
 pub mod tables;
+mod watching;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -79,6 +80,9 @@ pub async fn run(fleet: &FleetFile, path: &Path, engine: &Engine, since: Option<
     let mut history = History::read(&out)?;
     for &one in &unfinished {
         finishing::finish((engine, fleet, &out), &mut references, &mut history, one, &by_day[&one]).await?;
+    }
+    if !unfinished.is_empty() || !out.file("alarms.parquet").exists() {
+        watching::watch_all(&out)?;
     }
     Ok(Summary { recordings: items.len(), reduced: missing.len(), days: unfinished.len() })
 }

@@ -66,8 +66,9 @@ fn keep(out: &OutFolder, rows: &RecordBatch, answer: &RecordBatch) -> Result<()>
         let own = own.as_struct_opt().ok_or_else(wrong)?;
         let again = UInt32Array::from(vec![u32::try_from(place).unwrap_or(u32::MAX); own.len()]);
         let of_recording = rows.columns().iter().map(|column| take(column, &again, None));
-        let mut columns: Vec<ArrayRef> =
-            of_recording.collect::<std::result::Result<_, _>>().map_err(|error| FleetError::Engine(error.to_string()))?;
+        let mut columns: Vec<ArrayRef> = of_recording
+            .collect::<std::result::Result<_, _>>()
+            .map_err(|error| FleetError::Engine(error.to_string()))?;
         columns.extend(own.columns().iter().cloned());
         tables::write(&out.pending(key), &batch(&factors_schema(), columns)?)?;
     }

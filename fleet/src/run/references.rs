@@ -80,7 +80,8 @@ impl<'a> References<'a> {
                     let (_, factor) =
                         self.first.entry(robot.to_owned()).or_insert_with(|| (day, factor.to_vec()));
                     let reduced = Reduced::from_bytes(factor);
-                    let found = reduced.map_err(|error| FleetError::Engine(format!("{robot}: {error}")))?.solve();
+                    let found =
+                        reduced.map_err(|error| FleetError::Engine(format!("{robot}: {error}")))?.solve();
                     let determined = found.parameters.into_iter().filter(|p| p.sigma.is_some());
                     let values = determined.map(|p| (p.name, p.value)).collect();
                     RobotReference { model: None, factor: Some(factor.clone()), values }

@@ -23,16 +23,19 @@ fn of_recording() -> Vec<Field> {
 /// `factors`: a row for each motion: the recording's columns, then those of [`motion_fields`].
 pub fn factors_schema() -> SchemaRef {
     let own = work_schema();
-    let fields = own.fields().iter().chain(motion_fields().iter()).map(|field| field.as_ref().clone()).collect();
+    let fields =
+        own.fields().iter().chain(motion_fields().iter()).map(|field| field.as_ref().clone()).collect();
     schema(fields)
 }
 
-/// `parameters`: robot, day, parameter, value, sigma, reference, unit.
+/// `parameters`: robot, day, parameter, value, sigma, reference, unit, robot_table (the fingerprint of the robot's table, which
+/// siblings share), and the means of the day's temperatures and loads.
 pub fn parameters_schema() -> SchemaRef {
     let mut fields = of_recording();
     fields[2] = Field::new("parameter", DataType::Utf8, false);
     fields.extend(["value", "sigma", "reference"].map(|name| Field::new(name, DataType::Float64, true)));
-    fields.push(Field::new("unit", DataType::Utf8, false));
+    fields.extend(["unit", "robot_table"].map(|name| Field::new(name, DataType::Utf8, false)));
+    fields.extend(["temperature", "load"].map(|name| Field::new(name, DataType::Float64, true)));
     schema(fields)
 }
 
@@ -40,7 +43,11 @@ pub fn parameters_schema() -> SchemaRef {
 pub fn screening_schema() -> SchemaRef {
     let mut fields = of_recording();
     let field = |name: &str, kind| Field::new(name, kind, true);
-    fields.extend([field("key", DataType::Utf8), field("outcome", DataType::Utf8), field("message", DataType::Utf8)]);
+    fields.extend([
+        field("key", DataType::Utf8),
+        field("outcome", DataType::Utf8),
+        field("message", DataType::Utf8),
+    ]);
     fields.extend(["motions", "rows", "samples", "left_out"].map(|name| field(name, DataType::Int64)));
     fields.extend(["band", "relative_error", "rise"].map(|name| field(name, DataType::Float64)));
     fields.push(field("rose", DataType::Boolean));

@@ -66,7 +66,16 @@ fn cluster() -> Cluster {
 }
 
 fn started(fleet: &Fleet, out: &Path, address: &str) -> Child {
-    let arguments = ["run", &fleet.file.display().to_string(), "--out", &out.display().to_string(), "--cluster", address, "--timeout", "60"];
+    let arguments = [
+        "run",
+        &fleet.file.display().to_string(),
+        "--out",
+        &out.display().to_string(),
+        "--cluster",
+        address,
+        "--timeout",
+        "60",
+    ];
     Command::new(PROGRAM).args(arguments).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap()
 }
 
@@ -122,5 +131,8 @@ fn a_scheduler_that_is_not_there_is_told() {
     let address = format!("127.0.0.1:{}", free_ports(1));
     let run = started(&fleet, &fleet.out("o"), &address).wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert!(!run.status.success() && said.contains("no scheduler answers at") && said.contains("serve-scheduler"), "{said}");
+    assert!(
+        !run.status.success() && said.contains("no scheduler answers at") && said.contains("serve-scheduler"),
+        "{said}"
+    );
 }

@@ -27,7 +27,9 @@ impl Fleet {
         let plan = Plan { robots, days, motions: 1, rate: 100.0, seed: 3 };
         let file = simulate(folder.path(), &plan).unwrap();
         let fleet = Self { folder, file };
-        fleet.write("recordings: logs/{robot}/{day}/recording.yaml\nout: results\ndiagnosis: {enabled: false}\n");
+        fleet.write(
+            "recordings: logs/{robot}/{day}/recording.yaml\nout: results\ndiagnosis: {enabled: false}\n",
+        );
         fleet
     }
 
@@ -82,12 +84,18 @@ pub fn ask(out: &Path, query: &str) -> Vec<RecordBatch> {
 /// Rows of two texts.
 pub fn pairs(out: &Path, query: &str) -> Vec<(String, String)> {
     let text = |batch: &RecordBatch, column: usize, row: usize| {
-        let column = datafusion::arrow::compute::cast(batch.column(column), &datafusion::arrow::datatypes::DataType::Utf8);
+        let column = datafusion::arrow::compute::cast(
+            batch.column(column),
+            &datafusion::arrow::datatypes::DataType::Utf8,
+        );
         let column = column.unwrap();
         let column = column.as_string::<i32>();
         if column.is_null(row) { String::new() } else { column.value(row).to_owned() }
     };
-    ask(out, query).iter().flat_map(|b| (0..b.num_rows()).map(|k| (text(b, 0, k), text(b, 1, k))).collect::<Vec<_>>()).collect()
+    ask(out, query)
+        .iter()
+        .flat_map(|b| (0..b.num_rows()).map(|k| (text(b, 0, k), text(b, 1, k))).collect::<Vec<_>>())
+        .collect()
 }
 
 /// Numbers of one column.

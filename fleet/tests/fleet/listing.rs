@@ -17,12 +17,17 @@ fn a_table_says_the_same_as_a_pattern_and_what_else_it_knows() {
     let mut table = "robot,time,recording,temperature\n".to_owned();
     for item in by_pattern.iter().rev() {
         let day = dynid_fleet::day::written(item.day);
-        table.push_str(&format!("{},{day}T08:00:00+01:00,logs/{}/{day}/recording.yaml,31.5\n", item.robot, item.robot));
+        table.push_str(&format!(
+            "{},{day}T08:00:00+01:00,logs/{}/{day}/recording.yaml,31.5\n",
+            item.robot, item.robot
+        ));
     }
     std::fs::write(fleet.folder.path().join("list.csv"), table).unwrap();
     fleet.write("recordings: list.csv\nrobots: {r002: ./own.yaml, '*': tx40}\nband: 8\n");
     let by_table = listed(&fleet).unwrap();
-    let same = |items: &[Item]| items.iter().map(|i| (i.robot.clone(), i.day, i.recording.clone())).collect::<Vec<_>>();
+    let same = |items: &[Item]| {
+        items.iter().map(|i| (i.robot.clone(), i.day, i.recording.clone())).collect::<Vec<_>>()
+    };
     assert_eq!(same(&by_pattern), same(&by_table));
     assert!(by_table.iter().all(|item| item.temperature == Some(31.5) && item.band == Some(8.0)));
     assert_eq!(by_table[0].table.as_deref(), Some("tx40"));
@@ -39,7 +44,10 @@ fn mistakes_in_a_table_are_told_with_their_line_and_column() {
         listed(&fleet).expect_err("a mistake")
     };
     assert!(told("robot,recording\n").contains("list.csv:1:1: no column time or day"));
-    assert!(told("robot,time,recording\nr1,2026-01-01,a\nr1,soon,a\n").contains("list.csv:3:2: `soon` is no time"));
+    assert!(
+        told("robot,time,recording\nr1,2026-01-01,a\nr1,soon,a\n")
+            .contains("list.csv:3:2: `soon` is no time")
+    );
     assert!(told("robot,time,recording\nr1,2026-01-01\n").contains("list.csv:2"));
     assert!(told("robot,time,recording\n,2026-01-01,a\n").contains("list.csv:2:1: field 1 (robot) is empty"));
     assert!(told("robot,time,recording,load\nr1,2026-01-01,a,much\n").contains("list.csv:2:4: load: `much`"));

@@ -32,8 +32,8 @@ fn answer(stream: TcpStream, folder: &Path) -> Option<()> {
         }
         let path: PathBuf = folder.join(first.split(' ').nth(1)?.trim_start_matches('/'));
         let (status, body) = match std::fs::read(&path) {
-            Ok(body) if first.starts_with("GET") => ("200 OK", body),
-            Ok(_) => ("405 Method Not Allowed", Vec::new()),
+            _ if !first.starts_with("GET") => ("405 Method Not Allowed", Vec::new()),
+            Ok(body) => ("200 OK", body),
             Err(_) => ("404 Not Found", Vec::new()),
         };
         write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {}\r\n\r\n", body.len()).ok()?;
@@ -56,7 +56,10 @@ fn recordings_on_a_web_server_give_the_same_parameters() {
     assert_eq!(numbers(&local, values), numbers(&remote, values));
     let outcomes = pairs(&remote, "SELECT outcome, message FROM screening ORDER BY robot");
     assert_eq!(outcomes[0].0, "used");
-    assert!(outcomes[2].0 == "unreadable" && outcomes[2].1.contains("there is no such object"), "{outcomes:?}");
+    assert!(
+        outcomes[2].0 == "unreadable" && outcomes[2].1.contains("there is no such object"),
+        "{outcomes:?}"
+    );
 }
 
 #[test]

@@ -89,7 +89,7 @@ pub use recorded::{
     observe_trajectories,
 };
 #[cfg(feature = "diagnosis")]
-pub use reduced::{Reduced, ReducedEstimate, ReducedError};
+pub use reduced::{Reduced, ReducedError, ReducedEstimate};
 pub use residuals::{per_equation, relative_error};
 pub use settings::EstimateSettings;
 pub use solve::{RANK_TOLERANCE, Solution};

@@ -49,8 +49,9 @@ impl Reduced {
         let mut reader = Reader(rest.ok_or(ReducedError::NoFactors("they begin with other bytes"))?);
         let fingerprint = reader.text()?;
         let unknowns = reader.count(MOST_PARAMETERS)?;
-        let parameters: Vec<(String, String)> =
-            (0..unknowns).map(|_| Ok((reader.text()?, reader.text()?))).collect::<Result<_, ReducedError>>()?;
+        let parameters: Vec<(String, String)> = (0..unknowns)
+            .map(|_| Ok((reader.text()?, reader.text()?)))
+            .collect::<Result<_, ReducedError>>()?;
         let held = reader.count(unknowns)?;
         let mut fixed = Vec::with_capacity(held);
         for _ in 0..held {

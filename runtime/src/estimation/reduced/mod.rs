@@ -80,9 +80,10 @@ impl Reduced {
         let mut noise = free.noise_of_columns.as_ref().map(|_| DMatrix::zeros(count, count));
         for (k, group) in free.groups.iter().enumerate() {
             let asked = motion.is_none_or(|motion| motion == group.trajectory);
-            let sigma = estimate.errors.iter().find(|e| {
-                (e.trajectory, e.equation) == (group.trajectory, group.equation) && e.rows > 0
-            });
+            let sigma = estimate
+                .errors
+                .iter()
+                .find(|e| (e.trajectory, e.equation) == (group.trajectory, group.equation) && e.rows > 0);
             let Some(sigma) = sigma.and_then(|e| e.sigma).filter(|_| asked && group.factor.rows() > 0) else {
                 continue;
             };

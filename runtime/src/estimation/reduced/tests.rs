@@ -76,8 +76,7 @@ fn motions_of_one_recording_merge_to_its_estimate() {
 #[test]
 fn the_order_of_merging_is_rounding() {
     let model = vertical_axis(&PARAMETERS);
-    let mut parts: Vec<Reduced> =
-        (0..5).flat_map(|seed| reduced(&model, &[trajectory("a", seed)])).collect();
+    let mut parts: Vec<Reduced> = (0..5).flat_map(|seed| reduced(&model, &[trajectory("a", seed)])).collect();
     let forward = merged(&parts).solve();
     parts.reverse();
     let (left, right) = parts.split_at(2);
@@ -96,17 +95,19 @@ fn more_recordings_know_more_and_standard_deviations_hold() {
     let one = parts[0].solve();
     let truth = [2.0, 0.7, 1.5];
     for l in 0..3 {
-        let ratio = one.parameters[l].sigma.expect("determined") / all.parameters[l].sigma.expect("determined");
+        let ratio =
+            one.parameters[l].sigma.expect("determined") / all.parameters[l].sigma.expect("determined");
         // Forty recordings: sqrt(40) = 6.3, but for what corrections have in common.
         assert!(ratio > 3.0 && ratio < 9.0, "{ratio}");
     }
     let inside = |part: &Reduced| {
         let found = part.solve();
-        (0..3).filter(|&l| {
-            let p = &found.parameters[l];
-            (p.value - truth[l]).abs() < 1.96 * p.sigma.expect("determined")
-        })
-        .count()
+        (0..3)
+            .filter(|&l| {
+                let p = &found.parameters[l];
+                (p.value - truth[l]).abs() < 1.96 * p.sigma.expect("determined")
+            })
+            .count()
     };
     let share = parts.iter().map(inside).sum::<usize>() as f64 / 120.0;
     assert!(share > 0.85, "{share}");
