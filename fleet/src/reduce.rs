@@ -17,6 +17,9 @@ use dynid_runtime::recording::Side;
 use crate::error::FleetError;
 use crate::fetch::{Fetched, fetch};
 
+/// Most motions of a recording that have rows of their own: each is 15 to 30 kB, which travel and are kept.
+const MOST_MOTIONS: usize = 32;
+
 /// What became of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
@@ -129,10 +132,10 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
     words.extend(found.warnings.iter().map(ToString::to_string));
     words.extend(observed.left_out.iter().map(|what| format!("left out: {what}")));
     let message = (!words.is_empty()).then(|| words.join("; "));
-    let row = |k: usize, name: &String| {
-        let factor = Reduced::of(observation, &found, model.robot(), Some(k));
+    let row = |k: Option<usize>, name: &str| {
+        let factor = Reduced::of(observation, &found, model.robot(), k);
         Motion {
-            name: Some(name.clone()),
+            name: Some(name.to_owned()),
             rows: factor.rows() as u64,
             factor: Some(factor.to_bytes()),
             samples: observation.samples as u64,
@@ -143,7 +146,11 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
             message: message.clone(),
         }
     };
-    Ok(observation.trajectories.iter().enumerate().map(|(k, name)| row(k, name)).collect())
+    let names = &observation.trajectories;
+    if names.len() > MOST_MOTIONS {
+        return Ok(vec![row(None, &format!("{} motions", names.len()))]);
+    }
+    Ok(names.iter().enumerate().map(|(k, name)| row(Some(k), name)).collect())
 }
 
 fn observing(fetched: &Fetched, error: ObserveRecordingError) -> Failure {
