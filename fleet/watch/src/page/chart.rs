@@ -103,14 +103,14 @@ fn grid(out: &mut String, axes: &Axes) {
     }
 }
 
-/// Two to five round numbers inside.
+/// Two to seven round numbers inside.
 fn ticks((low, high): (f64, f64)) -> Vec<f64> {
-    let raw = (high - low) / 3.0;
+    let raw = (high - low) / 2.5;
     let power = 10_f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= raw).unwrap_or(raw);
+    let step = [5.0, 2.0, 1.0].map(|m| m * power).into_iter().find(|s| *s <= raw).unwrap_or(raw);
     let first = (low / step).ceil();
     // Of values that are too large for their range there may be no round number between them.
-    (0..6).map(|k| (first + f64::from(k)) * step).filter(|t| t.is_finite() && *t <= high).collect()
+    (0..8).map(|k| (first + f64::from(k)) * step).filter(|t| t.is_finite() && *t <= high).collect()
 }
 
 fn area(out: &mut String, axes: &Axes, band: &Band) {

@@ -68,10 +68,10 @@ pub fn page(series: &[Series], watched: &Watched, links: &dyn Fn(&str) -> Option
 fn verdict(out: &mut String, clean: &[Clean<'_>], watched: &Watched, robots: &[Robot<'_>]) {
     let days = || clean.iter().flat_map(|c| &c.days).map(|d| d.day);
     let with = robots.iter().filter(|r| !r.alarms.is_empty()).count();
+    let count = |n: usize, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
     let (class, what) = match watched.alarms.len() {
-        0 => ("", "No alarm".to_owned()),
-        1 => (" law", "1 alarm".to_owned()),
-        n => (" law", format!("{n} alarms on {with} of the robots")),
+        0 => ("", format!("No alarm on {}", count(robots.len(), "robot"))),
+        n => (" law", format!("{} on {with} of {}", count(n, "alarm"), count(robots.len(), "robot"))),
     };
     let span = match (days().min(), days().max()) {
         (Some(first), Some(last)) => format!(" from {} to {}", date(first), date(last)),
@@ -79,8 +79,7 @@ fn verdict(out: &mut String, clean: &[Clean<'_>], watched: &Watched, robots: &[R
     };
     let _ = write!(
         out,
-        "<p class=\"verdict{class}\">{what}: {} robots, {} series of parameters{span}.</p>",
-        robots.len(),
+        "<p class=\"verdict{class}\">{what}; {} parameters of robots watched{span}.</p>",
         clean.len()
     );
     let waiting = clean.len().saturating_sub(watched.trends.len());
