@@ -108,6 +108,8 @@ impl Evidence {
             day: i64::MIN,
             calibrating: true,
         };
+        // All days of the calibration are there at once: an outlier on its first day is told by those that follow.
+        let screen = evidence.unchanged.clone().with_level_variance(0.0);
         let starts = [0, calibration.len() / 3, 2 * calibration.len() / 3];
         let capital = FOR_CALIBRATION * evidence.reserve;
         for (k, reading) in calibration.iter().enumerate() {
@@ -117,7 +119,11 @@ impl Evidence {
                 let each = 1.0 / starts.len() as f64;
                 evidence.place(reading.day, capital * each, calibration.len() as f64 * each, drift_only);
             }
-            evidence.observe(reading);
+            let screened = screen
+                .predict(reading, 0.0)
+                .judge(reading.value, Outliers { fraction: outlier_days, centre: 0.0 })
+                .1;
+            evidence.learn(reading, screened);
         }
         evidence.reserve -= capital;
         evidence.calibrating = false;
@@ -126,21 +132,24 @@ impl Evidence {
 
     /// Bets on one more day and learns from it.
     pub(crate) fn observe(&mut self, reading: &Reading) {
-        if !self.calibrating {
-            let before = HALF_PLACED / (HALF_PLACED + self.days_watched);
-            self.days_watched += 1.0;
-            let after = HALF_PLACED / (HALF_PLACED + self.days_watched);
-            let changes = (1.0 - FOR_SIBLINGS) * (1.0 - FOR_CALIBRATION);
-            self.reserve -= changes * (before - after);
-            self.place(reading.day, changes * (before - after), 1.0, false);
-            self.thin();
-        }
+        let before = HALF_PLACED / (HALF_PLACED + self.days_watched);
+        self.days_watched += 1.0;
+        let after = HALF_PLACED / (HALF_PLACED + self.days_watched);
+        let capital = (1.0 - FOR_SIBLINGS) * (1.0 - FOR_CALIBRATION) * (before - after);
+        self.reserve -= capital;
+        self.place(reading.day, capital, 1.0, false);
+        self.thin();
+        self.learn(reading, 1.0);
+    }
+
+    /// Takes a day in with at most this weight.
+    fn learn(&mut self, reading: &Reading, most: f64) {
         self.day = reading.day;
         self.unchanged.advance(reading.day);
         let prediction = self.unchanged.predict(reading, 0.0);
         let outliers = Outliers { fraction: self.outlier_days, centre: prediction.mean };
         let (ln_unchanged, weight) = prediction.judge(reading.value, outliers);
-        self.unchanged.update(reading, 0.0, weight);
+        self.unchanged.update(reading, 0.0, weight.min(most));
         for bet in &mut self.bets {
             let gone = bet.gone(reading.day);
             bet.filter.advance(reading.day);
@@ -149,7 +158,7 @@ impl Evidence {
                 continue;
             }
             let (ln_changed, weight) = bet.filter.predict(reading, gone).judge(reading.value, outliers);
-            bet.filter.update(reading, gone, weight);
+            bet.filter.update(reading, gone, weight.min(most));
             bet.ln_ratio += ln_changed - ln_unchanged;
             if !self.calibrating {
                 bet.ln_capital += ln_changed - ln_unchanged;

@@ -8,6 +8,11 @@ use crate::filter::{Estimated, Filter, Reading};
 use crate::robust::median;
 use std::f64::consts::FRAC_PI_2;
 
+/// A day's estimate counts less where its stated standard deviation is more than so many times the usual one, by what it
+/// is more. Standard deviations of a short recording are themselves known to a third or so: days that state a small one
+/// are not better than others.
+const DOUBTFUL: f64 = 1.5;
+
 /// What robots with one table have in common in one parameter, and the same covariates.
 #[derive(Clone, Debug)]
 pub(crate) struct Group {
@@ -75,7 +80,8 @@ impl Member {
     pub(crate) fn reading(&self, day: &Day, group: &Group) -> Reading {
         let (common, siblings) = group.effects.get(&day.day).copied().unwrap_or((0.0, 0));
         let variance = self.scale.sigma.powi(2);
-        let estimate = (day.sigma * day.sigma - self.stated * self.stated) / variance;
+        let doubtful = DOUBTFUL * self.stated;
+        let estimate = (day.sigma * day.sigma - doubtful * doubtful).max(0.0) / variance;
         // The variance of a median is pi / 2 that of a mean.
         let of_common = if siblings > 0 { FRAC_PI_2 / siblings as f64 } else { 0.0 };
         Reading {

@@ -167,3 +167,29 @@ fn no_input_is_too_strange() {
     }
     watch(&[], &Settings::default());
 }
+
+#[test]
+fn the_page_tells_the_worst_robot_first_and_escapes_names() {
+    let mut noise = Noise::new(29);
+    let mut all = fleet(&mut noise, 20, 40, 0.3);
+    changed(&mut all[2], |k| if k >= 25 { 8.0 } else { 0.0 });
+    changed(&mut all[9], |k| if k >= 20 { 30.0 } else { 0.0 });
+    all[9].robot = "<b>&\"worst\"".into();
+    all[9].unit = "<i>".into();
+    let watched = watch(&all, &Settings::default());
+    let html = page(&all, &watched, &|robot| (robot != "r002").then(|| format!("reports/{robot}\"x.html")));
+    let at = |text: &str| html.find(text).unwrap_or_else(|| panic!("{text} is not there"));
+    let strongest = watched.alarms.iter().max_by(|a, b| a.e_value.total_cmp(&b.e_value)).expect("two alarms");
+    assert_eq!((watched.alarms.len(), strongest.robot.as_str()), (2, "<b>&\"worst\""));
+    assert!(at("&lt;b&gt;&amp;&quot;worst&quot;</a>") < at("<h3>r002"));
+    assert!(at("href=\"reports/&lt;b&gt;&amp;&quot;worst&quot;&quot;x.html\"") > 0);
+    assert!(!html.contains("<b>") && !html.contains("<i>") && !html.contains("NaN"));
+    assert!(
+        html.contains("class=\"band\"")
+            && html.contains("jumped up")
+            && html.contains("18 robots without an alarm")
+    );
+    for outside in ["<script", "http:", "https:", "src=", "@import", "url("] {
+        assert!(!html.contains(outside), "{outside}");
+    }
+}

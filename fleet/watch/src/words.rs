@@ -42,9 +42,8 @@ pub(crate) fn percent_of(change: Estimated, before: Estimated) -> String {
 
 /// How rare so much evidence is (Ville's inequality).
 pub(crate) fn rarity(ln_e_value: f64) -> String {
-    let exponent = (ln_e_value / std::f64::consts::LN_10).floor();
-    if exponent >= 7.0 {
-        return format!("Without a change, less than one series in 10^{exponent:.0} would ever look so.");
+    if ln_e_value >= 1e6_f64.ln() {
+        return "Without a change, less than one series in a million would ever look so.".into();
     }
     let rounded = significant(ln_e_value.exp(), 1);
     format!("Without a change, at most one series in {rounded} would ever look so.")

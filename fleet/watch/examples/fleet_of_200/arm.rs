@@ -16,6 +16,8 @@ const RATE: f64 = 200.0;
 const SAMPLES: usize = 1600;
 /// Noise of the torques, N.m.
 const NOISE: [f64; 2] = [0.9, 0.3];
+/// Identifications from whose errors those of simulated estimates are drawn.
+const IDENTIFICATIONS: usize = 1000;
 /// What a swapped motor of the second joint gives for the same current.
 const OTHER_MOTOR: f64 = 1.06;
 
@@ -27,8 +29,8 @@ pub struct Arm {
     q: Vec<Vec<f64>>,
     dq: Vec<Vec<f64>>,
     ddq: Vec<Vec<f64>>,
-    /// Lower triangle whose product with its transpose is the covariance of an identification.
-    pub spread: Vec<Vec<f64>>,
+    /// Errors and stated standard deviations of identifications of one robot.
+    pub errors: Vec<Estimates>,
     /// What identification makes of a swapped motor, parameter by parameter.
     pub swapped: Vec<f64>,
 }
@@ -44,13 +46,15 @@ impl Arm {
         let time: Vec<f64> = (0..SAMPLES).map(|k| k as f64 / RATE).collect();
         let [q, dq, ddq] = motion(&time);
         let model = RecursiveModel::new(robot)?;
-        let mut arm = Self { model, standard, time, q, dq, ddq, spread: vec![], swapped: vec![] };
+        let mut arm = Self { model, standard, time, q, dq, ddq, errors: vec![], swapped: vec![] };
         let chi = arm.chi(&arm.standard);
         let mut rng = rand::SeedableRng::seed_from_u64(7);
-        let (_, covariance) = arm.fit(&chi, [1.0; 2], Some(&mut rng))?;
-        arm.spread = cholesky(&covariance, chi.len());
-        let exact = arm.fit(&chi, [1.0; 2], None)?.0;
-        let other = arm.fit(&chi, [1.0, OTHER_MOTOR], None)?.0;
+        let exact = arm.fit(&chi, [1.0; 2], None)?;
+        for _ in 0..IDENTIFICATIONS {
+            let found = arm.fit(&chi, [1.0; 2], Some(&mut rng))?;
+            arm.errors.push(found.iter().zip(&exact).map(|(a, b)| (a.0 - b.0, a.1)).collect());
+        }
+        let other = arm.fit(&chi, [1.0, OTHER_MOTOR], None)?;
         arm.swapped = exact.iter().zip(&other).map(|(a, b)| b.0 / a.0).collect();
         Ok(arm)
     }
@@ -70,15 +74,10 @@ impl Arm {
 
     /// Identifies a recording with these parameters; the second joint's motor may be another one.
     pub fn identify(&self, chi: &[f64], swapped: bool, rng: &mut Pcg64) -> Result<Estimates, Failure> {
-        Ok(self.fit(chi, [1.0, if swapped { OTHER_MOTOR } else { 1.0 }], Some(rng))?.0)
+        self.fit(chi, [1.0, if swapped { OTHER_MOTOR } else { 1.0 }], Some(rng))
     }
 
-    fn fit(
-        &self,
-        chi: &[f64],
-        gain: [f64; 2],
-        rng: Option<&mut Pcg64>,
-    ) -> Result<(Estimates, Vec<f64>), Failure> {
+    fn fit(&self, chi: &[f64], gain: [f64; 2], rng: Option<&mut Pcg64>) -> Result<Estimates, Failure> {
         let states = StateSlices::new(&self.q, &self.dq, &self.ddq);
         let mut torque = torques(&self.model, chi, states.states());
         torque.iter_mut().zip(gain).for_each(|(joint, g)| joint.iter_mut().for_each(|t| *t *= g));
@@ -99,8 +98,7 @@ impl Arm {
         let settings = ObserveSettings { band: 20.0, threads: 1, ..ObserveSettings::default() };
         let observation = observe(&self.model, &[motion], Equations::Torque, None, &settings, None)?;
         let found = estimate(&observation, &EstimateSettings::default());
-        let values = found.parameters.iter().map(|p| (p.value, p.sigma.unwrap_or(0.0))).collect();
-        Ok((values, found.covariance.unwrap_or_default()))
+        Ok(found.parameters.iter().map(|p| (p.value, p.sigma.unwrap_or(0.0))).collect())
     }
 }
 
@@ -122,24 +120,4 @@ fn motion(time: &[f64]) -> [Vec<Vec<f64>>; 3] {
         each(&|a, w, t| a * w * (w * t).cos()),
         each(&|a, w, t| -a * w * w * (w * t).sin()),
     ]
-}
-
-/// Of a symmetric matrix given by the columns of its upper triangle.
-fn cholesky(upper: &[f64], n: usize) -> Vec<Vec<f64>> {
-    let at = |i: usize, j: usize| upper.get(j * (j + 1) / 2 + i).copied().unwrap_or(0.0);
-    let mut lower = vec![vec![0.0; n]; n];
-    for j in 0..n {
-        for i in j..n {
-            let sum: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
-            let rest = at(j, i) - sum;
-            lower[i][j] = if i == j {
-                rest.max(0.0).sqrt()
-            } else if lower[j][j] > 0.0 {
-                rest / lower[j][j]
-            } else {
-                0.0
-            };
-        }
-    }
-    lower
 }

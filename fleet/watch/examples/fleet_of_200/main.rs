@@ -3,7 +3,7 @@
 //! `cargo run --release --example fleet_of_200 -- [FLEETS] [FILE] [PAGE]`
 //!
 //! One fleet of 200 robots over 60 days whose every estimate is a real identification of a simulated recording; then
-//! FLEETS fleets with faults and as many without, whose estimates are drawn with the covariance of such identifications.
+//! FLEETS fleets with faults and as many without, whose estimates have errors drawn from those of such identifications.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 mod arm;
@@ -12,7 +12,7 @@ mod story;
 mod words;
 
 use arm::Arm;
-use dynid_fleet_watch::{Series, Settings, Watched, page, watch};
+use dynid_fleet_watch::{Settings, Watched, page, watch};
 use score::Score;
 use std::time::Instant;
 use story::{Story, estimates_by_identification, simulated_estimates};
@@ -65,9 +65,4 @@ fn many(arm: &Arm, fleets: u64, faults: bool) -> Vec<Score> {
         all.sort_by_key(|s| s.0);
         all.into_iter().map(|s| s.1).collect()
     })
-}
-
-/// Series of one parameter of one robot.
-pub fn series_of<'a>(series: &'a [Series], robot: &str, parameter: &str) -> Option<&'a Series> {
-    series.iter().find(|s| s.robot == robot && s.parameter == parameter)
 }

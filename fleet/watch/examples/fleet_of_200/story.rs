@@ -183,7 +183,7 @@ pub fn estimates_by_identification(arm: &Arm, story: &Story) -> Result<Vec<Serie
     })
 }
 
-/// Estimates drawn with the covariance of an identification.
+/// Estimates whose errors are drawn from those of identifications.
 pub fn simulated_estimates(arm: &Arm, story: &Story) -> Vec<Series> {
     let one = |robot: &Robot| {
         let mut rng = Pcg64::seed_from_u64(robot.seed + 77);
@@ -196,16 +196,12 @@ pub fn simulated_estimates(arm: &Arm, story: &Story) -> Vec<Series> {
 
 fn drawn(arm: &Arm, today: &Today, rng: &mut Pcg64) -> Estimates {
     let chi = arm.chi(&today.standard);
-    let noise: Vec<f64> = chi.iter().map(|_| normal(rng)).collect();
-    arm.spread
-        .iter()
-        .enumerate()
-        .map(|(i, row)| {
-            let factor = if today.swapped { arm.swapped[i] } else { 1.0 };
-            let error: f64 = row.iter().zip(&noise).map(|(l, z)| l * z).sum();
-            (chi[i] * factor + error, row.iter().map(|l| l * l).sum::<f64>().sqrt())
-        })
-        .collect()
+    let errors = &arm.errors[rng.random_range(0..arm.errors.len())];
+    let one = |i: usize| {
+        let factor = if today.swapped { arm.swapped[i] } else { 1.0 };
+        (chi[i] * factor + errors[i].0, errors[i].1)
+    };
+    (0..chi.len()).map(one).collect()
 }
 
 fn series(arm: &Arm, robot: &Robot, days: &[Today], estimates: &[Estimates]) -> Vec<Series> {

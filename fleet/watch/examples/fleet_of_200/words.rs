@@ -50,7 +50,7 @@ type Kind<'a> = (&'a str, &'a dyn Fn(Fault) -> bool);
 
 pub fn many_fleets(with: &[Score], without: &[Score]) -> String {
     let mut text = format!(
-        "\n## {} fleets with faults, {} without\n\nEstimates drawn with the covariance of an identification.\n\n{}\n\
+        "\n## {} fleets with faults, {} without\n\nErrors of the estimates are drawn from those of a thousand identifications.\n\n{}\n\
          | fault | number | found by day {DAYS} | days until then: 10 % | 50 % | 90 % | interval holds the beginning |\n|---|---|---|---|---|---|---|\n",
         with.len(),
         without.len(),
