@@ -22,6 +22,23 @@ fn fleets_in_which_nothing_happens_rarely_have_an_alarm() {
 }
 
 #[test]
+fn robots_without_siblings_rarely_have_a_false_alarm_and_their_jumps_are_found() {
+    let mut noise = Noise::new(30);
+    for rho in [0.0, 0.5] {
+        let mut wrong = 0;
+        for _ in 0..20 {
+            let mut all = fleet(&mut noise, 30, 60, rho);
+            all.iter_mut().enumerate().for_each(|(k, s)| s.table = format!("table {k}"));
+            changed(&mut all[0], |k| if k >= 40 { 15.0 } else { 0.0 });
+            let found = alarms(&all);
+            assert!(found.iter().any(|a| a.robot == "r000"), "{rho}");
+            wrong += i32::from(found.iter().any(|a| a.robot != "r000"));
+        }
+        assert!(wrong <= 3, "{wrong} of 20 at {rho}");
+    }
+}
+
+#[test]
 fn a_step_and_a_drift_are_found_with_their_days_and_sizes() {
     let mut noise = Noise::new(21);
     let mut all = fleet(&mut noise, 60, 60, 0.4);
