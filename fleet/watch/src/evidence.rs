@@ -149,7 +149,7 @@ impl Evidence {
         let prediction = self.unchanged.predict(reading, 0.0);
         let outliers = Outliers { fraction: self.outlier_days, centre: prediction.mean };
         let (ln_unchanged, weight) = prediction.judge(reading.value, outliers);
-        self.unchanged.update(reading, 0.0, weight.min(most));
+        self.unchanged.update(reading.value, &prediction, weight.min(most));
         for bet in &mut self.bets {
             let gone = bet.gone(reading.day);
             bet.filter.advance(reading.day);
@@ -157,8 +157,9 @@ impl Evidence {
                 bet.filter.believe(reading, gone);
                 continue;
             }
-            let (ln_changed, weight) = bet.filter.predict(reading, gone).judge(reading.value, outliers);
-            bet.filter.update(reading, gone, weight.min(most));
+            let prediction = bet.filter.predict(reading, gone);
+            let (ln_changed, weight) = prediction.judge(reading.value, outliers);
+            bet.filter.update(reading.value, &prediction, weight.min(most));
             bet.ln_ratio += ln_changed - ln_unchanged;
             if !self.calibrating {
                 bet.ln_capital += ln_changed - ln_unchanged;
