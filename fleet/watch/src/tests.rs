@@ -210,3 +210,21 @@ fn the_page_tells_the_worst_robot_first_and_escapes_names() {
         assert!(!html.contains(outside), "{outside}");
     }
 }
+
+#[test]
+fn load_explains_as_temperature_does_and_days_without_either_raise_no_alarm() {
+    let mut noise = Noise::new(31);
+    let mut all = warm_fleet(&mut noise, 10.0);
+    for (r, one) in all.iter_mut().enumerate() {
+        for (k, o) in one.observations.iter_mut().enumerate() {
+            let load = 10.0 + 2.0 * noise.normal() + if r == 5 && k >= 30 { 8.0 } else { 0.0 };
+            o.value += 2.0 * load;
+            o.load = (k % 11 != 3).then_some(load);
+            o.temperature = o.temperature.filter(|_| k % 13 != 5);
+        }
+    }
+    let watched = watch(&all, &Settings::default());
+    assert!(watched.alarms.is_empty(), "{:?}", watched.alarms);
+    let near = watched.trends.iter().filter_map(|t| t.per_load).filter(|l| (l.0 - 2.0).abs() < 0.2).count();
+    assert!(near >= 27, "{near}");
+}
