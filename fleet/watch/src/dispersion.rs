@@ -185,7 +185,7 @@ fn innovations(residuals: &[(i64, f64)], unit: f64, memory: Memory, level: f64) 
         let outliers = Outliers { fraction: OUTLIERS, centre: prediction.mean };
         let (ln_density, weight) = prediction.judge(value, outliers);
         let squared = prediction.squared_error(value);
-        filter.update(&reading, 0.0, weight);
+        filter.update(value, &prediction, weight);
         Innovation { ln_density, weight, squared }
     };
     residuals.iter().map(one).collect()

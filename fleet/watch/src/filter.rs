@@ -31,7 +31,12 @@ pub(crate) struct Reading {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prediction {
     pub(crate) mean: f64,
-    /// Variance over the scale.
+    /// Covariance of the states with the value, over the scale.
+    gain: [f64; STATES],
+    /// Variances over the scale: of what the states do not know, and of what is new on this day.
+    known: f64,
+    fresh: f64,
+    /// Both.
     variance: f64,
     scale: f64,
     dof: f64,
@@ -79,7 +84,12 @@ impl Prediction {
     }
 }
 
+/// Logarithm of the constant of Student's t density. From five degrees of freedom on by Stirling's series of the ratio of
+/// gamma functions, whose next term is below 2e-5.
 fn ln_t_constant(dof: f64) -> f64 {
+    if dof >= 5.0 {
+        return -0.5 * std::f64::consts::TAU.ln() - 0.25 / dof + 1.0 / (24.0 * dof.powi(3));
+    }
     ln_gamma(0.5 * (dof + 1.0)) - ln_gamma(0.5 * dof) - 0.5 * (dof * std::f64::consts::PI).ln()
 }
 
@@ -147,27 +157,28 @@ impl Filter {
         let row = row(reading, change);
         let gain = self.gain(&row);
         let mean = (0..STATES).map(|k| row[k] * self.mean[k]).sum();
-        let variance = (0..STATES).map(|k| row[k] * gain[k]).sum::<f64>() + self.fresh(reading);
-        Prediction { mean, variance: variance.max(1e-6), scale: self.scale, dof: self.dof }
+        let known = (0..STATES).map(|k| row[k] * gain[k]).sum::<f64>();
+        let fresh = (1.0 - self.memory.share + reading.extra_variance).max(0.02);
+        let variance = (known + fresh).max(1e-6);
+        Prediction { mean, gain, known, fresh, variance, scale: self.scale, dof: self.dof }
     }
 
-    /// Takes a reading in with a weight in [0, 1].
-    pub(crate) fn update(&mut self, reading: &Reading, change: f64, weight: f64) {
+    /// Takes the value of a reading in that was predicted, with a weight in [0, 1].
+    pub(crate) fn update(&mut self, value: f64, prediction: &Prediction, weight: f64) {
         if weight < 1e-4 {
             return;
         }
-        let row = row(reading, change);
-        let gain = self.gain(&row);
-        let known: f64 = (0..STATES).map(|k| row[k] * gain[k]).sum();
-        let variance = known + self.fresh(reading) / weight;
-        let error = reading.value - (0..STATES).map(|k| row[k] * self.mean[k]).sum::<f64>();
+        let Prediction { gain, known, fresh, .. } = prediction;
+        let error = value - prediction.mean;
+        let precision = 1.0 / (known + fresh / weight);
         for i in 0..STATES {
-            self.mean[i] += gain[i] * error / variance;
+            let part = gain[i] * precision;
+            self.mean[i] += part * error;
             for j in 0..STATES {
-                self.covariance[i][j] -= gain[i] * gain[j] / variance;
+                self.covariance[i][j] -= part * gain[j];
             }
         }
-        let squared = error * error / (known + self.fresh(reading)).max(1e-6);
+        let squared = prediction.squared_error(value);
         self.scale = (self.dof * self.scale + weight * squared) / (self.dof + weight);
         self.dof = (self.dof + weight).min(MOST_DOF);
     }
@@ -175,7 +186,8 @@ impl Filter {
     /// Takes a reading in whatever it is; it says nothing about the noise.
     pub(crate) fn believe(&mut self, reading: &Reading, change: f64) {
         let noise = (self.scale, self.dof);
-        self.update(reading, change, 1.0);
+        let prediction = self.predict(reading, change);
+        self.update(reading.value, &prediction, 1.0);
         (self.scale, self.dof) = noise;
     }
 
@@ -200,11 +212,6 @@ impl Filter {
 
     fn gain(&self, row: &[f64; STATES]) -> [f64; STATES] {
         std::array::from_fn(|i| (0..STATES).map(|j| self.covariance[i][j] * row[j]).sum())
-    }
-
-    /// Variance that is new on this day.
-    fn fresh(&self, reading: &Reading) -> f64 {
-        (1.0 - self.memory.share + reading.extra_variance).max(0.02)
     }
 }
 
@@ -234,7 +241,7 @@ mod tests {
                     squares += z * z;
                     outside += i32::from(z.abs() > 3.0);
                 }
-                filter.update(&reading, 0.0, 1.0);
+                filter.update(value, &p, 1.0);
             }
         }
         let mean = squares / f64::from(count);
@@ -251,8 +258,8 @@ mod tests {
             let value = if day == 20 { 1e6 } else { 0.3 * (day % 3 - 1) as f64 };
             let reading = Reading { day, value, covariates: [0.0; 2], extra_variance: 0.0 };
             filter.advance(day);
-            let weight = filter.predict(&reading, 0.0).judge(value, outliers).1;
-            filter.update(&reading, 0.0, weight);
+            let prediction = filter.predict(&reading, 0.0);
+            filter.update(value, &prediction, prediction.judge(value, outliers).1);
         }
         assert!(filter.level().mean.abs() < 0.2, "{:?}", filter.level());
     }

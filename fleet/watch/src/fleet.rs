@@ -15,6 +15,8 @@ const KNOWN: f64 = 0.75;
 
 /// Table, parameter, and which covariates are known.
 type GroupKey<'a> = (&'a str, &'a str, [bool; 2]);
+/// The same, kept.
+type OwnedKey = (String, String, [bool; 2]);
 
 /// A series and what has become of it.
 pub(crate) struct Entry<'a> {
@@ -43,7 +45,7 @@ impl<'a> Entry<'a> {
 pub(crate) struct Fleet<'a> {
     settings: Settings,
     pub(crate) entries: Vec<Entry<'a>>,
-    pub(crate) groups: BTreeMap<(String, String, [bool; 2]), Group>,
+    pub(crate) groups: BTreeMap<OwnedKey, Group>,
     weights: Weights,
     has_begun: bool,
     pub(crate) alarms: Vec<Alarm>,
@@ -81,7 +83,7 @@ impl<'a> Fleet<'a> {
 
     /// The day's effects of the groups, then the day itself.
     fn observe(&mut self, day: i64, present: &[(usize, usize)]) {
-        let mut surprises: BTreeMap<(String, String, [bool; 2]), Vec<f64>> = BTreeMap::new();
+        let mut surprises: BTreeMap<OwnedKey, Vec<f64>> = BTreeMap::new();
         for &(e, k) in present {
             let entry = &self.entries[e];
             let Some((key, group)) = self.group_of(entry) else { continue };
@@ -110,7 +112,7 @@ impl<'a> Fleet<'a> {
         }
     }
 
-    pub(crate) fn group_of(&self, entry: &Entry<'_>) -> Option<((String, String, [bool; 2]), &Group)> {
+    pub(crate) fn group_of(&self, entry: &Entry<'_>) -> Option<(OwnedKey, &Group)> {
         let key = owned(entry.key()?);
         let group = self.groups.get(&key)?;
         Some((key, group))
@@ -133,7 +135,7 @@ impl<'a> Fleet<'a> {
                 entry.known = Some(known(&entry.clean.days[..needed]));
             }
         }
-        let mut new: BTreeMap<(String, String, [bool; 2]), Vec<usize>> = BTreeMap::new();
+        let mut new: BTreeMap<OwnedKey, Vec<usize>> = BTreeMap::new();
         for (e, entry) in self.entries.iter().enumerate().filter(|(_, e)| waiting(e)) {
             let Some(key) = entry.key().map(owned) else { continue };
             let (enough, all) = ready.get(&(key.0.clone(), key.1.clone())).copied().unwrap_or_default();
@@ -145,7 +147,7 @@ impl<'a> Fleet<'a> {
     }
 
     /// Begins to watch these series of one group.
-    fn begin(&mut self, key: (String, String, [bool; 2]), new: &[usize]) {
+    fn begin(&mut self, key: OwnedKey, new: &[usize]) {
         let least = self.settings.least_siblings;
         let days: Vec<&[Day]> =
             new.iter().map(|&e| &self.entries[e].clean.days[..self.entries[e].seen]).collect();
@@ -157,7 +159,7 @@ impl<'a> Fleet<'a> {
     }
 
     /// Levels of new members against those of all siblings.
-    fn compare(&mut self, key: &(String, String, [bool; 2]), new: &[usize]) {
+    fn compare(&mut self, key: &OwnedKey, new: &[usize]) {
         let same = |e: &Entry<'_>| e.key().map(owned).as_ref() == Some(key);
         let group: Vec<(usize, f64)> = self
             .entries
@@ -235,7 +237,7 @@ impl<'a> Fleet<'a> {
     }
 }
 
-fn owned(key: GroupKey<'_>) -> (String, String, [bool; 2]) {
+fn owned(key: GroupKey<'_>) -> OwnedKey {
     (key.0.to_owned(), key.1.to_owned(), key.2)
 }
 

@@ -22,6 +22,23 @@ fn fleets_in_which_nothing_happens_rarely_have_an_alarm() {
 }
 
 #[test]
+fn robots_without_siblings_rarely_have_a_false_alarm_and_their_jumps_are_found() {
+    let mut noise = Noise::new(30);
+    for rho in [0.0, 0.5] {
+        let mut wrong = 0;
+        for _ in 0..20 {
+            let mut all = fleet(&mut noise, 30, 60, rho);
+            all.iter_mut().enumerate().for_each(|(k, s)| s.table = format!("table {k}"));
+            changed(&mut all[0], |k| if k >= 40 { 15.0 } else { 0.0 });
+            let found = alarms(&all);
+            assert!(found.iter().any(|a| a.robot == "r000"), "{rho}");
+            wrong += i32::from(found.iter().any(|a| a.robot != "r000"));
+        }
+        assert!(wrong <= 3, "{wrong} of 20 at {rho}");
+    }
+}
+
+#[test]
 fn a_step_and_a_drift_are_found_with_their_days_and_sizes() {
     let mut noise = Noise::new(21);
     let mut all = fleet(&mut noise, 60, 60, 0.4);
@@ -192,4 +209,22 @@ fn the_page_tells_the_worst_robot_first_and_escapes_names() {
     for outside in ["<script", "http:", "https:", "src=", "@import", "url("] {
         assert!(!html.contains(outside), "{outside}");
     }
+}
+
+#[test]
+fn load_explains_as_temperature_does_and_days_without_either_raise_no_alarm() {
+    let mut noise = Noise::new(31);
+    let mut all = warm_fleet(&mut noise, 10.0);
+    for (r, one) in all.iter_mut().enumerate() {
+        for (k, o) in one.observations.iter_mut().enumerate() {
+            let load = 10.0 + 2.0 * noise.normal() + if r == 5 && k >= 30 { 8.0 } else { 0.0 };
+            o.value += 2.0 * load;
+            o.load = (k % 11 != 3).then_some(load);
+            o.temperature = o.temperature.filter(|_| k % 13 != 5);
+        }
+    }
+    let watched = watch(&all, &Settings::default());
+    assert!(watched.alarms.is_empty(), "{:?}", watched.alarms);
+    let near = watched.trends.iter().filter_map(|t| t.per_load).filter(|l| (l.0 - 2.0).abs() < 0.2).count();
+    assert!(near >= 27, "{near}");
 }

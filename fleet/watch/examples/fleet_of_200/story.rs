@@ -90,13 +90,13 @@ impl Robot {
         let phase = rng.random::<f64>() * 7.0;
         // Memories: warmth, friction of both joints, offsets.
         let mut memory: Vec<f64> = (0..7).map(|_| normal(&mut rng)).collect();
-        let factors = [0.8, 0.5, 0.5, 0.5, 0.5, 0.7, 0.7];
+        let factors = [0.8_f64, 0.5, 0.5, 0.5, 0.5, 0.7, 0.7];
         let mut days = Vec::new();
         for day in 0..DAYS {
             memory
                 .iter_mut()
                 .zip(factors)
-                .for_each(|(m, f)| *m = f * *m + (1.0 - f * f as f64).sqrt() * normal(&mut rng));
+                .for_each(|(m, f)| *m = f * *m + (1.0 - f * f).sqrt() * normal(&mut rng));
             let season = 6.0 * (TAU * day as f64 / 240.0).sin()
                 + if (day as f64 + phase) % 7.0 < 2.0 { -1.5 } else { 0.0 };
             let temperature = 30.0 + hall + season + 1.5 * memory[0];

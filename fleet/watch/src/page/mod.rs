@@ -19,6 +19,8 @@ use std::fmt::Write as _;
 const STYLE: &str = include_str!("page.css");
 /// Most robots that are drawn; the others with alarms have their sentences.
 const MOST_DRAWN: usize = 40;
+/// Days of a series that are drawn, its last ones.
+const DAYS_DRAWN: i64 = 365;
 /// Robots without an alarm that are drawn: those with the most evidence.
 const QUIET_DRAWN: usize = 3;
 /// Least e-value of a robot without an alarm that is drawn.
@@ -92,7 +94,8 @@ fn legend(out: &mut String) {
     out.push_str(
         "<p class=\"legend\"><span class=\"key law\">this robot, with an alarm</span><span class=\"key after\">without</span>\
          <span class=\"key band\">middle four fifths of its siblings</span><span class=\"key between\">when it began, nine \
-         chances in ten</span> solid line: began; dashed line: alarm. Values as identified, temperature and load not taken out.</p>",
+         chances in ten</span> solid line: began; dashed line: alarm. Values of the last year \
+         as identified, temperature and load not taken out.</p>",
     );
 }
 
@@ -124,7 +127,9 @@ fn card(
         let empty = Band::default();
         for one in &robot.series {
             let alarm = robot.alarm_of(one);
-            let points: Vec<(i64, f64)> = one.days.iter().map(|d| (d.day, d.value)).collect();
+            let from = one.days.last().map_or(0, |d| d.day - DAYS_DRAWN);
+            let drawn = one.days.iter().filter(|d| d.day > from);
+            let points: Vec<(i64, f64)> = drawn.map(|d| (d.day, d.value)).collect();
             out.push_str(&chart(one.source, &points, bands.get(&one.family()).unwrap_or(&empty), alarm));
         }
         out.push_str("</div>");
