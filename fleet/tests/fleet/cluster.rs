@@ -88,7 +88,7 @@ fn cpu_seconds(server: &Server) -> Option<f64> {
 
 #[test]
 fn a_cluster_gives_the_same_files_and_both_executors_work() {
-    let fleet = Fleet::new(3, 2);
+    let fleet = Fleet::long(3, 2);
     let (here, there) = (fleet.out("here"), fleet.out("there"));
     fleet.run(&here);
     let cluster = cluster();
@@ -105,7 +105,7 @@ fn a_cluster_gives_the_same_files_and_both_executors_work() {
 
 #[test]
 fn a_job_whose_executor_is_killed_ends_with_the_same_files() {
-    let fleet = Fleet::new(4, 3);
+    let fleet = Fleet::long(4, 4);
     let (here, there) = (fleet.out("here"), fleet.out("there"));
     fleet.run(&here);
     let mut cluster = cluster();
@@ -113,7 +113,7 @@ fn a_job_whose_executor_is_killed_ends_with_the_same_files() {
     let mut run = started(&fleet, &there, &cluster.address);
     let start = Instant::now();
     // In the middle: it has worked, and the run goes on.
-    while cpu_seconds(&cluster.executors[0]).zip(idle).is_some_and(|(now, idle)| now < idle + 0.5) {
+    while cpu_seconds(&cluster.executors[0]).zip(idle).is_some_and(|(now, idle)| now < idle + 0.4) {
         assert!(run.try_wait().unwrap().is_none(), "the run was over before the executor could be killed");
         assert!(start.elapsed() < Duration::from_secs(60), "the executor does nothing");
         std::thread::sleep(Duration::from_millis(10));

@@ -23,9 +23,17 @@ pub struct Fleet {
 impl Fleet {
     /// So many robots and days with a short recording each, which are not diagnosed.
     pub fn new(robots: usize, days: usize) -> Self {
+        Self::of(&Plan { robots, days, motions: 1, rate: 100.0, seed: 3 })
+    }
+
+    /// The same with recordings that take some tenths of a second each, in which a process can be killed.
+    pub fn long(robots: usize, days: usize) -> Self {
+        Self::of(&Plan { robots, days, motions: 8, rate: 500.0, seed: 3 })
+    }
+
+    fn of(plan: &Plan) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let plan = Plan { robots, days, motions: 1, rate: 100.0, seed: 3 };
-        let file = simulate(folder.path(), &plan).unwrap();
+        let file = simulate(folder.path(), plan).unwrap();
         let fleet = Self { folder, file };
         fleet.write(
             "recordings: logs/{robot}/{day}/recording.yaml\nout: results\ndiagnosis: {enabled: false}\n",
