@@ -60,6 +60,19 @@ pub(super) fn corrected(
             }
         }
     }
+    given_back(of_information, stacked, chi).map(Some)
+}
+
+/// The same from the part of the weighted WT W that is noise.
+///
+/// # Errors
+/// As of [`corrected`].
+pub(super) fn given_back(
+    of_information: DMatrix<f64>,
+    stacked: &Factor,
+    chi: &[f64],
+) -> Result<Attenuation, Drowned> {
+    let k = chi.len();
     let r = DMatrix::from_fn(k, k, |i, l| stacked.r(i, l));
     let information = r.tr_mul(&r);
     // Unit columns: the condition is that of the scaled W, squared.
@@ -73,7 +86,7 @@ pub(super) fn corrected(
     let missing = left.solve(&pull).component_mul(&scale);
     let missing = missing.as_slice().to_vec();
     let chi = chi.iter().zip(&missing).map(|(x, d)| x + d).collect();
-    Ok(Some(Attenuation { of_information, chi, missing }))
+    Ok(Attenuation { of_information, chi, missing })
 }
 
 #[cfg(test)]

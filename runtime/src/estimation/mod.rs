@@ -57,6 +57,8 @@ mod payload;
 mod physical;
 mod piecewise;
 mod recorded;
+#[cfg(feature = "diagnosis")]
+mod reduced;
 mod residuals;
 mod robust;
 mod settings;
@@ -86,6 +88,8 @@ pub use recorded::{
     ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording,
     observe_trajectories,
 };
+#[cfg(feature = "diagnosis")]
+pub use reduced::{Reduced, ReducedError, ReducedEstimate};
 pub use residuals::{per_equation, relative_error};
 pub use settings::EstimateSettings;
 pub use solve::{RANK_TOLERANCE, Solution};

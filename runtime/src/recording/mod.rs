@@ -52,7 +52,7 @@ mod trajectory;
 mod unit;
 mod window;
 mod write;
-pub(crate) mod yaml;
+pub mod yaml;
 
 pub use column::Column;
 pub use error::RecordingError;

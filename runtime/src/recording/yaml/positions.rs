@@ -5,14 +5,16 @@ use std::collections::HashMap;
 use saphyr_parser::{Event, Marker, Parser, ScalarStyle, Span};
 
 /// Longest file that is read, bytes; a recording of a thousand windows needs less than a tenth of it.
-pub(crate) const MAX_BYTES: usize = 1 << 20;
+pub const MAX_BYTES: usize = 1 << 20;
 /// Deepest nesting that is read; a recording needs four levels.
 const MAX_DEPTH: usize = 16;
 
 /// Line and column in characters, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
+pub struct Place {
+    /// Line.
     pub line: usize,
+    /// Column.
     pub column: usize,
 }
 
@@ -27,21 +29,25 @@ impl Place {
 
 /// What is wrong with a file, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Mistake {
+pub struct Mistake {
+    /// Where it stands.
     pub place: Place,
+    /// What was found and what was expected.
     pub message: String,
 }
 
 /// A value and where it starts.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Node {
+pub struct Node {
+    /// Where it starts.
     pub place: Place,
+    /// What is inside.
     pub content: Content,
 }
 
 /// What is inside of a value.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Content {
+pub enum Content {
     /// A scalar or an alias.
     Single {
         /// Nothing stands there.
@@ -50,6 +56,7 @@ pub(crate) enum Content {
         /// several lines, an alias.
         first: Option<usize>,
     },
+    /// The items of a list.
     Sequence(Vec<Node>),
     /// Keys in the order of the file, each with its place.
     Mapping(Vec<(String, Place, Node)>),
@@ -131,7 +138,7 @@ struct Open {
 /// # Errors
 /// Text that is too long, not UTF-8 or not YAML, a tab that indents, nesting that is too deep, a key that is there
 /// twice, a second document.
-pub(crate) fn read_positions(bytes: &[u8]) -> Result<Option<Node>, Mistake> {
+pub fn read_positions(bytes: &[u8]) -> Result<Option<Node>, Mistake> {
     read_positions_of(bytes, "recording")
 }
 
@@ -139,7 +146,7 @@ pub(crate) fn read_positions(bytes: &[u8]) -> Result<Option<Node>, Mistake> {
 ///
 /// # Errors
 /// As [`read_positions`].
-pub(crate) fn read_positions_of(bytes: &[u8], what: &str) -> Result<Option<Node>, Mistake> {
+pub fn read_positions_of(bytes: &[u8], what: &str) -> Result<Option<Node>, Mistake> {
     let text = text_of(bytes, what)?;
     let mut root = None;
     let mut open: Vec<Open> = Vec::new();

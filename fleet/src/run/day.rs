@@ -1,0 +1,149 @@
+//! A day of a fleet: the factors of its recordings, robot by robot.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use datafusion::arrow::array::{BooleanArray, RecordBatch};
+use datafusion::arrow::compute::{concat_batches, filter_record_batch};
+use dynid_runtime::estimation::Reduced;
+
+use super::folder::OutFolder;
+use super::rows::{bytes, factors_schema, number, screening_schema, text};
+use super::tables;
+use crate::day::Day;
+use crate::error::{FleetError, Result};
+use crate::work::Item;
+
+/// A robot on a day.
+pub struct RobotDay {
+    /// All of its recordings that are used.
+    pub all: Reduced,
+    /// Each of them, by its path or address.
+    pub recordings: BTreeMap<String, Reduced>,
+    /// Mean temperature of these recordings, °C, where they say one.
+    pub temperature: Option<f64>,
+    /// Mean of their loads, where they say one.
+    pub load: Option<f64>,
+}
+
+/// Keys of the recordings that a day was done with; none where it was not done.
+///
+/// # Errors
+/// A table that is none.
+pub fn done(out: &OutFolder, day: Day) -> Result<BTreeSet<String>> {
+    let table = tables::read(&out.of_day("screening", day), &screening_schema())?;
+    Ok(table.iter().flat_map(keys).collect())
+}
+
+/// Keys of the recordings of a day that were reduced, whether the day is done or not.
+///
+/// # Errors
+/// A table that is none.
+pub fn reduced(out: &OutFolder, day: Day) -> Result<BTreeSet<String>> {
+    let table = tables::read(&out.of_day("factors", day), &factors_schema())?;
+    Ok(table.iter().flat_map(keys).collect())
+}
+
+fn keys(table: &RecordBatch) -> Vec<String> {
+    (0..table.num_rows()).filter_map(|k| text(table, "key", k).map(str::to_owned)).collect()
+}
+
+/// Brings the motions of a day together, from its table and from what was reduced since, and writes the table.
+///
+/// # Errors
+/// A table that is none, or what the file system says.
+pub fn gather(out: &OutFolder, day: Day, items: &[&Item]) -> Result<RecordBatch> {
+    let schema = factors_schema();
+    let failed = |error: datafusion::arrow::error::ArrowError| FleetError::Engine(error.to_string());
+    let path = out.of_day("factors", day);
+    let wanted: BTreeSet<String> = items.iter().map(|item| item.key()).collect();
+    let mut parts = Vec::new();
+    let mut have = BTreeSet::new();
+    if let Some(before) = tables::read(&path, &schema)? {
+        let still: BooleanArray = (0..before.num_rows())
+            .map(|k| Some(text(&before, "key", k).is_some_and(|key| wanted.contains(key))))
+            .collect();
+        have.extend(keys(&before));
+        parts.push(filter_record_batch(&before, &still).map_err(failed)?);
+    }
+    for item in items {
+        let key = item.key();
+        if !have.contains(&key)
+            && let Some(part) = tables::read(&out.pending(&key), &schema)?
+        {
+            parts.push(part);
+        }
+    }
+    let all = concat_batches(&schema, &parts).map_err(failed)?;
+    // The same recordings give the same table, whenever each of them was reduced.
+    let mut order: Vec<u32> = (0..all.num_rows() as u32).collect();
+    order.sort_by_key(|&k| (text(&all, "robot", k as usize), text(&all, "recording", k as usize)));
+    let order = datafusion::arrow::array::UInt32Array::from(order);
+    let columns = all.columns().iter().map(|column| datafusion::arrow::compute::take(column, &order, None));
+    let columns = columns.collect::<std::result::Result<Vec<_>, _>>().map_err(failed)?;
+    let sorted = RecordBatch::try_new(schema, columns).map_err(failed)?;
+    tables::write(&path, &sorted)?;
+    Ok(sorted)
+}
+
+/// Removes what was kept of recordings beside the table of their day.
+pub fn clear_pending(out: &OutFolder, items: &[&Item]) {
+    for item in items {
+        // What stays is found in the table first.
+        let _ = std::fs::remove_file(out.pending(&item.key()));
+    }
+}
+
+/// The robots of a day with their factors. A recording that was reduced with another robot table than those before it on its
+/// day is left out and named.
+///
+/// # Errors
+/// Bytes that are no factors.
+pub fn robots(factors: &RecordBatch) -> Result<(BTreeMap<String, RobotDay>, BTreeMap<String, String>)> {
+    let mut recordings: BTreeMap<(String, String), Reduced> = BTreeMap::new();
+    for k in 0..factors.num_rows() {
+        let (Some(robot), Some(recording), Some(bytes)) =
+            (text(factors, "robot", k), text(factors, "recording", k), bytes(factors, "factor", k))
+        else {
+            continue;
+        };
+        let failed = |error| FleetError::Engine(format!("{recording}: {error}"));
+        let factor = Reduced::from_bytes(bytes).map_err(failed)?;
+        match recordings.get_mut(&(robot.to_owned(), recording.to_owned())) {
+            Some(own) => own.merge(&factor).map_err(failed)?,
+            None => {
+                recordings.insert((robot.to_owned(), recording.to_owned()), factor);
+            }
+        }
+    }
+    let mut robots: BTreeMap<String, RobotDay> = BTreeMap::new();
+    let mut left_out = BTreeMap::new();
+    for ((robot, recording), factor) in recordings {
+        match robots.get_mut(&robot) {
+            Some(day) => match day.all.merge(&factor) {
+                Ok(()) => {
+                    day.recordings.insert(recording, factor);
+                }
+                Err(error) => {
+                    left_out.insert(recording, error.to_string());
+                }
+            },
+            None => {
+                let recordings = BTreeMap::from([(recording, factor.clone())]);
+                robots.insert(robot, RobotDay { all: factor, recordings, temperature: None, load: None });
+            }
+        }
+    }
+    for (robot, day) in &mut robots {
+        day.temperature = mean(factors, robot, "temperature");
+        day.load = mean(factors, robot, "load");
+    }
+    Ok((robots, left_out))
+}
+
+/// Mean of a column over the motions of a robot that are used.
+fn mean(factors: &RecordBatch, robot: &str, column: &str) -> Option<f64> {
+    let of_robot = (0..factors.num_rows())
+        .filter(|&k| text(factors, "robot", k) == Some(robot) && bytes(factors, "factor", k).is_some());
+    let values: Vec<f64> = of_robot.filter_map(|k| number(factors, column, k)).collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}

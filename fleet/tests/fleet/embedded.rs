@@ -1,0 +1,178 @@
+//! In one process.
+
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use dynid_runtime::estimation::observe::Equations;
+use dynid_runtime::estimation::{EstimateSettings, RecordedSettings, estimate, observe_recording};
+use dynid_runtime::recording::Manifest;
+
+use crate::common::{Fleet, PROGRAM, ask, numbers, pairs, parquet_files};
+
+#[test]
+fn parameters_and_standard_deviations_are_those_of_identify() {
+    let fleet = Fleet::new(1, 1);
+    let out = fleet.out("o");
+    fleet.run(&out);
+    let manifest = Manifest::read(&fleet.recording("r001", 1).join("recording.yaml")).unwrap();
+    let model = dynid::models::find("tx40").unwrap();
+    let settings = RecordedSettings::default();
+    let observed = observe_recording(&manifest, model, None, &[Equations::Torque], &settings, None).unwrap();
+    let expected = estimate(&observed.observations[0], &EstimateSettings::default());
+    let found = ask(&out, "SELECT value, sigma, parameter FROM parameters");
+    let values = numbers(&out, "SELECT value FROM parameters WHERE sigma IS NOT NULL");
+    let sigmas = numbers(&out, "SELECT sigma FROM parameters WHERE sigma IS NOT NULL");
+    let determined: Vec<_> = expected.parameters.iter().filter(|p| p.sigma.is_some()).collect();
+    assert_eq!(found.iter().map(|b| b.num_rows()).sum::<usize>(), expected.parameters.len());
+    assert_eq!(values.len(), determined.len());
+    for ((value, sigma), expected) in values.iter().zip(&sigmas).zip(determined) {
+        let own = expected.sigma.unwrap();
+        assert!((value - expected.value).abs() < 1e-6 * own, "{}: {value} {}", expected.name, expected.value);
+        assert!((sigma / own - 1.0).abs() < 1e-6, "{}: {sigma} {own}", expected.name);
+    }
+}
+
+#[test]
+fn a_second_run_does_nothing_and_a_new_day_is_all_that_is_done() {
+    let fleet = Fleet::new(2, 3);
+    let away = fleet.out("away");
+    std::fs::rename(fleet.recording("r002", 3), &away).unwrap();
+    let out = fleet.out("o");
+    let first = fleet.run(&out);
+    assert_eq!((first.recordings, first.reduced, first.days), (5, 5, 3));
+    let before = parquet_files(&out);
+    let again = fleet.run(&out);
+    assert_eq!((again.recordings, again.reduced, again.days), (5, 0, 0));
+    assert_eq!(before, parquet_files(&out));
+    std::fs::rename(&away, fleet.recording("r002", 3)).unwrap();
+    let late = fleet.run(&out);
+    assert_eq!((late.recordings, late.reduced, late.days), (6, 1, 1));
+    let whole = fleet.out("whole");
+    fleet.run(&whole);
+    assert_eq!(parquet_files(&whole), parquet_files(&out));
+}
+
+#[test]
+fn a_run_that_was_killed_goes_on_where_it_was() {
+    let fleet = Fleet::new(3, 3);
+    let (out, whole) = (fleet.out("o"), fleet.out("whole"));
+    let mut run = Command::new(PROGRAM)
+        .args([
+            "run",
+            &fleet.file.display().to_string(),
+            "--threads",
+            "1",
+            "--out",
+            &out.display().to_string(),
+        ])
+        .stderr(Stdio::null())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let is_whole = |path: &std::path::Path| path.extension().is_some_and(|e| e == "parquet");
+    let kept = || {
+        let files = std::fs::read_dir(out.join("pending"));
+        files.map_or(0, |files| files.flatten().filter(|file| is_whole(&file.path())).count())
+    };
+    let start = Instant::now();
+    while kept() < 2 {
+        assert!(start.elapsed() < Duration::from_secs(120), "nothing was reduced");
+        assert!(run.try_wait().unwrap().is_none(), "it was done before it could be killed");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.kill().unwrap();
+    run.wait().unwrap();
+    let summary = fleet.run(&out);
+    assert!(summary.reduced <= 7, "{summary:?}");
+    assert_eq!(summary.recordings, 9);
+    fleet.run(&whole);
+    assert_eq!(parquet_files(&whole), parquet_files(&out));
+}
+
+#[test]
+fn a_recording_that_cannot_be_used_is_a_row_and_the_others_are_as_without_it() {
+    let fleet = Fleet::new(4, 1);
+    let (sound, out) = (fleet.out("sound"), fleet.out("o"));
+    fleet.run(&sound);
+    let data = |robot: &str| {
+        let files = std::fs::read_dir(fleet.recording(robot, 1)).unwrap().flatten();
+        files.map(|f| f.path()).find(|p| p.extension().is_some_and(|e| e == "csv")).unwrap()
+    };
+    std::fs::write(data("r002"), b"\x00\xff\x13 no table").unwrap();
+    std::fs::write(fleet.recording("r003", 1).join("recording.yaml"), "robot: tx40\ntime: [\n").unwrap();
+    // The sign of one torque: no such robot can have made it.
+    let manifest = fleet.recording("r004", 1).join("recording.yaml");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    let swapped = text.replacen("q1, q2", "q2, q1", 1).replacen("q1\", \"q2", "q2\", \"q1", 1);
+    assert_ne!(text, swapped, "{text}");
+    std::fs::write(&manifest, swapped).unwrap();
+    let summary = fleet.run(&out);
+    assert_eq!((summary.reduced, summary.days), (4, 1));
+    let outcomes = pairs(&out, "SELECT robot, outcome FROM screening ORDER BY robot");
+    let outcomes: Vec<&str> = outcomes.iter().map(|(_, outcome)| outcome.as_str()).collect();
+    assert_eq!(outcomes, ["used", "unreadable", "unreadable", "refused"]);
+    let why = pairs(&out, "SELECT robot, message FROM screening WHERE robot = 'r003'");
+    assert!(why[0].1.contains("recording.yaml:"), "{why:?}");
+    let of_first = "SELECT value FROM parameters WHERE robot = 'r001' AND value IS NOT NULL";
+    assert_eq!(numbers(&out, of_first), numbers(&sound, of_first));
+    assert_eq!(pairs(&out, "SELECT DISTINCT robot, 'x' FROM parameters").len(), 1);
+    // Done is done, with what was wrong.
+    assert_eq!(fleet.run(&out).reduced, 0);
+}
+
+#[test]
+fn functions_of_queries_give_what_the_tables_hold() {
+    let fleet = Fleet::new(1, 2);
+    let out = fleet.out("o");
+    fleet.run(&out);
+    let path = fleet.file.display();
+    let of_day = "day = DATE '2026-03-02'";
+    let asked = numbers(
+        &out,
+        &format!(
+            "SELECT solved['value'] FROM (SELECT unnest(dynid_solve(dynid_merge(factor))) AS solved FROM \
+             dynid_factors('{path}') WHERE {of_day}) WHERE solved['value'] IS NOT NULL"
+        ),
+    );
+    let kept = numbers(&out, &format!("SELECT value FROM parameters WHERE {of_day} AND value IS NOT NULL"));
+    assert!(kept.len() > 30);
+    assert_eq!(asked, kept);
+    let rise = numbers(
+        &out,
+        "SELECT dynid_rise(a.factor, b.factor) FROM factors a, factors b WHERE a.day = DATE '2026-03-02' AND b.day = DATE \
+         '2026-03-01'",
+    );
+    assert_eq!(rise, numbers(&out, &format!("SELECT rise FROM screening WHERE {of_day}")));
+}
+
+#[test]
+fn a_gear_that_wears_is_found_where_errors_rose_and_nothing_else_is_looked_for() {
+    let fleet = Fleet::new(2, 2);
+    fleet.write(
+        "recordings: logs/{robot}/{day}/recording.yaml\nout: results\ndiagnosis: {error_rises: 1.5}\n",
+    );
+    let out = fleet.out("o");
+    fleet.run(&out);
+    let found = pairs(&out, "SELECT robot, effect FROM findings");
+    assert_eq!(found, [("r002".to_owned(), "friction_level_change".to_owned())]);
+    let joints = pairs(&out, "SELECT robot, joints FROM findings");
+    assert_eq!(joints[0].1, "2");
+    let certain =
+        pairs(&out, "SELECT robot, CAST(rose AS VARCHAR) FROM screening WHERE robot = 'r002' ORDER BY day");
+    assert_eq!(certain.iter().map(|(_, rose)| rose.as_str()).collect::<Vec<_>>(), ["false", "true"]);
+}
+
+#[test]
+fn two_runs_do_not_write_to_one_folder() {
+    let fleet = Fleet::new(1, 1);
+    let out = fleet.out("o");
+    std::fs::create_dir_all(&out).unwrap();
+    let lock = std::fs::File::create(out.join(".lock")).unwrap();
+    lock.lock().unwrap();
+    let run = Command::new(PROGRAM)
+        .args(["run", &fleet.file.display().to_string(), "--out", &out.display().to_string()])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(!run.status.success() && said.contains("another run writes to it"), "{said}");
+}

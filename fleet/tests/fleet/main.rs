@@ -1,0 +1,9 @@
+//! Fleets from end to end: in this process, on a cluster of processes of their own, from a web server. One program, because
+//! linking the engine takes longer than running it.
+#![allow(clippy::unwrap_used)]
+
+mod cluster;
+mod common;
+mod embedded;
+mod listing;
+mod store;

@@ -1,0 +1,113 @@
+//! The parameters of weighted triangles.
+
+use nalgebra::DMatrix;
+
+use super::Reduced;
+use crate::estimation::attenuation::{UNCERTAINTY, given_back};
+use crate::estimation::outcome::ParameterEstimate;
+use crate::estimation::solve::inverse_gram;
+
+/// What weighted triangles say of the parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReducedEstimate {
+    /// One for each parameter of the robot, zero and without a standard deviation where it is not determined.
+    pub parameters: Vec<ParameterEstimate>,
+    /// Upper triangle, row by row, of the covariance of all parameters: errors that go together as independent ones do,
+    /// with the standard deviations of `parameters`. Rows of what is not determined are zero.
+    pub covariance: Vec<f64>,
+    /// ||Y - W chi|| of the rows divided by their standard deviations.
+    pub residual_norm: f64,
+    /// Rows less parameters.
+    pub degrees_of_freedom: usize,
+    /// Mean over the parameters of what errors that last multiply their variances by.
+    pub inflation: f64,
+}
+
+impl ReducedEstimate {
+    /// The parameters as a vector.
+    pub fn chi(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.value).collect()
+    }
+}
+
+impl Reduced {
+    /// The weighted least-squares parameters, corrected for noise in the columns where it is known and does not drown
+    /// the motion, with standard deviations for errors that last.
+    pub fn solve(&self) -> ReducedEstimate {
+        let active = self.factor.solve().kept;
+        let rows = self.factor.select(&active);
+        let solution = rows.solve();
+        let of_active = |noise: &DMatrix<f64>| noise.select_rows(&active).select_columns(&active);
+        let corrected =
+            self.noise.as_ref().and_then(|noise| given_back(of_active(noise), &rows, &solution.chi).ok());
+        let chi = corrected.as_ref().map_or(&solution.chi, |c| &c.chi);
+        let residual_norm = rows.residual_norm(chi);
+        let variance = residual_norm.powi(2) / solution.degrees_of_freedom.max(1) as f64;
+        let mut parameters: Vec<ParameterEstimate> =
+            self.parameters.iter().map(|(name, _)| undetermined(name)).collect();
+        for &(l, value) in &self.fixed {
+            (parameters[l].value, parameters[l].sigma) = (value, Some(0.0));
+        }
+        let mut inflations = Vec::new();
+        for (place, &l) in active.iter().enumerate() {
+            let inflation = self.inflation(l);
+            inflations.push(inflation);
+            let white = (variance * solution.variance[place]).sqrt();
+            let correction = corrected.as_ref().map(|c| c.missing[place]);
+            let sigma = (white * inflation.sqrt()).hypot(UNCERTAINTY * correction.unwrap_or(0.0));
+            let value = chi[place];
+            parameters[l] = ParameterEstimate {
+                value,
+                sigma: Some(sigma),
+                sigma_white: Some(white),
+                correction,
+                relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
+                ..undetermined(&parameters[l].name)
+            };
+        }
+        let covariance = covariance(&parameters, &active, &inverse_gram(&rows));
+        let inflation = inflations.iter().sum::<f64>() / inflations.len().max(1) as f64;
+        let degrees_of_freedom = solution.degrees_of_freedom;
+        ReducedEstimate { parameters, covariance, residual_norm, degrees_of_freedom, inflation }
+    }
+
+    /// What errors that last multiply the variance of a parameter by, over the rows of which it is known.
+    fn inflation(&self, l: usize) -> f64 {
+        if self.known[l] > 0.0 { self.inflation[l] / self.known[l] } else { 1.0 }
+    }
+}
+
+fn undetermined(name: &str) -> ParameterEstimate {
+    ParameterEstimate {
+        name: name.to_owned(),
+        value: 0.0,
+        sigma: None,
+        sigma_white: None,
+        sigma_blocks: None,
+        correction: None,
+        relative_sigma_percent: None,
+    }
+}
+
+/// Errors that go together as `together`, each with the standard deviation that is told.
+fn covariance(parameters: &[ParameterEstimate], active: &[usize], together: &DMatrix<f64>) -> Vec<f64> {
+    let scale: Vec<f64> = active
+        .iter()
+        .enumerate()
+        .map(|(p, &l)| {
+            let own = together[(p, p)].sqrt();
+            if own > 0.0 { parameters[l].sigma.unwrap_or(0.0) / own } else { 0.0 }
+        })
+        .collect();
+    let mut upper = Vec::with_capacity(parameters.len() * (parameters.len() + 1) / 2);
+    for i in 0..parameters.len() {
+        for l in i..parameters.len() {
+            let place = |l: usize| active.binary_search(&l).ok();
+            upper.push(match (place(i), place(l)) {
+                (Some(a), Some(b)) => together[(a, b)] * scale[a] * scale[b],
+                _ => 0.0,
+            });
+        }
+    }
+    upper
+}
