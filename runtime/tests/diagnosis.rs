@@ -395,10 +395,13 @@ fn noise_of_the_positions_whose_torque_nobody_feels_is_no_spring() {
         let mut rng = Pcg64::seed_from_u64((trajectory.position[0][0].abs() * 1e9) as u64);
         for q in &mut trajectory.position {
             // As of a coarse encoder at low speed: slower than white, faster than the motion.
-            let mut wave = || (rng.random_range(4.0..16.0), rng.random_range(0.0..6.3));
+            let mut wave = || (rng.random_range(4.0..16.0), rng.random_range(0.0..std::f64::consts::TAU));
             let waves: Vec<(f64, f64)> = (0..40).map(|_| wave()).collect();
             for (q, t) in q.iter_mut().zip(&trajectory.time) {
-                *q += waves.iter().map(|(f, phase)| 2e-5 * (6.283 * f * t + phase).sin()).sum::<f64>();
+                *q += waves
+                    .iter()
+                    .map(|(f, phase)| 2e-5 * (std::f64::consts::TAU * f * t + phase).sin())
+                    .sum::<f64>();
             }
         }
     };
