@@ -69,22 +69,10 @@ pub(super) fn described(
     chi: &[f64],
     deviations: &Deviations,
 ) -> Vec<ParameterEstimate> {
-    let mut parameters: Vec<ParameterEstimate> = observation
-        .unknowns
-        .iter()
-        .map(|name| ParameterEstimate {
-            name: name.clone(),
-            value: 0.0,
-            sigma: None,
-            sigma_white: None,
-            sigma_blocks: None,
-            correction: None,
-            relative_sigma_percent: None,
-        })
-        .collect();
+    let undetermined = observation.unknowns.iter().map(|name| ParameterEstimate::undetermined(name));
+    let mut parameters: Vec<ParameterEstimate> = undetermined.collect();
     for &(l, value) in &observation.fixed {
-        let parameter = &mut parameters[l];
-        (parameter.value, parameter.sigma, parameter.relative_sigma_percent) = (value, Some(0.0), Some(0.0));
+        parameters[l] = ParameterEstimate::known(&observation.unknowns[l], value);
     }
     for (place, &l) in active.iter().enumerate() {
         let parameter = &mut parameters[l];

@@ -61,15 +61,7 @@ impl Essential {
         let chi = observation.with_fixed(observation.unknowns.iter().map(value_of).collect());
         self.relative_error = relative_error(observation, &chi);
         for &(unknown, value) in &observation.fixed {
-            self.parameters.push(ParameterEstimate {
-                name: observation.unknowns[unknown].clone(),
-                value,
-                sigma: Some(0.0),
-                sigma_white: None,
-                sigma_blocks: None,
-                correction: None,
-                relative_sigma_percent: Some(0.0),
-            });
+            self.parameters.push(ParameterEstimate::known(&observation.unknowns[unknown], value));
         }
         let place = |p: &ParameterEstimate| observation.unknowns.iter().position(|name| *name == p.name);
         self.parameters.sort_by_key(place);

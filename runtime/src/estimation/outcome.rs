@@ -28,6 +28,27 @@ pub struct ParameterEstimate {
     pub relative_sigma_percent: Option<f64>,
 }
 
+impl ParameterEstimate {
+    /// One that the data do not determine.
+    pub(super) fn undetermined(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            value: 0.0,
+            sigma: None,
+            sigma_white: None,
+            sigma_blocks: None,
+            correction: None,
+            relative_sigma_percent: None,
+        }
+    }
+
+    /// One that was known beforehand.
+    pub(super) fn known(name: &str, value: f64) -> Self {
+        let certain = Some(0.0);
+        Self { value, sigma: certain, relative_sigma_percent: certain, ..Self::undetermined(name) }
+    }
+}
+
 /// The standard deviation of the errors of one equation in one trajectory, whose inverse is its weight.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EquationError {

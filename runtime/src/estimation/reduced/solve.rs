@@ -44,9 +44,9 @@ impl Reduced {
         let residual_norm = rows.residual_norm(chi);
         let variance = residual_norm.powi(2) / solution.degrees_of_freedom.max(1) as f64;
         let mut parameters: Vec<ParameterEstimate> =
-            self.parameters.iter().map(|(name, _)| undetermined(name)).collect();
+            self.parameters.iter().map(|(name, _)| ParameterEstimate::undetermined(name)).collect();
         for &(l, value) in &self.fixed {
-            (parameters[l].value, parameters[l].sigma) = (value, Some(0.0));
+            parameters[l] = ParameterEstimate::known(&self.parameters[l].0, value);
         }
         let mut inflations = Vec::new();
         for (place, &l) in active.iter().enumerate() {
@@ -62,7 +62,7 @@ impl Reduced {
                 sigma_white: Some(white),
                 correction,
                 relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
-                ..undetermined(&parameters[l].name)
+                ..ParameterEstimate::undetermined(&parameters[l].name)
             };
         }
         let covariance = covariance(&parameters, &active, &inverse_gram(&rows));
@@ -74,18 +74,6 @@ impl Reduced {
     /// What errors that last multiply the variance of a parameter by, over the rows of which it is known.
     fn inflation(&self, l: usize) -> f64 {
         if self.known[l] > 0.0 { self.inflation[l] / self.known[l] } else { 1.0 }
-    }
-}
-
-fn undetermined(name: &str) -> ParameterEstimate {
-    ParameterEstimate {
-        name: name.to_owned(),
-        value: 0.0,
-        sigma: None,
-        sigma_white: None,
-        sigma_blocks: None,
-        correction: None,
-        relative_sigma_percent: None,
     }
 }
 
