@@ -10,7 +10,6 @@ use dynid_runtime::estimation::Reduced;
 use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{self, fingerprint};
 use dynid_runtime::recording::{Loader, Trajectory};
-use nalgebra::DMatrix;
 
 use crate::fetch::{Fetched, fetch};
 use crate::reduce::{Outcome, Why, of_failure, of_reading};
@@ -110,12 +109,7 @@ fn reference(against: Against<'_>, robot: &Robot) -> Result<Reference, Why> {
                 ));
             }
             let found = reduced.solve();
-            let count = found.parameters.len();
-            let covariance = DMatrix::from_fn(count, count, |i, l| {
-                let (i, l) = (i.min(l), i.max(l));
-                found.covariance[i * count + l - i * (i + 1) / 2]
-            });
-            Reference::new(found.chi(), Vec::new(), 0.0, covariance, false)
+            Reference::new(found.chi(), Vec::new(), 0.0, found.covariance, false)
                 .map_err(|error| refused(error.to_string()))
         }
     }

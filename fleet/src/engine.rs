@@ -45,6 +45,14 @@ pub(crate) fn plain_columns(config: SessionConfig) -> SessionConfig {
 }
 
 impl Engine {
+    /// That of a command: on the cluster of a scheduler where one is given.
+    pub fn at(scheduler: Option<&str>, timeout: Duration) -> Self {
+        scheduler.map_or(Engine::Embedded, |scheduler| Engine::Cluster {
+            scheduler: scheduler.to_owned(),
+            timeout,
+        })
+    }
+
     /// A context with dynid's functions.
     ///
     /// # Errors

@@ -5,6 +5,7 @@
 //! ([`functions`]), which a user's own SQL can call too. `docs/fleet.md` says what goes where and what was measured.
 #![deny(missing_docs)]
 
+mod cells;
 pub mod cluster;
 pub mod commands;
 pub mod day;

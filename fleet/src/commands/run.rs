@@ -42,12 +42,7 @@ fn a_day(text: &str) -> std::result::Result<Day, String> {
 pub(super) async fn run(options: &Options) -> Result<()> {
     let fleet = FleetFile::read(&options.fleet)?;
     let out = out_of(&fleet, options.out.as_deref());
-    let engine = match &options.cluster {
-        None => Engine::Embedded,
-        Some(scheduler) => {
-            Engine::Cluster { scheduler: scheduler.clone(), timeout: Duration::from_secs(options.timeout) }
-        }
-    };
+    let engine = Engine::at(options.cluster.as_deref(), Duration::from_secs(options.timeout));
     let did = crate::run::run(&fleet, &out, &engine, options.since).await?;
     println!(
         "{} recordings, {} reduced now, {} days worked out now; results in {}",

@@ -32,12 +32,7 @@ pub(super) struct Options {
 pub(super) async fn run(options: &Options) -> Result<()> {
     let fleet = FleetFile::read(&options.fleet)?;
     let out = out_of(&fleet, options.out.as_deref());
-    let engine = match &options.cluster {
-        None => Engine::Embedded,
-        Some(scheduler) => {
-            Engine::Cluster { scheduler: scheduler.clone(), timeout: Duration::from_secs(3600) }
-        }
-    };
+    let engine = Engine::at(options.cluster.as_deref(), Duration::from_secs(3600));
     let context = engine.context().await?;
     register_results(&context, &out).await?;
     let batches = context.sql(&options.query).await?.collect().await?;

@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 
-use datafusion::arrow::array::{Array, ArrayRef, AsArray, ListArray, StructArray};
+use datafusion::arrow::array::{ArrayRef, ListArray, StructArray};
 use datafusion::arrow::buffer::OffsetBuffer;
-use datafusion::arrow::datatypes::{DataType, Field, Fields, Float64Type, Int64Type};
-use datafusion::common::Result;
+use datafusion::arrow::datatypes::{DataType, Field, Fields};
+use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::logical_expr::{ColumnarValue, ScalarFunctionArgs};
+use dynid_runtime::estimation::Reduced;
+
+use crate::cells;
 
 /// The arguments as columns of one length.
 pub(super) fn arrays(args: &ScalarFunctionArgs) -> Result<Vec<ArrayRef>> {
@@ -15,26 +18,32 @@ pub(super) fn arrays(args: &ScalarFunctionArgs) -> Result<Vec<ArrayRef>> {
 
 /// A text of a column of an argument that may not be there.
 pub(super) fn text(columns: &[ArrayRef], column: usize, row: usize) -> Option<&str> {
-    let column = columns.get(column)?.as_string_opt::<i32>()?;
-    (!column.is_null(row)).then(|| column.value(row))
+    cells::text(columns.get(column)?, row)
 }
 
 /// A number of a column of an argument that may not be there.
 pub(super) fn number(columns: &[ArrayRef], column: usize, row: usize) -> Option<f64> {
-    let column = columns.get(column)?.as_primitive_opt::<Float64Type>()?;
-    (!column.is_null(row)).then(|| column.value(row))
+    cells::number(columns.get(column)?, row)
 }
 
 /// A count of a column of an argument that may not be there.
 pub(super) fn count(columns: &[ArrayRef], column: usize, row: usize) -> Option<i64> {
-    let column = columns.get(column)?.as_primitive_opt::<Int64Type>()?;
-    (!column.is_null(row)).then(|| column.value(row))
+    cells::count(columns.get(column)?, row)
 }
 
 /// Bytes of a column of an argument that may not be there.
 pub(super) fn bytes(columns: &[ArrayRef], column: usize, row: usize) -> Option<&[u8]> {
-    let column = columns.get(column)?.as_binary_opt::<i32>()?;
-    (!column.is_null(row)).then(|| column.value(row))
+    cells::bytes(columns.get(column)?, row)
+}
+
+/// The factor that bytes are, for the function of this name.
+pub(super) fn factor(function: &str, bytes: &[u8]) -> Result<Reduced> {
+    Reduced::from_bytes(bytes).map_err(|error| exec_datafusion_err!("{function}: {error}"))
+}
+
+/// Fields of a struct, each of which may be missing.
+pub(super) fn fields(of: &[(&str, DataType)]) -> Fields {
+    of.iter().map(|(name, kind)| Field::new(*name, kind.clone(), true)).collect()
 }
 
 /// A list of structs.

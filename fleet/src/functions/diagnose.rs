@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use datafusion::arrow::array::{ArrayRef, Float64Array, StringArray};
-use datafusion::arrow::datatypes::{DataType, Field, Fields};
+use datafusion::arrow::datatypes::{DataType, Fields};
 use datafusion::common::Result;
 use datafusion::logical_expr::{ColumnarValue, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility};
 
-use super::columns::{arrays, bytes, count, list_of, lists, text};
+use super::columns::{arrays, bytes, count, fields, list_of, lists, text};
 use crate::diagnose::{Against, FindingRow, diagnose};
 
 /// Rows that are diagnosed where the query says none.
@@ -15,14 +15,13 @@ const ROWS: i64 = 60_000;
 
 /// Columns of a finding.
 pub fn finding_fields() -> Fields {
-    let field = |name: &str, kind| Field::new(name, kind, true);
-    Fields::from(vec![
-        field("effect", DataType::Utf8),
-        field("joints", DataType::Utf8),
-        field("confidence", DataType::Float64),
-        field("held_out_before", DataType::Float64),
-        field("held_out_after", DataType::Float64),
-        field("sentence", DataType::Utf8),
+    fields(&[
+        ("effect", DataType::Utf8),
+        ("joints", DataType::Utf8),
+        ("confidence", DataType::Float64),
+        ("held_out_before", DataType::Float64),
+        ("held_out_after", DataType::Float64),
+        ("sentence", DataType::Utf8),
     ])
 }
 

@@ -9,6 +9,8 @@ use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
 use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, Signature, Volatility};
 use dynid_runtime::estimation::Reduced;
 
+use super::columns::factor;
+
 /// The aggregate function. Its state is a factor, however many go in.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct Merge {
@@ -51,8 +53,7 @@ impl Merged {
         let factors = values.first().and_then(|column| column.as_binary_opt::<i32>());
         let factors = factors.ok_or_else(|| exec_datafusion_err!("dynid_merge takes factors"))?;
         for bytes in factors.iter().flatten() {
-            let factor =
-                Reduced::from_bytes(bytes).map_err(|error| exec_datafusion_err!("dynid_merge: {error}"))?;
+            let factor = factor("dynid_merge", bytes)?;
             match &mut self.0 {
                 None => self.0 = Some(factor),
                 Some(all) => {

@@ -3,28 +3,27 @@
 use std::sync::Arc;
 
 use datafusion::arrow::array::{ArrayRef, BinaryArray, Float64Array, Int64Array, StringArray};
-use datafusion::arrow::datatypes::{DataType, Field, Fields};
+use datafusion::arrow::datatypes::{DataType, Fields};
 use datafusion::common::Result;
 use datafusion::logical_expr::{
     ColumnarValue, ScalarFunctionArgs, ScalarUDFImpl, Signature, TypeSignature, Volatility,
 };
 
-use super::columns::{arrays, list_of, lists, number, text};
+use super::columns::{arrays, fields, list_of, lists, number, text};
 use crate::reduce::{Motion, reduce};
 
 /// Columns of a motion.
 pub fn motion_fields() -> Fields {
-    let field = |name: &str, kind| Field::new(name, kind, true);
-    Fields::from(vec![
-        field("motion", DataType::Utf8),
-        field("factor", DataType::Binary),
-        field("rows", DataType::Int64),
-        field("samples", DataType::Int64),
-        field("left_out", DataType::Int64),
-        field("band", DataType::Float64),
-        field("relative_error", DataType::Float64),
-        field("outcome", DataType::Utf8),
-        field("message", DataType::Utf8),
+    fields(&[
+        ("motion", DataType::Utf8),
+        ("factor", DataType::Binary),
+        ("rows", DataType::Int64),
+        ("samples", DataType::Int64),
+        ("left_out", DataType::Int64),
+        ("band", DataType::Float64),
+        ("relative_error", DataType::Float64),
+        ("outcome", DataType::Utf8),
+        ("message", DataType::Utf8),
     ])
 }
 

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use datafusion::arrow::array::Float64Array;
 use datafusion::arrow::datatypes::DataType;
-use datafusion::common::{Result, exec_datafusion_err};
+use datafusion::common::Result;
 use datafusion::logical_expr::{ColumnarValue, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility};
-use dynid_runtime::estimation::Reduced;
 
-use super::columns::{arrays, bytes};
+use super::columns::{arrays, bytes, factor};
 use crate::rise::rise;
 
 /// The scalar function. Both are factors; 1 where the reference's parameters do as well as its own.
@@ -39,8 +38,7 @@ impl ScalarUDFImpl for Rise {
     fn invoke_with_args(&self, args: ScalarFunctionArgs) -> Result<ColumnarValue> {
         let columns = arrays(&args)?;
         let read = |column: usize, row: usize| {
-            let factor = bytes(&columns, column, row).map(Reduced::from_bytes).transpose();
-            factor.map_err(|error| exec_datafusion_err!("dynid_rise: {error}"))
+            bytes(&columns, column, row).map(|bytes| factor("dynid_rise", bytes)).transpose()
         };
         let mut rises = Vec::with_capacity(args.number_rows);
         for row in 0..args.number_rows {

@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use datafusion::arrow::array::{Float64Array, StringArray};
-use datafusion::arrow::datatypes::{DataType, Field, Fields};
-use datafusion::common::{Result, exec_datafusion_err};
+use datafusion::arrow::datatypes::{DataType, Fields};
+use datafusion::common::Result;
 use datafusion::logical_expr::{ColumnarValue, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility};
-use dynid_runtime::estimation::Reduced;
 
-use super::columns::{arrays, bytes, list_of, lists};
+use super::columns::{arrays, bytes, factor, fields, list_of, lists};
 
 /// The scalar function.
 #[derive(Debug, PartialEq, Eq, Hash)]
@@ -22,13 +21,12 @@ impl Solve {
     }
 }
 
-fn fields() -> Fields {
-    let field = |name: &str, kind| Field::new(name, kind, true);
-    Fields::from(vec![
-        field("parameter", DataType::Utf8),
-        field("value", DataType::Float64),
-        field("sigma", DataType::Float64),
-        field("unit", DataType::Utf8),
+fn solved_fields() -> Fields {
+    fields(&[
+        ("parameter", DataType::Utf8),
+        ("value", DataType::Float64),
+        ("sigma", DataType::Float64),
+        ("unit", DataType::Utf8),
     ])
 }
 
@@ -42,7 +40,7 @@ impl ScalarUDFImpl for Solve {
     }
 
     fn return_type(&self, _: &[DataType]) -> Result<DataType> {
-        Ok(list_of(fields()))
+        Ok(list_of(solved_fields()))
     }
 
     fn invoke_with_args(&self, args: ScalarFunctionArgs) -> Result<ColumnarValue> {
@@ -54,8 +52,7 @@ impl ScalarUDFImpl for Solve {
                 lengths.push(0);
                 continue;
             };
-            let factor =
-                Reduced::from_bytes(bytes).map_err(|error| exec_datafusion_err!("dynid_solve: {error}"))?;
+            let factor = factor("dynid_solve", bytes)?;
             let found = factor.solve();
             lengths.push(found.parameters.len());
             for (parameter, (_, unit)) in found.parameters.iter().zip(factor.parameters()) {
@@ -72,6 +69,6 @@ impl ScalarUDFImpl for Solve {
             Arc::new(Float64Array::from(sigmas)) as _,
             Arc::new(StringArray::from(units)) as _,
         ];
-        lists(fields(), columns, lengths)
+        lists(solved_fields(), columns, lengths)
     }
 }

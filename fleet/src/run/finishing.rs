@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use datafusion::arrow::array::{Array, AsArray, RecordBatch};
+use datafusion::arrow::array::RecordBatch;
 use dynid_runtime::estimation::ReducedEstimate;
 
 use super::day::{RobotDay, clear_pending, gather, robots};
@@ -11,7 +11,7 @@ use super::folder::OutFolder;
 use super::history::History;
 use super::references::References;
 use super::rows::{
-    batch, counts, days, flags, number, numbers, parameters_schema, screening_schema, text, texts,
+    batch, count, counts, days, flags, number, numbers, parameters_schema, screening_schema, text, texts,
 };
 use super::tables;
 use crate::day::Day;
@@ -128,13 +128,9 @@ fn screening(
 ) -> Result<RecordBatch> {
     // Rows of a recording stand together.
     let mut first: Vec<(usize, i64, i64)> = Vec::new();
-    let count = |column: &str, k: usize| {
-        let column =
-            factors.column_by_name(column)?.as_primitive_opt::<datafusion::arrow::datatypes::Int64Type>()?;
-        (!column.is_null(k)).then(|| column.value(k))
-    };
     for k in 0..factors.num_rows() {
-        let (motion, rows) = (i64::from(text(factors, "motion", k).is_some()), count("rows", k).unwrap_or(0));
+        let (motion, rows) =
+            (i64::from(text(factors, "motion", k).is_some()), count(factors, "rows", k).unwrap_or(0));
         match first.last_mut() {
             Some((before, motions, all)) if text(factors, "key", *before) == text(factors, "key", k) => {
                 *motions += motion;
@@ -159,8 +155,8 @@ fn screening(
         texts(first.iter().map(|(k, ..)| message(*k))),
         counts(first.iter().map(|(_, motions, _)| *motions)),
         counts(first.iter().map(|(_, _, rows)| *rows)),
-        counts(first.iter().map(|(k, ..)| count("samples", *k).unwrap_or(0))),
-        counts(first.iter().map(|(k, ..)| count("left_out", *k).unwrap_or(0))),
+        counts(first.iter().map(|(k, ..)| count(factors, "samples", *k).unwrap_or(0))),
+        counts(first.iter().map(|(k, ..)| count(factors, "left_out", *k).unwrap_or(0))),
         numbers(first.iter().map(|(k, ..)| number(factors, "band", *k))),
         numbers(first.iter().map(|(k, ..)| number(factors, "relative_error", *k))),
         numbers(first.iter().map(|(k, ..)| rise(*k).map(|rise| rise.ratio))),

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use datafusion::arrow::array::{
-    Array, ArrayRef, AsArray, BooleanArray, Date32Array, Float64Array, Int64Array, RecordBatch, StringArray,
+    ArrayRef, AsArray, BooleanArray, Date32Array, Float64Array, Int64Array, RecordBatch, StringArray,
 };
-use datafusion::arrow::datatypes::{DataType, Date32Type, Field, Float64Type, Schema, SchemaRef};
+use datafusion::arrow::datatypes::{DataType, Date32Type, Field, Schema, SchemaRef};
 
+use crate::cells;
 use crate::day::Day;
 use crate::error::{FleetError, Result};
 use crate::functions::{finding_fields, motion_fields, work_schema};
@@ -96,20 +97,22 @@ pub fn days(values: impl IntoIterator<Item = Day>) -> ArrayRef {
 
 /// A text of a table.
 pub fn text<'a>(batch: &'a RecordBatch, column: &str, row: usize) -> Option<&'a str> {
-    let column = batch.column_by_name(column)?.as_string_opt::<i32>()?;
-    (!column.is_null(row)).then(|| column.value(row))
+    cells::text(batch.column_by_name(column)?, row)
 }
 
 /// A number of a table.
 pub fn number(batch: &RecordBatch, column: &str, row: usize) -> Option<f64> {
-    let column = batch.column_by_name(column)?.as_primitive_opt::<Float64Type>()?;
-    (!column.is_null(row)).then(|| column.value(row))
+    cells::number(batch.column_by_name(column)?, row)
+}
+
+/// A count of a table.
+pub fn count(batch: &RecordBatch, column: &str, row: usize) -> Option<i64> {
+    cells::count(batch.column_by_name(column)?, row)
 }
 
 /// Bytes of a table.
 pub fn bytes<'a>(batch: &'a RecordBatch, column: &str, row: usize) -> Option<&'a [u8]> {
-    let column = batch.column_by_name(column)?.as_binary_opt::<i32>()?;
-    (!column.is_null(row)).then(|| column.value(row))
+    cells::bytes(batch.column_by_name(column)?, row)
 }
 
 /// The day of a row.

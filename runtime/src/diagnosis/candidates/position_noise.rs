@@ -4,7 +4,7 @@
 //! is then in phase with the acceleration, as it is far from the resonance of a compliant transmission; near it the
 //! resonance turns the phase.
 
-use crate::diagnosis::candidates::trial::on_rows;
+use crate::diagnosis::candidates::trial::{dense, gathered};
 use crate::diagnosis::rows::context::{Context, Series};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::NOISE_OCTAVES;
@@ -15,9 +15,9 @@ use crate::signal::Butterworth;
 pub(in crate::diagnosis) fn position_noise(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
     let of_octave = |octave: &f64| {
         let above = |k| (0..design.joints).map(|j| above(context, k, j, octave / design.step)).collect();
-        on_rows(context, design, above)
+        gathered(context, design, |_| false, above)
     };
-    NOISE_OCTAVES.iter().flat_map(of_octave).collect()
+    NOISE_OCTAVES.iter().flat_map(of_octave).map(|column| dense(design, &column)).collect()
 }
 
 /// The torques of what a joint's acceleration has above a frequency, Hz, in a motion.

@@ -41,10 +41,18 @@ pub(in crate::diagnosis) fn columns(
     change: bool,
 ) -> Vec<Sparse> {
     let silent = |k: usize| change && !context.signals[k].is_target;
-    let of_motion = |k: usize| context.series(k, effect, place, shape);
+    gathered(context, design, silent, |k| context.series(k, effect, place, shape))
+}
+
+/// Columns of every motion on its rows, zero in those that are silent. They act on the same joints in every motion.
+pub(super) fn gathered(
+    context: &Context<'_>,
+    design: &Design,
+    silent: impl Fn(usize) -> bool,
+    of_motion: impl Fn(usize) -> Vec<Series>,
+) -> Vec<Sparse> {
     let signals = 0..context.signals.len();
     let Some(loud) = signals.clone().find(|&k| !silent(k)) else { return Vec::new() };
-    // The columns of an effect act on the same joints in every motion.
     let first: Vec<Series> = of_motion(loud);
     let mut out: Vec<Sparse> =
         first.iter().map(|column| column.iter().map(|(j, _)| (*j, Vec::new())).collect()).collect();
@@ -102,33 +110,13 @@ pub(in crate::diagnosis) fn delay_columns(context: &Context<'_>, design: &Design
     dense_columns(context, design, EffectKind::TimeDelay, Place::Variant(0), &[], false)
 }
 
-fn dense(design: &Design, column: &Sparse) -> Vec<f64> {
+/// A column on all rows.
+pub(super) fn dense(design: &Design, column: &Sparse) -> Vec<f64> {
     let mut full = vec![0.0; design.rows.len()];
     for (j, values) in column {
         full[design.of_joint(*j)].copy_from_slice(values);
     }
     full
-}
-
-/// Columns of every motion on all rows of the design, zero where a column does not act.
-pub(super) fn on_rows(
-    context: &Context<'_>,
-    design: &Design,
-    of_motion: impl Fn(usize) -> Vec<Series>,
-) -> Vec<Vec<f64>> {
-    let mut out: Vec<Sparse> = Vec::new();
-    for k in 0..context.signals.len() {
-        let columns = of_motion(k);
-        if out.is_empty() {
-            out = columns.iter().map(|c| c.iter().map(|(j, _)| (*j, Vec::new())).collect()).collect();
-        }
-        for (column, series) in out.iter_mut().zip(&columns) {
-            for ((j, rows), (_, values)) in column.iter_mut().zip(series) {
-                design.sample(*j, k, values, rows);
-            }
-        }
-    }
-    out.iter().map(|column| dense(design, column)).collect()
 }
 
 /// Columns of k that must have a part of their own. Of the ten columns of a body the standard model makes some, of the

@@ -137,17 +137,18 @@ impl Regression {
         candidate.trials.iter().any(|trial| self.fit.project_out(trial).is_some())
     }
 
-    /// The shape with the largest in-sample gain over all motion, however small.
-    pub fn best_trial(&self, candidate: &Candidate) -> Option<usize> {
-        let gains = candidate.trials.iter().map(|trial| self.gain_of(candidate, trial));
-        gains.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
-    }
-
-    /// The shape whose course over time is nearest to what is left, however large.
-    pub fn nearest(&self, candidate: &Candidate) -> Option<Vec<f64>> {
-        let alike = |trial: &Trial| self.fit.project_out(trial).map_or(0.0, |part| part.alike());
-        let of = |trial: &Trial| (alike(trial), trial.shape.clone());
-        candidate.trials.iter().map(of).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, shape)| shape)
+    /// The shapes with the largest in-sample gain over all motion, however small, and whose course over time is nearest to
+    /// what is left, however large. `None` where there are no shapes.
+    pub fn best_and_nearest<'c>(&self, candidate: &'c Candidate) -> Option<[&'c [f64]; 2]> {
+        let of = |trial: &'c Trial| {
+            let part = self.fit.project_out(trial);
+            let gain = part.as_ref().and_then(|part| part.solve(candidate)).map(|(_, gain)| gain);
+            let alike = part.map_or(0.0, |part| part.alike());
+            ([gain.unwrap_or(f64::NEG_INFINITY), alike], trial.shape.as_slice())
+        };
+        let judged: Vec<([f64; 2], &[f64])> = candidate.trials.iter().map(of).collect();
+        let most = |k: usize| judged.iter().max_by(|a, b| a.0[k].total_cmp(&b.0[k])).map(|(_, shape)| *shape);
+        Some([most(0)?, most(1)?])
     }
 
     /// For each value of the first number of a candidate's shapes the shape with the largest in-sample gain over all

@@ -67,6 +67,8 @@ pub(in crate::diagnosis) struct RoundEvidence {
     gates: Vec<OnceLock<Option<Gate>>>,
     /// Whether each is told from the simpler laws that it must be told from.
     pub(super) told: Vec<OnceLock<bool>>,
+    /// Noise of the positions on the rows of compliant transmissions.
+    pub(super) noise: OnceLock<Vec<Vec<f64>>>,
 }
 
 impl RoundEvidence {
@@ -77,6 +79,7 @@ impl RoundEvidence {
             fast: OnceLock::new(),
             gates: (0..candidates).map(|_| OnceLock::new()).collect(),
             told: (0..candidates).map(|_| OnceLock::new()).collect(),
+            noise: OnceLock::new(),
         }
     }
 

@@ -17,15 +17,15 @@ impl Search<'_> {
         let polished = parallel::map(threads, candidates.len(), |k| {
             let candidate = &candidates[k];
             candidate.fixed?;
-            let start = regression.best_trial(candidate)?;
-            let shape = self.refined(regression, candidate, &candidate.trials[start].shape);
+            let [best, nearest] = regression.best_and_nearest(candidate)?;
+            let shape = self.refined(regression, candidate, best);
             let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);
             let trial = |shape: &[f64]| {
                 let columns = columns(&model.context, design, effect, place, shape, model.change);
                 Trial::new(design, shape.to_vec(), columns)
             };
             // A sharp resonance beside its place explains less than nothing, and is still alike.
-            let mut starts = Vec::from_iter(regression.nearest(candidate));
+            let mut starts = vec![nearest.to_vec()];
             // What explains anything may explain more at the end of its valley.
             if regression.gain_of(candidate, &trial(&shape)) > 0.0 {
                 starts.push(shape.clone());

@@ -1,4 +1,4 @@
-//! Whether what a law explains could as well be a law at another place.
+//! Whether what a law explains could as well be a law at another place, a simpler one, or noise.
 
 use crate::diagnosis::candidates::position_noise::position_noise;
 use crate::diagnosis::candidates::ringing::ringing;
@@ -117,13 +117,13 @@ impl Search<'_> {
         let (Form::Compliance(_), Some(joint)) = (law.effect.form(), law.place.joint()) else { return true };
         let Some(own) = self.gate(round, ranked, candidate) else { return false };
         let (context, design) = (&self.model.context, &regression.design);
-        let noise = position_noise(context, design);
-        let left = self.left_beside(round, &ranked[candidate], own, &noise);
+        let noise = round.noise.get_or_init(|| position_noise(context, design));
+        let left = self.left_beside(round, &ranked[candidate], own, noise);
         if left.is_none_or(|left| left.squares < NOISE_MISSED * own.calibrated.squares) {
             return false;
         }
         let shape = &law.trials[ranked[candidate].verdict.trial].shape;
-        let both = [noise, ringing(context, design, joint, shape)].concat();
+        let both = [&noise[..], &ringing(context, design, joint, shape)].concat();
         self.certain_beside(round, &ranked[candidate], own, &both, least_confidence)
     }
 

@@ -12,9 +12,9 @@ use crate::estimation::solve::inverse_gram;
 pub struct ReducedEstimate {
     /// One for each parameter of the robot, zero and without a standard deviation where it is not determined.
     pub parameters: Vec<ParameterEstimate>,
-    /// Upper triangle, row by row, of the covariance of all parameters: errors that go together as independent ones do,
-    /// with the standard deviations of `parameters`. Rows of what is not determined are zero.
-    pub covariance: Vec<f64>,
+    /// Covariance of all parameters: errors that go together as independent ones do, with the standard deviations of
+    /// `parameters`. Rows of what is not determined are zero.
+    pub covariance: DMatrix<f64>,
     /// ||Y - W chi|| of the rows divided by their standard deviations.
     pub residual_norm: f64,
     /// Rows less parameters.
@@ -78,24 +78,17 @@ impl Reduced {
 }
 
 /// Errors that go together as `together`, each with the standard deviation that is told.
-fn covariance(parameters: &[ParameterEstimate], active: &[usize], together: &DMatrix<f64>) -> Vec<f64> {
-    let scale: Vec<f64> = active
-        .iter()
-        .enumerate()
-        .map(|(p, &l)| {
-            let own = together[(p, p)].sqrt();
-            if own > 0.0 { parameters[l].sigma.unwrap_or(0.0) / own } else { 0.0 }
-        })
-        .collect();
-    let mut upper = Vec::with_capacity(parameters.len() * (parameters.len() + 1) / 2);
-    for i in 0..parameters.len() {
-        for l in i..parameters.len() {
-            let place = |l: usize| active.binary_search(&l).ok();
-            upper.push(match (place(i), place(l)) {
-                (Some(a), Some(b)) => together[(a, b)] * scale[a] * scale[b],
-                _ => 0.0,
-            });
+fn covariance(parameters: &[ParameterEstimate], active: &[usize], together: &DMatrix<f64>) -> DMatrix<f64> {
+    let scale = |p: usize| {
+        let own = together[(p, p)].sqrt();
+        if own > 0.0 { parameters[active[p]].sigma.unwrap_or(0.0) / own } else { 0.0 }
+    };
+    let scale: Vec<f64> = (0..active.len()).map(scale).collect();
+    let mut covariance = DMatrix::zeros(parameters.len(), parameters.len());
+    for (a, &i) in active.iter().enumerate() {
+        for (b, &l) in active.iter().enumerate() {
+            covariance[(i, l)] = together[(a, b)] * scale[a] * scale[b];
         }
     }
-    upper
+    covariance
 }
