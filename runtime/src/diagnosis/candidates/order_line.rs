@@ -6,7 +6,7 @@
 //! reaches far. Both are asked for, motion by motion, at the full rate, of the residual without what is slower than a few
 //! waves.
 
-use super::wave::{Orders, Sample, turned, wave};
+use super::wave::{Orders, Sample, Wave, turned, wave};
 use crate::diagnosis::rules::{
     LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
     LINE_PICKED_ABOVE, LINE_SLOWER,
@@ -35,7 +35,7 @@ pub(in crate::diagnosis) struct Line {
     pub sigma: f64,
     /// Rms of the residual without what is slower, N.m or N, the median of the motions.
     pub rms: f64,
-    /// Its amplitude against the median of the orders around it, the median of the motions.
+    /// Its amplitude against the median of the orders around it, all motions together.
     pub above: f64,
     /// Share of the residual that one half of a motion predicts for the other, the median of the motions.
     pub share: f64,
@@ -51,7 +51,7 @@ impl Line {
 /// The lines of a joint among `known` orders and those that were `picked` from a spectrum, strongest first.
 ///
 /// `slowest` is the speed below which the joint stands. A line must show in more than half of the motions that could
-/// show it.
+/// show it, and in all of them together.
 pub(in crate::diagnosis) fn lines(
     strokes: &[Stroke<'_>],
     known: &[f64],
@@ -60,6 +60,7 @@ pub(in crate::diagnosis) fn lines(
 ) -> Vec<Line> {
     let known = known.iter().map(|&o| (o, LINE_ABOVE));
     let picked = picked.iter().map(|&o| (o, LINE_PICKED_ABOVE));
+    let resolved = resolution(strokes);
     let mut found: Vec<Line> = Vec::new();
     for (order, above) in known.chain(picked) {
         let looked: Vec<Look> = strokes.iter().map(|s| look(s, order, slowest)).collect();
@@ -73,22 +74,25 @@ pub(in crate::diagnosis) fn lines(
             values.sort_by(f64::total_cmp);
             values[values.len() / 2]
         };
-        let order = median(|l| l.order);
         let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
-        let wave = wave(&all, &turned(&all, order));
+        let Some((order, together)) = highest(&all, median(|l| l.order), resolved) else { continue };
+        // A wave over the joint's angle has one phase in all motions: together they show it no worse than one by one.
+        let around = median_around(&all, order, resolved);
+        if together.norm() < above * around {
+            continue;
+        }
         found.push(Line {
             order,
-            cosine: wave.c,
-            sine: wave.s,
-            sigma: median(|l| l.sigma) / (shown.len() as f64).sqrt(),
+            cosine: together.c,
+            sine: together.s,
+            sigma: deviation(around),
             rms: median(|l| l.rms),
-            above: median(|l| l.above),
+            above: together.norm() / around,
             share: median(|l| l.share),
         });
     }
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     // The same line may have been asked for twice: what the travel cannot resolve is one.
-    let resolved = resolution(strokes);
     let mut apart: Vec<Line> = Vec::new();
     for line in found {
         if apart.iter().all(|a| (a.order - line.order).abs() > LINE_COVERED as f64 * resolved) {
@@ -141,10 +145,7 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
         return Look::Blind;
     }
     let step = TAU / travel(stroke.q).max(1e-9);
-    // Where exactly the line is, as far as the travel tells.
-    let near = Orders { first: order - 0.5 * step, step: 0.125 * step, count: 9 };
-    let highest = near.all().zip(near.waves(&samples)).max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
-    let Some((order, fitted)) = highest else { return Look::Blind };
+    let Some((order, fitted)) = highest(&samples, order, step) else { return Look::Blind };
     let turned = turned(&samples, order);
     let (first, second) = ((first, &turned[..half]), (second, &turned[half..]));
     let predicted = |fit: (&[Sample], &[(f64, f64)]), test: (&[Sample], &[(f64, f64)])| {
@@ -167,11 +168,21 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
         cosine: fitted.c,
         sine: fitted.s,
         rms: (samples.iter().map(|s| s.r * s.r).sum::<f64>() / samples.len() as f64).sqrt(),
-        // The median of amplitudes of noise is sqrt(2 ln 2) of the deviation of their parts.
-        sigma: median / (2.0 * std::f64::consts::LN_2).sqrt(),
+        sigma: deviation(median),
         above: fitted.norm() / median,
         share,
     })
+}
+
+/// Where exactly a line near an order is, as far as the travel tells.
+fn highest(samples: &[Sample], order: f64, step: f64) -> Option<(f64, Wave)> {
+    let near = Orders { first: order - 0.5 * step, step: 0.125 * step, count: 9 };
+    near.all().zip(near.waves(samples)).max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()))
+}
+
+/// Standard deviation of the parts of waves of noise whose amplitudes have this median: it is sqrt(2 ln 2) of it.
+fn deviation(median: f64) -> f64 {
+    median / (2.0 * std::f64::consts::LN_2).sqrt()
 }
 
 /// Median of the amplitudes at orders beside one, as many steps away as its own foot does not reach.

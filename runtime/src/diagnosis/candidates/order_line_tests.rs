@@ -18,7 +18,13 @@ struct Motion {
 /// 12 s over 2 rad at up to `speed` rad/s, with unit noise of which a part is slow, a friction that was not fitted
 /// right, and a wave of an amplitude at an order.
 fn motion(rng: &mut Pcg64, speed: f64, order: f64, amplitude: f64) -> Motion {
-    let (phase, angle) = (rng.random_range(0.0..TAU), rng.random_range(0.0..TAU));
+    let angle = rng.random_range(0.0..TAU);
+    with_phase(rng, speed, order, amplitude, angle)
+}
+
+/// The same with a wave of this phase.
+fn with_phase(rng: &mut Pcg64, speed: f64, order: f64, amplitude: f64, angle: f64) -> Motion {
+    let phase = rng.random_range(0.0..TAU);
     let slow_share: f64 = rng.random_range(0.0..0.6);
     let mut slow = normal(rng);
     let fading = (-1.0 / (0.05 * RATE)).exp();
@@ -87,12 +93,24 @@ fn a_line_with_three_per_cent_is_mostly_found_where_several_motions_show_it() {
     let mut rng = Pcg64::seed_from_u64(23);
     let mut hits = 0;
     for _ in 0..60 {
+        let angle = rng.random_range(0.0..TAU);
         let motions: Vec<Motion> =
-            [0.4, 0.8, 1.2].iter().map(|&v| motion(&mut rng, v, 202.0, amplitude(0.03))).collect();
+            [0.4, 0.8, 1.2].iter().map(|&v| with_phase(&mut rng, v, 202.0, amplitude(0.03), angle)).collect();
         hits += usize::from(!found(&motions).is_empty());
     }
     println!("{hits} of 60");
     assert!(hits >= 42, "{hits} of 60");
+}
+
+#[test]
+fn waves_of_one_order_that_begin_elsewhere_in_every_motion_are_no_line_of_the_joint() {
+    let mut rng = Pcg64::seed_from_u64(28);
+    for turn in [0.0, TAU / 3.0] {
+        let motions: Vec<Motion> =
+            (0..3).map(|k| with_phase(&mut rng, 0.8, 202.0, amplitude(0.06), f64::from(k) * turn)).collect();
+        let lines = found(&motions);
+        assert_eq!(lines.len(), usize::from(turn == 0.0), "{turn}: {lines:?}");
+    }
 }
 
 #[test]

@@ -148,22 +148,39 @@ impl Fit {
         DVector::from_fn(self.chi.len(), |k, _| inverse[(k, k)] * self.scale[k] * self.scale[k])
     }
 
-    /// Variance of the parameter of a column where blocks of motion, of `rows` rows, err independently of each other, each
+    /// Variance of the parameter of a column as [`Self::covariance_by_blocks`] has it.
+    pub fn variance_by_blocks(&self, design: &Design, residual: &[f64], column: usize, rows: usize) -> f64 {
+        self.covariance_by_blocks(design, residual, column..column + 1, rows).matrix[(0, 0)]
+    }
+
+    /// Covariance of the parameters of columns where blocks of motion, of `rows` rows, err independently of each other, each
     /// by as much as its residual shows: for noise that lasts, and for what the model lacks (White 1980; Liang and Zeger
     /// 1986).
-    pub fn variance_by_blocks(&self, design: &Design, residual: &[f64], column: usize, rows: usize) -> f64 {
-        let unit = DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 });
-        let weights = self.solve(&unit);
-        let mut blocks: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    pub fn covariance_by_blocks(
+        &self,
+        design: &Design,
+        residual: &[f64],
+        columns: Range<usize>,
+        rows: usize,
+    ) -> OfBlocks {
+        let k = columns.len();
+        let unit = |column| DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 });
+        let weights: Vec<DVector<f64>> = columns.map(|column| self.solve(&unit(column))).collect();
+        let mut blocks: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();
         for (j, sigma) in self.sigma.iter().enumerate() {
             for row in design.of_joint(j) {
-                let influence: f64 = design.columns.iter().zip(weights.iter()).map(|(c, w)| c[row] * w).sum();
-                *blocks.entry(design.block(design.rows[row], rows)).or_default() +=
-                    influence * residual[row] / (sigma * sigma);
+                let block =
+                    blocks.entry(design.block(design.rows[row], rows)).or_insert_with(|| DVector::zeros(k));
+                let error = residual[row] / (sigma * sigma);
+                for (sum, w) in block.iter_mut().zip(&weights) {
+                    let influence: f64 = design.columns.iter().zip(w.iter()).map(|(c, w)| c[row] * w).sum();
+                    *sum += influence * error;
+                }
             }
         }
         let count = blocks.len().max(2) as f64;
-        blocks.values().map(|b| b * b).sum::<f64>() * count / (count - 1.0)
+        let squares = blocks.values().fold(DMatrix::zeros(k, k), |sum, b| sum + b * b.transpose());
+        OfBlocks { matrix: squares * (count / (count - 1.0)), blocks: blocks.len() }
     }
 
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].
@@ -181,6 +198,13 @@ impl Fit {
             .filter(|&k| self.scale[k] == 0.0 || 1.0 / inverse[(k, k)] < least * least)
             .collect()
     }
+}
+
+/// A covariance as blocks of motion show it.
+pub(in crate::diagnosis) struct OfBlocks {
+    pub matrix: DMatrix<f64>,
+    /// Number of blocks.
+    pub blocks: usize,
 }
 
 /// Weighted inner products over the segments that are fitted.

@@ -15,6 +15,7 @@ use crate::diagnosis::judging::white_products::{Background, Regressors};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
 use crate::diagnosis::search::bench::Size;
+use crate::diagnosis::search::certainty::of_amplitudes;
 use crate::diagnosis::search::gate::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
@@ -39,6 +40,14 @@ enum Change {
     DriveGain,
     /// One of the two, and the motion does not tell which.
     Either,
+}
+
+/// A joint on which something has changed, and how sure that is.
+struct Changed {
+    joint: usize,
+    change: Change,
+    significance: f64,
+    confidence: f64,
 }
 
 impl Search<'_> {
@@ -66,30 +75,35 @@ impl Search<'_> {
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
         let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
         let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
-        let changed: Vec<(usize, Evidence, Change)> = (0..joints)
+        let columns = |j: usize| {
+            let first = bench.own_friction.start + 3 * j;
+            first..first + 2
+        };
+        let changed: Vec<Changed> = (0..joints)
             .filter_map(|j| {
-                let own = baseline.is_none().then(|| {
-                    let first = bench.own_friction.start + 3 * j;
-                    background(first..first + 2)
-                });
+                let own = baseline.is_none().then(|| background(columns(j)));
                 let (shared, background) = own.as_ref().or(baseline.as_ref())?;
                 let (evidence, change) = self.friction_evidence(j, shared, background, &residual)?;
-                let sure = evidence.confidence(joints) >= settings.least_confidence;
+                // Nor surer than the numbers allow that are shown.
+                let confidence = evidence.confidence(joints).min(of_amplitudes(regression, columns(j), 1.0));
+                let sure = confidence >= settings.least_confidence;
                 let excluded = match change {
                     Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
                     Change::DriveGain => is_excluded(DRIVE_GAIN, j),
                 };
-                (sure && !excluded).then_some((j, evidence, change))
+                let significance = evidence.significance;
+                (sure && !excluded).then_some(Changed { joint: j, change, significance, confidence })
             })
             .collect();
         self.small.clear();
-        for (j, evidence, change) in changed {
-            let size = self.friction_change(j);
+        for found in changed {
+            let joint = found.joint;
+            let size = self.friction_change(joint);
             if size.law < size.needed {
-                let (effect, place) = (EffectKind::FrictionLevelChange, Place::Joint(j));
-                self.small.push(SmallLaw { effect, place, own: vec![j], size });
+                let (effect, place) = (EffectKind::FrictionLevelChange, Place::Joint(joint));
+                self.small.push(SmallLaw { effect, place, own: vec![joint], size });
             } else {
-                self.take(j, change, evidence.significance, evidence.confidence(joints))?;
+                self.take(&found)?;
             }
         }
         Ok(())
@@ -100,17 +114,12 @@ impl Search<'_> {
     /// # Errors
     /// As [`Self::name_friction_changes`].
     pub(in crate::diagnosis) fn take_friction_change(&mut self, joint: usize) -> Result<(), SingularDesign> {
-        self.take(joint, Change::Friction, 0.0, 0.5)
+        self.take(&Changed { joint, change: Change::Friction, significance: 0.0, confidence: 0.5 })
     }
 
     /// Makes what has changed on a joint a term of the model, in the place of friction that is free in the recording.
-    fn take(
-        &mut self,
-        joint: usize,
-        change: Change,
-        significance: f64,
-        confidence: f64,
-    ) -> Result<(), SingularDesign> {
+    fn take(&mut self, found: &Changed) -> Result<(), SingularDesign> {
+        let &Changed { joint, change, significance, confidence } = found;
         let before = self.friction_of_baseline(joint);
         let variances = self.model.slow.fit.variances();
         let chi = &self.model.slow.fit.chi;

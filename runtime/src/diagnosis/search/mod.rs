@@ -2,6 +2,7 @@
 
 pub(in crate::diagnosis) mod bench;
 pub(in crate::diagnosis) mod body;
+mod certainty;
 pub(in crate::diagnosis) mod extended_model;
 pub(in crate::diagnosis) mod free_form;
 pub(in crate::diagnosis) mod friction_change;

@@ -43,7 +43,9 @@ impl Search<'_> {
                 self.model.sharpen()?;
                 // 5. What is no larger than what nothing explains may be a part of that.
                 self.take_out_small()?;
-                // 6. Last, friction that has changed: it is free from the start, and no evidence for anything else.
+                // 6. Nor is anything named whose own numbers may be zero.
+                self.take_out_uncertain(settings)?;
+                // 7. Last, friction that has changed: it is free from the start, and no evidence for anything else.
                 self.name_friction_changes(settings)?;
                 return Ok(SearchReport { stop, removed: self.rejected.clone() });
             }

@@ -103,7 +103,7 @@ impl JointLaw for TorqueSaturation {
     }
 
     fn only_positive(&self) -> bool {
-        false
+        true
     }
 
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
