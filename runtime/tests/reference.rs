@@ -82,6 +82,29 @@ fn laws_that_the_reference_has_stand_and_are_no_news() {
 }
 
 #[test]
+fn friction_that_differs_from_motion_to_motion_anyway_is_no_news() {
+    let robot = &BEFORE.0;
+    let of_level = |more: f64| {
+        let term = law(EffectKind::FrictionLevelChange, 0, &[], &[more]);
+        with_laws(MU, move |world: &mut World<'_>| world.put(&term))
+    };
+    let motions = robot.motions(6, 3.0, 11);
+    let of_motion = |(k, more): (usize, &f64)| robot.record(&motions[k..=k], &of_level(*more), 20 + k as u64);
+    let levels = [0.16, -0.12, 0.02, -0.2, 0.2, -0.06];
+    let before: Vec<Trajectory> = levels.iter().enumerate().flat_map(of_motion).collect();
+    let found = diagnose(&robot.model, &before, &[], &settings(None), &Silent).unwrap();
+    let knowing = Reference::of(&found).unwrap();
+    let now = robot.record(&robot.motions(2, 4.5, 31), &of_level(0.25), 31);
+    let against = |reference: Reference| {
+        diagnose(&robot.model, &now, &[], &settings(Some(reference)), &Silent).unwrap()
+    };
+    // Who does not know how much it differs believes it.
+    let unaware = against(knowing.clone().differing_by(Vec::new()));
+    assert_eq!(named(&unaware), [("friction_level_change", &[1][..])]);
+    assert_eq!(named(&against(knowing)), []);
+}
+
+#[test]
 fn of_a_law_that_changed_the_change_is_told() {
     let found = against(reference(), &with_laws(MU + 0.08, |_| ()));
     assert_eq!(named(&found), [("load_dependent_friction", &[1][..])]);
@@ -141,5 +164,6 @@ fn a_file_with_standard_deviations_alone_still_is_a_reference_and_that_is_said()
     let amplitudes: Vec<usize> = found.terms().iter().map(|t| t.amplitude.len()).collect();
     saved.standstill = Some(found.sampling.standstill_speeds.clone());
     saved.covariance = Covariance::new(robot, &amplitudes, found.covariance.clone().unwrap());
+    saved.between_motions = found.between_motions.clone();
     assert_eq!(saved.reference(robot).unwrap(), reference());
 }

@@ -261,6 +261,7 @@ pub fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> 
         effects: diagnosis.terms(),
         delay: diagnosis.delay,
         standstill: Some(diagnosis.sampling.standstill_speeds.clone()),
+        between_motions: diagnosis.between_motions.clone(),
         covariance: diagnosis.covariance.clone().and_then(|upper| {
             let amplitudes: Vec<usize> = diagnosis.terms().iter().map(|t| t.amplitude.len()).collect();
             Covariance::new(robot, &amplitudes, upper)

@@ -104,8 +104,8 @@ mod stages;
 pub use error::{DiagnosisError, SingularDesign};
 pub use experiment::{Distances, Question, distances, typical_laws};
 pub use outcome::{
-    Alternative, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, FineLaw, HeldOut, Mismatch,
-    NotJudged, OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling,
+    Alternative, BetweenMotions, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, FineLaw, HeldOut,
+    Mismatch, NotJudged, OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling,
     SearchOutcome, Small, Standing, StopReason, TorqueSeries, Unexplained, WithoutIt,
 };
 pub use portrait::{Portrait, imitators, portrait};

@@ -7,7 +7,7 @@
 //! (recursive least squares; Ljung, System Identification, 11.2).
 
 use super::error::DiagnosisError;
-use super::outcome::Diagnosis;
+use super::outcome::{BetweenMotions, Diagnosis};
 use super::predict::torques_on;
 use super::rows::prior::Prior;
 use super::rows::signals::Signals;
@@ -27,6 +27,8 @@ pub struct Reference {
     diagonal: bool,
     /// Speeds below which a joint stands, rad/s or m/s, where they are known.
     standstill: Option<Vec<f64>>,
+    /// How much each joint's torques differ between motions; empty where nobody knows.
+    between_motions: Vec<Option<BetweenMotions>>,
 }
 
 /// Why a model cannot be a reference.
@@ -58,7 +60,16 @@ impl Reference {
         }
         let known: Vec<usize> =
             (0..unknowns).filter(|&k| covariance[(k, k)].is_finite() && covariance[(k, k)] > 0.0).collect();
-        let reference = Self { chi, effects, delay, covariance, known, diagonal, standstill: None };
+        let reference = Self {
+            chi,
+            effects,
+            delay,
+            covariance,
+            known,
+            diagonal,
+            standstill: None,
+            between_motions: Vec::new(),
+        };
         let all: Vec<usize> = (0..unknowns).collect();
         if reference.prior(&all).is_none() {
             return Err(NoReference { what: "its covariance is not positive definite".to_owned() });
@@ -76,13 +87,25 @@ impl Reference {
         });
         let (chi, delay) = (diagnosis.model.chi.clone(), diagnosis.delay);
         let reference = Self::new(chi, diagnosis.terms(), delay, covariance, false).ok()?;
-        Some(reference.standing_below(diagnosis.sampling.standstill_speeds.clone()))
+        let reference = reference.standing_below(diagnosis.sampling.standstill_speeds.clone());
+        Some(reference.differing_by(diagnosis.between_motions.clone()))
     }
 
     /// The same with the speeds below which each joint stood in its recording, rad/s or m/s: one in which nothing moves does
     /// not show them.
     pub fn standing_below(self, speeds: Vec<f64>) -> Self {
         Self { standstill: Some(speeds), ..self }
+    }
+
+    /// The same with how much each joint's torques differ from one motion to the next where nothing has changed, in the robot's
+    /// order of joints.
+    pub fn differing_by(self, between_motions: Vec<Option<BetweenMotions>>) -> Self {
+        Self { between_motions, ..self }
+    }
+
+    /// How much each joint's torques differ between motions; empty where nobody knows.
+    pub(super) fn between_motions(&self) -> &[Option<BetweenMotions>] {
+        &self.between_motions
     }
 
     /// Its laws.

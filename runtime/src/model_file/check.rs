@@ -4,6 +4,7 @@ use super::error::FileError;
 use super::fingerprint::fingerprint;
 use super::identified::{Identified, NamedParameter, SCHEMA};
 use super::table;
+use crate::diagnosis::BetweenMotions;
 
 /// Reads a saved model from the text of its file.
 ///
@@ -59,6 +60,11 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
     if let Some(covariance) = &identified.covariance {
         covariance.check()?;
     }
+    let impossible = |differs: &Option<BetweenMotions>| differs.is_some_and(|d| !d.is_possible());
+    if let Some(j) = identified.between_motions.iter().position(impossible) {
+        let what = "statistics must not be negative, freedom and stretch must be positive".to_owned();
+        return wrong(&format!("between_motions[{j}]"), what);
+    }
     let Some(robot) = &identified.table else {
         if identified.schema_version > 0 {
             return wrong("table", "it is not there: the model does not say of which robot it is".to_owned());
@@ -74,6 +80,10 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
         if let Some(j) = speeds.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
             return wrong(&format!("standstill[{j}]"), "it must be a speed, not below zero".to_owned());
         }
+    }
+    let (found, joints) = (identified.between_motions.len(), robot.joints());
+    if found != 0 && found != joints {
+        return wrong("between_motions", format!("{found} joints, but the robot has {joints}"));
     }
     let stated = identified.fingerprint.as_deref().unwrap_or("");
     let own = fingerprint(robot);

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::covariance::Covariance;
 use super::fingerprint::fingerprint;
 use super::rows::{EquationRows, EvaluatedRows};
+use crate::diagnosis::BetweenMotions;
 use crate::effects::EffectTerm;
 use crate::estimation::{Estimate, ParameterEstimate, Warning};
 use crate::model::{ParameterKind, Robot};
@@ -74,6 +75,9 @@ pub struct Identified {
     /// Speeds below which the joints stood in the recording that it is from, rad/s or m/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub standstill: Option<Vec<f64>>,
+    /// How much each joint's torques differ between the motions that it is from, in the order of the joints.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub between_motions: Vec<Option<BetweenMotions>>,
     /// [`fingerprint`] of the table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fingerprint: Option<String>,
@@ -206,6 +210,7 @@ impl Identified {
             delay: 0.0,
             noise: rows.noise,
             covariance: None,
+            between_motions: Vec::new(),
             standstill: None,
             fingerprint: Some(fingerprint(robot)),
             table: Some(robot.clone()),
@@ -225,6 +230,7 @@ impl Identified {
             noise: rows.noise,
             simulated: None,
             covariance: None,
+            between_motions: Vec::new(),
             ..self.clone()
         }
     }

@@ -1,14 +1,17 @@
 //! From a model with accepted terms to an outcome: numbers with their uncertainty, held-out errors, curves, sentences.
 
+use crate::diagnosis::candidates::companions::LEVELS;
+use crate::diagnosis::candidates::nuisances::friction_columns;
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
 use crate::diagnosis::explanation::{covariance, curves, delay, free_form, line, rate, standing, words};
+use crate::diagnosis::judging::between_motions::between_motions;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::outcome::{
-    CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed, Sampling,
-    SearchOutcome, Small,
+    BetweenMotions, CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed,
+    Sampling, SearchOutcome, Small,
 };
 use crate::diagnosis::rate::WrongRate;
 use crate::diagnosis::rules::{SHIFTED, TOLD_APART};
@@ -18,7 +21,7 @@ use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Abscissa, EffectKind, Form, Place};
+use crate::effects::{Abscissa, EffectKind, Form, Place, SmoothingWindow};
 use crate::model::{JointIndex, Robot};
 
 /// What is known when a search has ended, besides the search.
@@ -89,13 +92,14 @@ pub(in crate::diagnosis) fn explain(
         refuted: Vec::new(),
         standing: Vec::new(),
         covariance: None,
+        between_motions: Vec::new(),
         findings,
     };
     stand(model, &mut diagnosis, settings.threads);
     diagnosis.verdict = words::verdict(&diagnosis);
     diagnosis.verdict.extend(words::of_user(robot, &settings.laws, &search.untried, &diagnosis));
     if let Some(reference) = &model.context.reference {
-        diagnosis.verdict.push(words::of_reference(reference.is_diagonal()));
+        diagnosis.verdict.push(words::of_reference(reference));
     }
     Ok(diagnosis)
 }
@@ -138,6 +142,20 @@ fn stand(model: &ExtendedModel<'_>, diagnosis: &mut Diagnosis, threads: usize) {
     let all: Vec<_> = found.chain(standing.iter().map(|(term, first)| (term, *first))).collect();
     let upper = covariance::upper(model, &all, threads);
     diagnosis.covariance = upper;
+    diagnosis.between_motions = between(model, threads);
+}
+
+/// How much each joint differs between motions: of the baseline, or of the recording; as a reference knew it where there
+/// is one.
+fn between(model: &ExtendedModel<'_>, threads: usize) -> Vec<Option<BetweenMotions>> {
+    if let Some(reference) = &model.context.reference {
+        return reference.between_motions().to_vec();
+    }
+    let (design, bench) = (&model.slow.design, model.bench(SmoothingWindow::Slow));
+    let friction: Vec<Vec<Vec<f64>>> =
+        (0..design.joints).map(|j| friction_columns(&model.context, design, j)).collect();
+    let residual = model.slow.residual();
+    between_motions(&bench.units, &bench.regressors(design), &friction, LEVELS, (&residual, threads))
 }
 
 /// Rivals that explain nearly as much as the effects that were accepted; `effects` are those of the terms, in order.

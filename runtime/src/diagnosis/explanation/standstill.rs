@@ -70,6 +70,7 @@ pub(in crate::diagnosis) fn explain(
         refuted: Vec::new(),
         standing: Vec::new(),
         covariance: None,
+        between_motions: Vec::new(),
         findings,
     };
     diagnosis.verdict = verdict(robot, rest, &diagnosis);

@@ -1,6 +1,7 @@
 //! Sentences for a person.
 
 use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
+use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rules;
 use crate::effects::{EffectKind, FreeLaw, Parameter, Place, Quantities, UserLaw};
 use crate::model::{JointIndex, JointKind, Robot};
@@ -181,10 +182,14 @@ pub(in crate::diagnosis) fn not_judged(joints: &[NotJudged]) -> Option<String> {
 }
 
 /// What a comparison with a reference rests on.
-pub(in crate::diagnosis) fn of_reference(is_diagonal: bool) -> String {
+pub(in crate::diagnosis) fn of_reference(reference: &Reference) -> String {
     let judged = "Compared with a model: a change is judged against how much this recording varies from stretch to stretch";
-    let text = format!("{judged}; how much the robot differs from day to day no model tells.");
-    if !is_diagonal {
+    let text = if reference.between_motions().is_empty() {
+        format!("{judged}; how much the robot differs from day to day this model does not tell.")
+    } else {
+        format!("{judged}, and against how much the motions differ that the model is from.")
+    };
+    if !reference.is_diagonal() {
         return text;
     }
     let alone = "Its file has no covariance of all of its numbers: those are taken to vary by themselves";

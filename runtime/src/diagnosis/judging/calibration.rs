@@ -39,11 +39,11 @@ impl Calibrated {
 }
 
 /// A part of the motion that is compared with the rest.
-struct Compared {
+pub(super) struct Compared {
     /// Inner products over the part and the rest.
-    whole: DMatrix<f64>,
+    pub whole: DMatrix<f64>,
     /// Units that are each compared with this whole.
-    units: Vec<usize>,
+    pub units: Vec<usize>,
 }
 
 /// A law that is judged.
@@ -103,12 +103,14 @@ pub(in crate::diagnosis) fn calibrate(
     }
     // What differs between units is constant within one: it grows with the motion that is looked at.
     let longer = if change { (units.target_duration / units.duration.max(1e-9)).max(1.0) } else { 1.0 };
-    let lambda = 1.0 + (variance.value - 1.0).max(0.0) * longer;
+    let own = Variance { value: 1.0 + (variance.value - 1.0).max(0.0) * longer, ..variance };
+    let known = between_motions(regressors, law).filter(|between| between.value > own.value);
+    let Variance { value: lambda, freedom } = known.unwrap_or(own);
     let whole = if change { sum(&products.files, |_| true) } else { all(&products, regressors, p + k) };
     let target: Vec<&DMatrix<f64>> =
         products.units.iter().zip(&units.units).filter(|(_, u)| u.target).map(|(m, _)| m).collect();
     let carrying = carrying(&whole, &target, p, k);
-    Some(Calibrated { squares: found.0, numbers: found.1, lambda, freedom: variance.freedom, carrying })
+    Some(Calibrated { squares: found.0, numbers: found.1, lambda, freedom, carrying })
 }
 
 /// The same evidence with another law in the model, given as its columns over all rows: what the first explains that the
@@ -167,6 +169,13 @@ fn all(products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f6
     whole
 }
 
+/// How much a model of the robot before knows a law to differ between motions: on the joint of it where that is most.
+fn between_motions(regressors: &Regressors<'_>, law: &Law<'_>) -> Option<Variance> {
+    let known = regressors.between_motions.iter().enumerate();
+    let own = known.filter(|(j, _)| regressors.acts_on(law.columns, *j)).filter_map(|(_, v)| *v);
+    own.max_by(|a, b| a.value.total_cmp(&b.value))
+}
+
 /// The units in which nothing has changed, each with what it is compared with: against a baseline its other motions, or
 /// its other units where it is one motion; without one, the whole recording `all`.
 fn compared(units: &Units, products: &Products, all: DMatrix<f64>) -> Vec<Compared> {
@@ -174,22 +183,39 @@ fn compared(units: &Units, products: &Products, all: DMatrix<f64>) -> Vec<Compar
     if !units.change() {
         return vec![Compared { whole: all, units: (0..count).collect() }];
     }
-    let old = (0..products.files.len()).filter(|&f| !units.is_target(f)).count();
+    if let Some(others) = with_other_motions(units, products, |f| !units.is_target(f)) {
+        return others;
+    }
+    let whole = || sum(&products.units, |v| !units.units[v].target);
+    let old = (0..count).filter(|&u| !units.units[u].target);
+    old.map(|u| Compared { whole: whole(), units: vec![u] }).collect()
+}
+
+/// The units of some motions, each with the others of these motions; `None` where there are not two of them.
+pub(super) fn with_other_motions(
+    units: &Units,
+    products: &Products,
+    taken: impl Fn(usize) -> bool,
+) -> Option<Vec<Compared>> {
+    if (0..products.files.len()).filter(|&f| taken(f)).count() < 2 {
+        return None;
+    }
     let of_unit = |u: usize| {
-        let unit = &units.units[u];
-        let whole = if old > 1 {
-            sum(&products.files, |f| !units.is_target(f) && f != unit.file) + &products.units[u]
-        } else {
-            sum(&products.units, |v| !units.units[v].target)
-        };
+        let file = units.units[u].file;
+        let whole = sum(&products.files, |f| taken(f) && f != file) + &products.units[u];
         Compared { whole, units: vec![u] }
     };
-    (0..count).filter(|&u| !units.units[u].target).map(of_unit).collect()
+    Some((0..units.units.len()).filter(|&u| taken(units.units[u].file)).map(of_unit).collect())
 }
 
 /// For each companion its mean statistic of a change from unit to unit, each unit compared with a law common to all,
 /// and the degrees of freedom of this mean, where it is determined; beside the first `m` columns.
-fn of_companions(compared: &[Compared], products: &Products, m: usize, y: usize) -> Vec<Option<Variance>> {
+pub(super) fn of_companions(
+    compared: &[Compared],
+    products: &Products,
+    m: usize,
+    y: usize,
+) -> Vec<Option<Variance>> {
     let count = products.companions;
     let mut sums = vec![(0.0, 0_usize); count];
     for Compared { whole, units } in compared {
@@ -233,7 +259,7 @@ fn of_companions(compared: &[Compared], products: &Products, m: usize, y: usize)
 
 /// Where the variances of companions scatter around. Those of two that look alike beside the model are correlated by
 /// the square of what their columns are.
-fn prior(whole: &DMatrix<f64>, others: &[Option<Variance>], m: usize, y: usize) -> Option<Prior> {
+pub(super) fn prior(whole: &DMatrix<f64>, others: &[Option<Variance>], m: usize, y: usize) -> Option<Prior> {
     let (factor, scale) = factored(&whole.view((0, 0), (m, m)).into_owned())?;
     let scaled = DMatrix::from_diagonal(&scale) * whole.view((0, y + 1), (m, others.len()));
     let own =
@@ -264,7 +290,13 @@ fn carrying(whole: &DMatrix<f64>, units: &[&DMatrix<f64>], p: usize, k: usize) -
 /// Squares that `k` columns take away in one part of the whole, all other columns fitted to all of it, and how many of
 /// them are determined. The products are ordered `[p columns, law, y]`. Where `common`, the law may be there in all
 /// motion, and its change in the part is judged.
-fn gain(whole: &DMatrix<f64>, part: &DMatrix<f64>, p: usize, k: usize, common: bool) -> Option<(f64, usize)> {
+pub(super) fn gain(
+    whole: &DMatrix<f64>,
+    part: &DMatrix<f64>,
+    p: usize,
+    k: usize,
+    common: bool,
+) -> Option<(f64, usize)> {
     let m = if common { p + k } else { p };
     let (law, y) = (p, p + k);
     let g = whole.view((0, 0), (m, m)).into_owned();

@@ -86,6 +86,7 @@ fn judged(rng: &mut Pcg64, files: usize, baseline: bool, amplitude: f64, spread:
         free: &[free],
         companions: &[vec![]],
         prior: None,
+        between_motions: &[],
         of_joint: std::slice::from_ref(&all),
     };
     let found = alone(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
@@ -112,6 +113,7 @@ fn plain<'a>(y: &'a [f64], all: &'a Range<usize>) -> Regressors<'a> {
         free: &NONE,
         companions: &NONE,
         prior: None,
+        between_motions: &[],
         of_joint: std::slice::from_ref(all),
     }
 }

@@ -2,6 +2,7 @@
 
 pub(in crate::diagnosis) mod ar;
 pub(in crate::diagnosis) mod autocorrelation;
+pub(in crate::diagnosis) mod between_motions;
 pub(in crate::diagnosis) mod calibration;
 pub(in crate::diagnosis) mod evidence;
 pub(in crate::diagnosis) mod folds;

@@ -9,6 +9,7 @@ use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{CALIBRATION_RIDGE, FREED, HIGHEST_AR_ORDER};
 use crate::parallel;
+use crate::statistics::moderation::Variance;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
@@ -24,8 +25,19 @@ pub(in crate::diagnosis) struct Regressors<'a> {
     pub companions: &'a [Vec<Vec<f64>>],
     /// What is known of the shared columns beforehand.
     pub prior: Option<&'a Prior>,
+    /// Per joint the mean statistic of a law in a motion as long as the recording's, where nothing has changed, as a model of
+    /// the robot before knows it; empty where there is none.
+    pub between_motions: &'a [Option<Variance>],
     /// Rows of each joint.
     pub of_joint: &'a [Range<usize>],
+}
+
+impl Regressors<'_> {
+    /// Whether a law, given as columns over all rows, acts on a joint.
+    pub fn acts_on(&self, law: &[Vec<f64>], joint: usize) -> bool {
+        let range = self.of_joint[joint].clone();
+        law.iter().any(|c| c[range.clone()].iter().any(|x| *x != 0.0))
+    }
 }
 
 /// Inner products of `[columns, law, y, companions]` in each unit and each motion.
@@ -79,10 +91,6 @@ impl Background {
         residual: &[f64],
     ) -> Products {
         let (p, k) = (regressors.shared.len(), law.len());
-        let acts = |j: usize| {
-            let range = regressors.of_joint[j].clone();
-            law.iter().any(|c| c[range.clone()].iter().any(|x| *x != 0.0))
-        };
         // Through the parameters that joints share, a law on one joint frees others of what it had left there.
         let frees = |j: usize| {
             let range = regressors.of_joint[j].clone();
@@ -90,7 +98,7 @@ impl Background {
             let [before, after] = [&self.residual[..], residual].map(|r| squares(&r[range.clone()]));
             after < (1.0 - FREED) * before
         };
-        let own: Vec<bool> = (0..regressors.of_joint.len()).map(acts).collect();
+        let own: Vec<bool> = (0..regressors.of_joint.len()).map(|j| regressors.acts_on(law, j)).collect();
         let companions = (0..own.len()).filter(|&j| own[j]).map(|j| regressors.companions[j].len()).sum();
         let mut out = Products::zero(units, p + k + 1 + companions, companions);
         let mut first = p + k + 1;
@@ -111,6 +119,27 @@ impl Background {
                 out.add(&self.of_joint[j], &places);
             }
         }
+        out
+    }
+}
+
+impl Background {
+    /// Without a law, and with companions of one joint.
+    pub fn with_companions(
+        &self,
+        units: &Units,
+        regressors: &Regressors<'_>,
+        joint: usize,
+        companions: &[Vec<f64>],
+    ) -> Products {
+        let width = regressors.shared.len() + 1;
+        let mut out = Products::zero(units, width + companions.len(), companions.len());
+        let shared: Vec<usize> = (0..width).collect();
+        for (_, part) in self.of_joint.iter().enumerate().filter(|(j, _)| *j != joint) {
+            out.add(part, &shared);
+        }
+        let own = of_joint(units, regressors, joint, &[], companions, &self.residual);
+        out.add(&own, &(0..width + companions.len()).collect::<Vec<usize>>());
         out
     }
 }

@@ -1,9 +1,11 @@
 //! What a diagnosis found, as data: the JSON of the contract and what a report draws.
 
+mod between_motions;
 mod drawn;
 mod errors;
 mod finding;
 
+pub use between_motions::BetweenMotions;
 pub use drawn::{Curve, FineLaw, OrderSpectrum, TorqueSeries};
 pub use errors::{Errors, HeldOut, Mismatch, Unexplained};
 pub use finding::{
@@ -143,6 +145,10 @@ pub struct Diagnosis {
     /// their order; a row of zeros is of what is not determined. Not part of the JSON.
     #[serde(skip)]
     pub covariance: Option<Vec<f64>>,
+    /// How much each joint's torques differ from one motion to the next, where the recording has several; empty where
+    /// nobody knows. Not part of the JSON.
+    #[serde(skip)]
+    pub between_motions: Vec<Option<BetweenMotions>>,
 }
 
 impl Diagnosis {

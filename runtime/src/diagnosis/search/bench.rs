@@ -3,9 +3,11 @@
 use crate::diagnosis::candidates::nuisances::friction_columns;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::white_products::Regressors;
+use crate::diagnosis::outcome::BetweenMotions;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::REPEATS;
+use crate::statistics::moderation::Variance;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -22,6 +24,9 @@ pub(in crate::diagnosis) struct Bench {
     /// Other laws of each joint, values on its rows, which tell how much laws of this joint vary.
     pub companions: Arc<Vec<Vec<Vec<f64>>>>,
     pub of_joint: Vec<Range<usize>>,
+    /// How much a reference knows laws of each joint to differ between motions as long as the recording's, and friction.
+    between_motions: Vec<Option<Variance>>,
+    pub friction_between_motions: Vec<Option<Variance>>,
 }
 
 impl Bench {
@@ -29,6 +34,14 @@ impl Bench {
         let units = Units::of(design);
         let friction = |j| if change { friction_columns(context, design, j) } else { Vec::new() };
         let friction: Vec<Vec<Vec<f64>>> = (0..design.joints).map(friction).collect();
+        // A baseline's own motions say it better.
+        let known = context.reference.as_ref().filter(|_| !units.change());
+        let known = known.map_or(&[][..], |reference| reference.between_motions());
+        let (laws, friction_differs) = known
+            .iter()
+            .take(design.joints)
+            .map(|joint| split(joint.as_ref(), units.target_duration))
+            .unzip();
         Self {
             own_friction: design.columns.len() - if change { 3 * design.joints } else { 0 }
                 ..design.columns.len(),
@@ -36,6 +49,8 @@ impl Bench {
             friction,
             companions: Arc::new(companions),
             of_joint: (0..design.joints).map(|j| design.of_joint(j)).collect(),
+            between_motions: laws,
+            friction_between_motions: friction_differs,
             units,
         }
     }
@@ -49,6 +64,7 @@ impl Bench {
             companions: &self.companions,
             of_joint: &self.of_joint,
             prior: design.prior.as_deref(),
+            between_motions: &self.between_motions,
         }
     }
 
@@ -102,6 +118,15 @@ impl Bench {
         let sizes = joints.iter().map(|&j| self.size(design, j, change, left));
         sizes.max_by(|a, b| (a.law / a.needed).total_cmp(&(b.law / b.needed)))
     }
+}
+
+/// Mean statistics of laws and of friction in motions of a duration (s), from those of stretches: what differs between
+/// motions is constant within one, and grows with it.
+fn split(joint: Option<&BetweenMotions>, duration: f64) -> (Option<Variance>, Option<Variance>) {
+    let Some(known) = joint else { return (None, None) };
+    let longer = (duration / known.stretch).max(1.0);
+    let of = |value: f64, freedom| Some(Variance { value: 1.0 + (value - 1.0).max(0.0) * longer, freedom });
+    (of(known.laws, known.laws_freedom), of(known.friction, known.friction_freedom))
 }
 
 /// Against what is left where the law acts: both are means over rows that count by the law's own squares, so that one which

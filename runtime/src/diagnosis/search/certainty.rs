@@ -4,8 +4,9 @@
 //! over all motion, its amplitudes may be known worse than that: nobody bets on a law whose own interval holds zero.
 
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::LONGEST_BLOCK;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
@@ -14,12 +15,12 @@ use std::ops::Range;
 
 /// One minus the probability that amplitudes of these columns come as far from zero by accident: with the noise that
 /// `inflation` allows for (Wald), and as blocks of motion differ (Hotelling), whichever says less.
-pub(super) fn of_amplitudes(regression: &Regression, columns: Range<usize>, inflation: f64) -> f64 {
-    let (fit, design, numbers) = (&regression.fit, &regression.design, columns.len());
+pub(super) fn of_amplitudes(fit: &Fit, design: &Design, columns: Range<usize>, inflation: f64) -> f64 {
+    let numbers = columns.len();
     let Some(squares) = fit.wald(columns.clone()) else { return 0.0 };
     let white = Evidence::fisher(squares / (inflation * inflation), numbers, f64::INFINITY);
     let rows = design.rows_within(LONGEST_BLOCK);
-    let seen = fit.covariance_by_blocks(design, &regression.residual(), columns.clone(), rows);
+    let seen = fit.covariance_by_blocks(design, &fit.residual(design), columns.clone(), rows);
     let amplitudes = fit.chi.rows(columns.start, numbers);
     let by_blocks = match seen.matrix.cholesky() {
         Some(factor) if seen.blocks > numbers => {
@@ -72,15 +73,15 @@ impl Search<'_> {
         if negative && term.effect.form().only_positive() {
             return 0.0;
         }
-        of_amplitudes(regression, columns, term.inflation)
+        of_amplitudes(&regression.fit, &regression.design, columns, term.inflation)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::judging::regression::Regression;
     use crate::diagnosis::judging::testing::correlated;
-    use crate::diagnosis::rows::design::Design;
     use crate::testing::normal;
     use rand::SeedableRng;
     use rand_pcg::Pcg64;
@@ -98,7 +99,7 @@ mod tests {
         let y = y.collect();
         let design = Design::made_up(1, &SEGMENTS, ROWS, columns, y);
         let regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
-        of_amplitudes(&regression, 2..4, 1.0)
+        of_amplitudes(&regression.fit, &regression.design, 2..4, 1.0)
     }
 
     #[test]

@@ -85,7 +85,8 @@ impl Search<'_> {
                 let (shared, background) = own.as_ref().or(baseline.as_ref())?;
                 let (evidence, change) = self.friction_evidence(j, shared, background, &residual)?;
                 // Nor surer than the numbers allow that are shown.
-                let confidence = evidence.confidence(joints).min(of_amplitudes(regression, columns(j), 1.0));
+                let confidence =
+                    evidence.confidence(joints).min(of_amplitudes(&regression.fit, design, columns(j), 1.0));
                 let sure = confidence >= settings.least_confidence;
                 let excluded = match change {
                     Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
@@ -190,7 +191,8 @@ impl Search<'_> {
         let gain = dense_columns(context, design, DRIVE_GAIN, Place::Joint(joint), &[], false);
         let mut free = bench.free.clone();
         free[joint].drain(..2.min(bench.free[joint].len()));
-        let regressors = Regressors { shared, free: &free, ..bench.regressors(design) };
+        let between_motions = &bench.friction_between_motions;
+        let regressors = Regressors { shared, free: &free, between_motions, ..bench.regressors(design) };
         let judged = |columns| {
             let law = Law { columns, residual, common: false, trend_of: 0 };
             let calibrated = calibrate(&bench.units, &regressors, background, &law)?;

@@ -132,6 +132,11 @@ impl Search<'_> {
         let mut rejected = Vec::new();
         let mut k = 0;
         while k < self.model.terms.len() {
+            // What differs between days is no matter of held-out motion: there the friction of the day is fitted.
+            if self.model.terms[k].effect == EffectKind::FrictionLevelChange {
+                k += 1;
+                continue;
+            }
             // Beside what was found later it may be no body any more, as one half of two that cancel.
             if body::of_term(&self.model, &self.model.terms[k]).is_some_and(|(_, is_one)| !is_one) {
                 rejected.push(self.model.terms.remove(k));
