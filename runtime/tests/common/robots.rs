@@ -78,6 +78,11 @@ pub fn planar() -> SimulatedRobot {
     SimulatedRobot::of(PLANAR)
 }
 
+/// The planar arm, its table with another line.
+pub fn planar_that_knows(line: &str) -> SimulatedRobot {
+    SimulatedRobot::of(&PLANAR.replace("limits:", &format!("{line}\nlimits:")))
+}
+
 /// The arm with a slide.
 pub fn scara() -> SimulatedRobot {
     SimulatedRobot::of(SCARA)
