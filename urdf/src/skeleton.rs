@@ -142,7 +142,7 @@ pub fn armatures(robot: &Robot, standard: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Friction between links and springs of a table.
+/// Friction between links and springs of a table, but for springs between points.
 fn tendons(robot: &Robot, standard: &[f64], segment_of: &[usize]) -> Vec<Tendon> {
     let tendon = |(k, coupling): (usize, &dynid_description::Coupling)| {
         let value = |kind: ParameterKind| {
@@ -166,7 +166,8 @@ fn tendons(robot: &Robot, standard: &[f64], segment_of: &[usize]) -> Vec<Tendon>
             rest,
         }
     };
-    robot.couplings.iter().enumerate().map(tendon).collect()
+    let is_tendon = |(_, c): &(usize, &dynid_description::Coupling)| c.law.between().is_none();
+    robot.couplings.iter().enumerate().filter(is_tendon).map(tendon).collect()
 }
 
 impl Skeleton {

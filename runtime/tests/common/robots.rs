@@ -80,7 +80,13 @@ pub fn planar() -> SimulatedRobot {
 
 /// The planar arm, its table with another line.
 pub fn planar_that_knows(line: &str) -> SimulatedRobot {
-    SimulatedRobot::of(&PLANAR.replace("limits:", &format!("{line}\nlimits:")))
+    planar_with(line, "")
+}
+
+/// The planar arm, its table with more lines, and more nominal parameters.
+pub fn planar_with(lines: &str, parameters: &str) -> SimulatedRobot {
+    let table = PLANAR.replace("limits:", &format!("{lines}\nlimits:"));
+    SimulatedRobot::of(&table.replace("parameters: {", &format!("parameters: {{{parameters}")))
 }
 
 /// The arm with a slide.
