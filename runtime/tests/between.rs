@@ -290,6 +290,28 @@ springs:
 }
 
 #[test]
+fn a_constant_force_is_a_spring_whose_stiffness_is_known_to_be_zero() {
+    let (_, set, model) = read(&TREE.replace("springs:", "known: {K_far: 0}\nsprings:"));
+    let names: Vec<&str> = set.base.iter().map(|b| &*b.name).collect();
+    assert!(names.contains(&"KR_far") && !set.base.iter().any(|b| b.relation.contains("K_far")), "{names:?}");
+    let k = names.iter().position(|name| *name == "KR_far").unwrap();
+    let mut chi = vec![0.0; set.base.len()];
+    chi[k] = -25.0;
+    // Its power is its force times the speed of its length, wherever it is.
+    for [q, dq, ddq] in states(model.robot().joints(), 6) {
+        let torque = torques_at(&model, &chi, &q, &dq, &ddq);
+        let power: f64 = torque.iter().zip(&dq).map(|(torque, dq)| torque * dq).sum();
+        let length = |t: f64| {
+            let moved: Vec<f64> = q.iter().zip(&dq).map(|(q, dq)| q + t * dq).collect();
+            let standard = model.robot().standard.iter().position(|p| p.name == "KR_far").unwrap();
+            -energies(model.robot(), &moved).iter().find(|e| e.0 == standard).unwrap().1
+        };
+        let speed = (length(1e-6) - length(-1e-6)) / 2e-6;
+        assert_close(&[power], &[25.0 * speed], 1e-8, "constant force");
+    }
+}
+
+#[test]
 fn the_table_of_a_model_says_what_its_yaml_said() {
     let (_, _, model) = read(TREE);
     let robot = model.robot();

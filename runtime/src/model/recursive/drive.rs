@@ -3,7 +3,7 @@
 
 use super::distance::Distance;
 use super::error::RecursiveModelError;
-use crate::model::{Number, ParameterKind, Robot};
+use crate::model::{Between, Number, ParameterKind, Robot};
 use nalgebra::DMatrix;
 
 /// What an entry is a function of.
@@ -22,6 +22,13 @@ enum Law {
     /// The slope of the distance of two points times what it is longer than at rest; without a rest the slope alone, which
     /// is that of KR but for its sign.
     Distance(Option<f64>),
+}
+
+impl Law {
+    /// Of a parameter of a spring between two points.
+    fn of_distance(kind: ParameterKind, between: &Between) -> Law {
+        Law::Distance((kind == ParameterKind::K).then(|| between.rest.unwrap_or(0.0)))
+    }
 }
 
 /// One entry of IDM that does not come from a rigid body: scale * law(sum of coefficient * signal).
@@ -119,16 +126,13 @@ pub(super) fn drive_entries(robot: &Robot) -> Result<Vec<DriveEntry>, RecursiveM
             is_spring,
         };
         if let Some(between) = law.and_then(|law| law.between()) {
-            let (law, scale) = match standard.kind {
-                ParameterKind::K => (Law::Distance(Some(between.rest.unwrap_or(0.0))), 1.0),
-                _ => (Law::Distance(None), -1.0),
+            let of_row = |row, holds_energy| DriveEntry {
+                distance: Some(Distance::new(robot, &between)),
+                holds_energy,
+                ..plain(row, Law::of_distance(standard.kind, &between), sign(standard.kind), Vec::new())
             };
             let rows = robot.acts_on(standard).into_iter().enumerate();
-            entries.extend(rows.map(|(place, (row, _))| DriveEntry {
-                distance: Some(Distance::new(robot, &between)),
-                holds_energy: place == 0,
-                ..plain(row, law, scale, Vec::new())
-            }));
+            entries.extend(rows.map(|(place, (row, _))| of_row(row, place == 0)));
             continue;
         }
         let rest = law.and_then(|law| law.rest()).unwrap_or(0.0);
@@ -158,6 +162,11 @@ pub(super) fn drive_entries(robot: &Robot) -> Result<Vec<DriveEntry>, RecursiveM
         }
     }
     Ok(entries)
+}
+
+/// The pull of a spring per unit of K, and against it of KR.
+fn sign(kind: ParameterKind) -> f64 {
+    if kind == ParameterKind::KR { -1.0 } else { 1.0 }
 }
 
 /// Torque over l dl/dq of a distance l, per unit of K with a length at rest, or of -KR.
