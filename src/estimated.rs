@@ -7,12 +7,15 @@ use dynid_runtime::report::significant;
 
 /// Base parameters with their names and units, in the robot's order.
 pub fn named(robot: &Robot, estimated: &Estimated) -> Vec<NamedParameter> {
+    let known = robot.fixed_base();
+    let is_known = |name: &str| known.iter().any(|&(k, _)| robot.base[k].name == name);
     let of_base = robot.base.iter().zip(estimated.chi.iter().zip(&estimated.sigma));
     of_base
         .map(|(base, (&value, &sigma))| NamedParameter {
             name: base.name.to_string(),
             value,
-            sigma: Some(sigma).filter(|s| s.is_finite() && *s > 0.0),
+            // What the table knows is certain; what nothing determines has no standard deviation.
+            sigma: Some(sigma).filter(|s| is_known(&base.name) || s.is_finite() && *s > 0.0),
             relative_sigma_percent: Some(100.0 * sigma / value.abs()).filter(|r| r.is_finite()),
             sigma_white: None,
             correction: None,

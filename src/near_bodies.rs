@@ -52,7 +52,7 @@ impl NearBodies {
         };
         let row = |k: usize| {
             let p = &robot.standard[k];
-            let unit = p.kind.unit(robot.frames[p.frame].kind).to_owned();
+            let unit = p.unit(robot.frames[p.frame].kind, &robot.couplings).to_owned();
             let percent = format!("{:.0}", 100.0 * near.from_data[k]);
             vec![
                 p.name.to_string(),

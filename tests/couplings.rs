@@ -177,3 +177,45 @@ fn a_spring_of_the_table_is_not_found_missing() {
     assert_eq!(findings("with.yaml"), [""; 0]);
     assert_eq!(findings("without.yaml"), ["spring [1]"]);
 }
+
+#[test]
+fn a_balancer_between_points_goes_from_a_simulation_to_a_model_and_into_code() {
+    let folder = Folder::new("balancer");
+    let line = "springs:\n  - {between: [{frame: 0, point: [0.2, 0.5, 0]}, {frame: 2, point: [0.15, 0, 0]}], name: coil}\n";
+    let arm = ARM
+        .replace("friction:\n  - {joints: {q1: 1, q2: -0.5}, name: belt}\nsprings:\n  - {joint: 1}\n", line);
+    let arm = arm.replace("Fvc_belt: 2.5, Fcc_belt: 3, K1: 12, KR1: 3", "K_coil: 60, KR_coil: 18");
+    folder.write("tendons.yaml", &arm);
+    let ok = |words: &[&str]| {
+        let output = folder.run(words);
+        assert!(output.status.success(), "{words:?}: {}", error_of(&output));
+        output
+    };
+    let shown = words_of(&ok(&["show", "./tendons.yaml", "--base"]));
+    let words =
+        "spring on s = distance of (0.2, 0.5, 0) of frame 0 and (0.15, 0, 0) of frame 2: K_coil*s - KR_coil";
+    assert!(shown.contains(words), "{shown}");
+    ok(&["simulate", "./tendons.yaml", "--out", "a", "--rate", "1000", "--period", "10"]);
+    ok(&["identify", "a/recording.yaml", "--out", "m.json"]);
+    let model = std::fs::read_to_string(folder.path("m.json")).unwrap();
+    let model: serde_json::Value = serde_json::from_str(&model).unwrap();
+    let parameters = model["base_parameters"].as_array().unwrap();
+    for (name, truth, unit) in [("K_coil", 60.0, "N/m"), ("KR_coil", 18.0, "N")] {
+        let found = parameters.iter().find(|p| p["name"] == name).unwrap();
+        let (value, sigma) = (found["value"].as_f64().unwrap(), found["sigma"].as_f64().unwrap());
+        assert!((value - truth).abs() < 5.0 * sigma && sigma < 0.05 * truth, "{name}: {value} ± {sigma}");
+        assert_eq!(found["unit"], unit);
+    }
+    // Everything that reads a model knows it: other motion, code, and files that say what they cannot hold.
+    ok(&["simulate", "m.json", "--out", "b", "--rate", "500", "--period", "6", "--seed", "5"]);
+    let output = ok(&["validate", "m.json", "b/recording.yaml", "--json", "-"]);
+    assert!(json_of(&output)["relative_error"].as_f64().unwrap() < 0.02);
+    for to in ["c", "rust"] {
+        ok(&["export", "m.json", "--to", to, "--out", to]);
+    }
+    for (to, file) in [("urdf", "arm.urdf"), ("mjcf", "arm.xml")] {
+        ok(&["export", "./tendons.yaml", "--to", to, "--out", file]);
+        let beside = std::fs::read_to_string(folder.path(&format!("{file}.json"))).unwrap();
+        assert!(beside.contains("K*s on s = distance of") && beside.contains("ds/dq"), "{beside}");
+    }
+}

@@ -164,12 +164,22 @@ fn main() {{
 
 /// A crate without std that takes sine and cosine from the C library, as firmware does.
 fn without_std(name: &str) -> String {
+    // Only a robot with a spring between points asks for it.
+    let (sqrt, root) = if name == "sprung" {
+        (
+            "safe fn sqrt(x: f64) -> f64;",
+            "fn inverse_root(self) -> f64 { if self > 0.0 { 1.0 / sqrt(self) } else { 0.0 } }",
+        )
+    } else {
+        ("", "")
+    };
     format!(
         r#"#![no_std]
 #[path = "{name}.rs"]
 pub mod {name};
 use {name}::Number;
 unsafe extern "C" {{
+    {sqrt}
     safe fn sin(x: f64) -> f64;
     safe fn cos(x: f64) -> f64;
 }}
@@ -183,6 +193,7 @@ impl Number for f64 {{
     fn sign(self) -> f64 {{
         if self > 0.0 {{ 1.0 }} else if self < 0.0 {{ -1.0 }} else {{ 0.0 }}
     }}
+    {root}
 }}
 "#
     )
@@ -235,15 +246,26 @@ fn has_sanitizers(cc: &str, folder: &Folder) -> bool {
     runs
 }
 
+/// An arm with a coil spring to its forearm and a gas spring under its upper arm.
+fn sprung() -> RecursiveModel {
+    let yaml = "name: sprung\nframes:\n  - {j: 1, sigma: 0, alpha: 0.3, d: 0, theta: q1, r: 0}\n  \
+                - {j: 2, sigma: 0, alpha: -pi/2, d: 0.5, theta: q2, r: 0.1}\nsprings:\n  \
+                - {between: [{frame: 0, point: [0.2, 0.5, 0]}, {frame: 2, point: [0.15, 0, 0]}], name: coil, rest: 0.2}\n  \
+                - {between: [{frame: 0, point: [0, -0.35, 0.1]}, {frame: 1, point: [0.25, -0.05, 0]}], name: gas}\n";
+    let table = parse("sprung.yaml", yaml.as_bytes()).unwrap();
+    RecursiveModel::new(numeric_robot(&table, &base_set(&table))).unwrap()
+}
+
 #[test]
 fn exported_c_compiles_without_a_warning_and_gives_the_numbers_of_the_library_under_sanitizers() {
     // Friction of a belt, springs, and a prismatic joint.
     let table = parse("tethered.yaml", include_bytes!("formats/tethered.yaml")).unwrap();
     let tethered = RecursiveModel::new(numeric_robot(&table, &base_set(&table))).unwrap();
+    let sprung = sprung();
     for cc in compilers() {
         let folder = Folder::new(&format!("export-{}", cc.replace('/', "-")));
         let sanitizers = has_sanitizers(&cc, &folder);
-        for model in models::all().iter().copied().chain([&tethered as &dyn Model]) {
+        for model in models::all().iter().copied().chain([&tethered as &dyn Model, &sprung]) {
             let (robot, n) = (model.robot(), model.robot().joints());
             let chi = values(3, robot.base.len());
             for (real, kind, tolerance) in [(Real::Double, "double", 1e-12), (Real::Single, "float", 1e-4)] {
@@ -377,9 +399,10 @@ fn casadi_loads_the_functions_that_are_exported_for_it() {
 
 #[test]
 fn exported_rust_compiles_without_std_and_gives_the_bits_of_exported_c() {
-    for name in ["tx40", "stanford", "scara4"] {
+    let sprung = sprung();
+    for name in ["tx40", "stanford", "scara4", "sprung"] {
         let folder = Folder::new(&format!("export-rust-{name}"));
-        let model = models::find(name).unwrap();
+        let model = models::find(name).unwrap_or(&sprung);
         let (robot, n) = (model.robot(), model.robot().joints());
         let chi = values(3, robot.base.len());
         folder.write(&format!("{name}.rs"), &export_rust(robot, None).unwrap().source);

@@ -109,3 +109,21 @@ fn a_value_that_is_wrong_is_not_made_right() {
     let errors = [&held, &free].map(|model| model["relative_error"].as_f64().unwrap());
     assert!(errors[0] > 1.2 * errors[1], "{errors:?}");
 }
+
+#[test]
+fn a_diagnosis_and_a_plan_of_motions_hold_what_is_known() {
+    let run = run("known_diagnosed");
+    run.identified("known: {Ia2: 0.3, Fc1: 1.5}", &[]);
+    run.ok(&["diagnose", "a/other.yaml", "--out", "d.json"]);
+    let found: Value = serde_json::from_str(&std::fs::read_to_string(run.0.path("d.json")).unwrap()).unwrap();
+    assert_eq!((of(&found, "Ia2"), of(&found, "Fc1")), ([0.3, 0.0], [1.5, 0.0]));
+    assert!(found["effects"].as_array().is_none_or(|effects| effects.is_empty()), "{}", found["effects"]);
+    // Fewer unknowns have less information in all, and are as well conditioned.
+    let logarithm = |table: &str| -> f64 {
+        let words = run.ok(&["excite", table, "--out", "plan2", "--starts", "1", "--evaluations", "1"]);
+        let line = words.lines().find(|line| line.starts_with("log det")).unwrap().to_owned();
+        line.split_whitespace().rev().nth(1).unwrap().parse().unwrap()
+    };
+    let (known, free) = (logarithm("./table.yaml"), logarithm("./weighed.yaml"));
+    assert!(known < free - 1.0, "{known} {free}");
+}

@@ -130,4 +130,5 @@ def main():
     print(f"{len(cases)} tables: {FILE}")
 
 
-main()
+if __name__ == "__main__":
+    main()

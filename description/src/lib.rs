@@ -31,7 +31,7 @@ mod robot;
 mod standard;
 
 pub use base_parameter::BaseParameter;
-pub use coupling::{Coupling, CouplingLaw};
+pub use coupling::{Between, Coupling, CouplingLaw};
 pub use dependent::{DependentFrame, MAX_TERMS, Motion, motions};
 pub use drive::Drive;
 pub use frame::{Frame, JointKind};

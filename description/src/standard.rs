@@ -68,7 +68,7 @@ impl Robot {
             standard: k,
             combination: Cow::Owned(vec![(k, 1.0)]),
             relation: p.name.clone(),
-            unit: Cow::Borrowed(p.kind.unit(self.frames[p.frame].kind)),
+            unit: Cow::Borrowed(p.unit(self.frames[p.frame].kind, &couplings)),
         }));
         self.couplings = Cow::Owned(couplings);
         self.standard = Cow::Owned(standard);
@@ -93,7 +93,7 @@ impl Robot {
                 standard: k,
                 combination: Cow::Owned(vec![(k, 1.0)]),
                 relation: p.name.clone(),
-                unit: Cow::Borrowed(p.kind.unit(frames[p.frame].kind)),
+                unit: Cow::Borrowed(p.unit(frames[p.frame].kind, &[])),
             })
             .collect();
         Robot {

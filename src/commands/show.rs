@@ -1,7 +1,7 @@
 //! `dynid show ROBOT`: its table, what can be identified, what evaluating it costs.
 
 use clap::Args;
-use dynid_runtime::model::{Coupling, CouplingLaw, JointIndex, JointKind, Motion, Robot};
+use dynid_runtime::model::{Between, Coupling, CouplingLaw, JointIndex, JointKind, Motion, Robot};
 use dynid_runtime::report::significant;
 
 use crate::failure::Failure;
@@ -114,6 +114,12 @@ fn couplings(robot: &Robot) -> String {
             CouplingLaw::Friction => format!("friction on s = {s}: Fvc{name}*ds + Fcc{name}*sign(ds)"),
             CouplingLaw::Spring => format!("spring on s = {s}: K{name}*s - KR{name}"),
             CouplingLaw::SpringAt(rest) => {
+                format!("spring on s = {s}: K{name}*(s - {})", significant(rest, 6))
+            }
+            CouplingLaw::Between(Between { rest: None, .. }) => {
+                format!("spring on s = {s}: K{name}*s - KR{name}")
+            }
+            CouplingLaw::Between(Between { rest: Some(rest), .. }) => {
                 format!("spring on s = {s}: K{name}*(s - {})", significant(rest, 6))
             }
         }

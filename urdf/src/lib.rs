@@ -24,6 +24,7 @@
 mod angles;
 mod attributes;
 mod body;
+mod by_joint;
 mod coaxial;
 mod connections;
 mod document;

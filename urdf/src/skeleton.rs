@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 
 use crate::body::Body;
 use crate::document::Urdf;
@@ -142,7 +142,7 @@ pub fn armatures(robot: &Robot, standard: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Friction between links and springs of a table.
+/// Friction between links and springs of a table, but for springs between points.
 fn tendons(robot: &Robot, standard: &[f64], segment_of: &[usize]) -> Vec<Tendon> {
     let tendon = |(k, coupling): (usize, &dynid_description::Coupling)| {
         let value = |kind: ParameterKind| {
@@ -166,7 +166,8 @@ fn tendons(robot: &Robot, standard: &[f64], segment_of: &[usize]) -> Vec<Tendon>
             rest,
         }
     };
-    robot.couplings.iter().enumerate().map(tendon).collect()
+    let is_tendon = |(_, c): &(usize, &dynid_description::Coupling)| c.law.between().is_none();
+    robot.couplings.iter().enumerate().filter(is_tendon).map(tendon).collect()
 }
 
 impl Skeleton {
@@ -228,20 +229,27 @@ impl Skeleton {
         Skeleton { name: robot.name.to_string(), gravity, base: "base".to_owned(), segments, tendons }
     }
 
-    /// The part of a URDF that a tree is, with its own names and frames.
+    /// The part of a URDF that a tree is, with its own names and frames. A joint that mimics another with an offset is where it
+    /// stands when the other is at 0.
     pub(crate) fn of_tree(urdf: &Urdf, tree: &Tree, gravity: Vector3<f64>) -> Skeleton {
         let segment = |moving: &crate::tree::Moving| {
             let joint = &urdf.joints[moving.joint];
+            let is_length = joint.kind == JointType::Prismatic;
+            let master = |f: crate::tree::Follows| {
+                let segment = tree.bodies.iter().position(|body| body.joint == f.joint)?;
+                Some(Mimic { segment, multiplier: f.multiplier })
+            };
+            let offset = moving.follows.map_or(0.0, |f| f.offset);
+            let stands = match is_length {
+                true => Pose { translation: joint.axis * offset, ..Pose::identity() },
+                false => Pose { rotation: *Rotation3::new(joint.axis * offset).matrix(), ..Pose::identity() },
+            };
             Segment {
                 link: urdf.links[joint.child].name.clone(),
                 joint: joint.name.clone(),
                 parent: moving.parent,
-                origin: moving.origin,
-                kind: if joint.kind == JointType::Prismatic {
-                    JointKind::Prismatic
-                } else {
-                    JointKind::Revolute
-                },
+                origin: moving.origin.then(&stands),
+                kind: if is_length { JointKind::Prismatic } else { JointKind::Revolute },
                 axis: joint.axis,
                 position: joint.limit.position,
                 velocity: joint.limit.velocity,
@@ -250,7 +258,7 @@ impl Skeleton {
                 damping: joint.damping.unwrap_or(0.0).max(0.0),
                 friction: joint.friction.unwrap_or(0.0).max(0.0),
                 armature: 0.0,
-                mimic: None,
+                mimic: moving.follows.and_then(master),
                 further: Vec::new(),
             }
         };
@@ -265,13 +273,18 @@ impl Skeleton {
 
     /// Poses of the segments in the base, every joint at 0.
     pub fn poses(&self) -> Vec<Pose> {
-        let mut poses: Vec<Pose> = Vec::new();
-        for segment in &self.segments {
-            let carrier = segment.parent.and_then(|p| poses.get(p)).copied().unwrap_or_else(Pose::identity);
-            poses.push(carrier.then(&segment.origin));
-        }
-        poses
+        poses(&self.segments)
     }
+}
+
+/// Poses of segments in the base, every joint at 0.
+fn poses(segments: &[Segment]) -> Vec<Pose> {
+    let mut poses: Vec<Pose> = Vec::new();
+    for segment in segments {
+        let carrier = segment.parent.and_then(|p| poses.get(p)).copied().unwrap_or_else(Pose::identity);
+        poses.push(carrier.then(&segment.origin));
+    }
+    poses
 }
 
 /// Why a table and a template are not the same robot.
@@ -293,17 +306,17 @@ const APART: f64 = 5e-3;
 ///
 /// # Errors
 /// The first joint whose axis is elsewhere, or moves otherwise.
-pub(crate) fn matched(table: &Skeleton, template: &Skeleton) -> Result<Vec<Pose>, Unlike> {
-    let (ours, theirs) = (table.segments.len(), template.segments.len());
+pub(crate) fn matched(table: &[Segment], template: &Skeleton) -> Result<Vec<Pose>, Unlike> {
+    let (ours, theirs) = (table.len(), template.segments.len());
     if ours != theirs {
         return Err(Unlike(format!(
             "the model has {ours} joints, the template {theirs} from '{}' on: --base and --tip choose those of the model",
             template.base
         )));
     }
-    let poses: Vec<(Pose, Pose)> = table.poses().into_iter().zip(template.poses()).collect();
+    let poses: Vec<(Pose, Pose)> = poses(table).into_iter().zip(template.poses()).collect();
     for (k, (pose, other)) in poses.iter().enumerate() {
-        let (own, named) = (&table.segments[k], &template.segments[k]);
+        let (own, named) = (&table[k], &template.segments[k]);
         let unlike = |what: String| {
             Unlike(format!(
                 "joint {} of the model is not '{}' of the template: {what}",
@@ -313,6 +326,17 @@ pub(crate) fn matched(table: &Skeleton, template: &Skeleton) -> Result<Vec<Pose>
         };
         if own.kind != named.kind || own.parent != named.parent {
             return Err(unlike("one is revolute and one prismatic, or another link carries it".to_owned()));
+        }
+        let same = match (own.mimic, named.mimic) {
+            (Some(a), Some(b)) => a.segment == b.segment && (a.multiplier - b.multiplier).abs() < APART,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        if !same {
+            return Err(unlike(
+                "one moves by itself and one with another joint (mimic), or they move with other joints; a template from \
+                 which the model's table was imported has the same"
+                    .to_owned(),
+            ));
         }
         let (axis, other_axis) = (pose.rotation * own.axis, other.rotation * named.axis);
         let angle = axis.cross(&other_axis).norm().atan2(axis.dot(&other_axis));

@@ -12,7 +12,7 @@ use crate::skeleton::{Skeleton, Unlike, matched};
 use crate::text::plain;
 use crate::tree::Tree;
 use crate::write_urdf::inertial;
-use dynid_description::Robot;
+use dynid_description::{JointKind, Robot};
 
 /// A URDF beside the table of the same robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,9 +20,14 @@ pub struct Template<'a> {
     urdf: &'a Urdf,
     tree: Tree,
     skeleton: Skeleton,
-    /// Pose of each segment of the table in the frame of the template's.
+    /// Pose of each joint's frame of the table in that of the template's link.
     in_link: Vec<Pose>,
-    /// Frame of the table of each segment.
+    /// For each joint of the template the body of the table that its link carries, 0-based among those that move; none where
+    /// the link stands between joints about one axis.
+    carries: Vec<Option<usize>>,
+    /// For each joint of the template its place among those of the table that have a variable.
+    joints: Vec<Option<usize>>,
+    /// Frame of the table of each of these bodies.
     frames: Vec<usize>,
 }
 
@@ -64,20 +69,22 @@ impl<'a> Template<'a> {
         let root = urdf.pose_in_root(tree.base);
         let gravity = root.rotation.transpose() * Vector3::from(options.gravity);
         let skeleton = Skeleton::of_tree(urdf, &tree, gravity);
-        if !robot.dependent.is_empty() || tree.bodies.iter().any(|body| body.follows.is_some()) {
-            let words = "joints that depend on others (mimic) have no place in a template yet";
-            return Err(Ok(Unlike(words.to_owned())));
-        }
-        let table = Skeleton::of_table(robot, &vec![0.0; robot.standard.len()]);
-        let in_link = matched(&table, &skeleton).map_err(Ok)?;
-        let joints = robot.joint_of_frame();
-        let frames = (0..joints.len()).filter(|&k| joints[k].is_some()).collect();
-        Ok(Self { urdf, tree, skeleton, in_link, frames })
+        let table = Skeleton::of_table(robot, &vec![0.0; robot.standard.len()]).by_joint();
+        let in_link = matched(&table.segments, &skeleton).map_err(Ok)?;
+        let motions = robot.motions();
+        let frames = (0..motions.len()).filter(|&k| motions[k].kind != JointKind::Fixed).collect();
+        let (carries, joints) = (table.carries, table.joints);
+        Ok(Self { urdf, tree, skeleton, in_link, carries, joints, frames })
     }
 
-    /// What the template knows of each moving body, in the order of the joints.
+    /// What the template knows of each moving body, in the order of the table.
     pub fn bodies(&self) -> Vec<TemplateBody> {
-        (0..self.frames.len()).map(|k| self.body(k)).collect()
+        self.carriers().map(|(k, body)| self.body(k, self.frames[body])).collect()
+    }
+
+    /// Joints whose links carry bodies of the table, with these.
+    fn carriers(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.carries.iter().enumerate().filter_map(|(k, body)| Some((k, (*body)?)))
     }
 
     /// The link of a segment that carries most: the identified values become its own.
@@ -94,13 +101,13 @@ impl<'a> Template<'a> {
         best
     }
 
-    fn body(&self, k: usize) -> TemplateBody {
+    fn body(&self, k: usize, frame: usize) -> TemplateBody {
         let (target, _) = self.heaviest(k);
         let to_table = self.in_link[k].inverse();
         let seen = |(link, pose): &(usize, Pose)| self.urdf.body_of(*link, &to_table.then(pose));
         let links = &self.tree.bodies[k].links;
         let mut body = TemplateBody {
-            frame: self.frames[k],
+            frame,
             link: self.urdf.links[target].name.clone(),
             own: Body::none(),
             attached: Body::none(),
@@ -117,24 +124,33 @@ impl<'a> Template<'a> {
         body
     }
 
-    /// Names of the joints, in the order of the table.
+    /// Names of the joints that have a variable, in the order of the table.
     pub fn joints(&self) -> Vec<&str> {
-        self.skeleton.segments.iter().map(|segment| segment.joint.as_str()).collect()
+        let mut own: Vec<(usize, &str)> = self
+            .joints
+            .iter()
+            .zip(&self.skeleton.segments)
+            .filter_map(|(joint, segment)| Some(((*joint)?, segment.joint.as_str())))
+            .collect();
+        own.sort_unstable_by_key(|(joint, _)| *joint);
+        own.into_iter().map(|(_, name)| name).collect()
     }
 
     /// Link of each segment that keeps its `<inertial>` apart, and its new body in the link's own frame.
     fn own_bodies(&self, robot: &Robot, standard: &[f64]) -> Vec<(usize, Body)> {
-        let one = |known: TemplateBody, k: usize| {
+        // Fixed frames of the table are part of what carries them.
+        let table = Skeleton::of_table(robot, standard);
+        let one = |(k, body): (usize, usize)| {
             let (target, pose) = self.heaviest(k);
-            // Fixed frames of the table are part of what carries them.
-            let total = Skeleton::of_table(robot, standard).segments[k].body;
-            let own = total.without(&known.attached);
+            let known = self.body(k, self.frames[body]);
+            let own = table.segments[body].body.without(&known.attached);
             (target, own.seen_from(&pose.inverse().then(&self.in_link[k])))
         };
-        self.bodies().into_iter().enumerate().map(|(k, known)| one(known, k)).collect()
+        self.carriers().map(one).collect()
     }
 
-    /// The URDF with these standard parameters and frictions, one for each joint.
+    /// The URDF with these standard parameters and frictions, one for each joint with a variable; joints that mimic others stay
+    /// as they are.
     ///
     /// Where a body has no mass its `<inertial>` stays. `bytes` are those that the URDF was read from.
     ///
@@ -158,24 +174,44 @@ impl<'a> Template<'a> {
             let found = node(self.urdf.links[link].range.start).ok_or_else(other)?;
             edits.extend(edit_link(text, found, &body));
         }
-        for (moving, friction) in self.tree.bodies.iter().zip(friction) {
+        for (moving, joint) in self.tree.bodies.iter().zip(&self.joints) {
+            let Some(friction) = joint.and_then(|j| friction.get(j)) else { continue };
             let found = node(self.urdf.joints[moving.joint].range.start).ok_or_else(other)?;
             edits.extend(edit_joint(text, found, friction));
         }
         Ok(applied(text, edits))
     }
 
-    /// The template's joints with a table's standard parameters, in the template's frames and with its names.
+    /// The template's joints with a table's standard parameters, in the template's frames and with its names; in frames of the
+    /// table where links stand between joints about one axis, which are no bodies.
     pub fn skeleton(&self, robot: &Robot, standard: &[f64]) -> Skeleton {
-        let table = Skeleton::of_table(robot, standard);
+        let whole = Skeleton::of_table(robot, standard);
+        let table = whole.by_joint();
+        if self.carries.contains(&None) {
+            return self.renamed(whole);
+        }
         let mut skeleton = self.skeleton.clone();
-        skeleton.gravity = table.gravity;
+        skeleton.gravity = whole.gravity;
         skeleton.tendons = table.tendons;
         for ((own, new), pose) in skeleton.segments.iter_mut().zip(table.segments).zip(&self.in_link) {
             own.body = new.body.seen_from(pose);
             (own.damping, own.friction, own.armature) = (new.damping, new.friction, new.armature);
         }
         skeleton
+    }
+}
+
+impl Template<'_> {
+    /// A table's bodies and joints by the names of the template.
+    fn renamed(&self, mut table: Skeleton) -> Skeleton {
+        let mut first = 0;
+        for (k, body) in self.carriers() {
+            table.segments[body].link.clone_from(&self.skeleton.segments[k].link);
+            table.segments[body].joint.clone_from(&self.skeleton.segments[first].joint);
+            first = k + 1;
+        }
+        table.base.clone_from(&self.skeleton.base);
+        table
     }
 }
 
@@ -278,3 +314,7 @@ fn applied(text: &str, mut edits: Vec<Edit>) -> String {
     }
     out + &text[at..]
 }
+
+#[cfg(test)]
+#[path = "template_tests.rs"]
+mod tests;

@@ -8,7 +8,7 @@
 //! for a chance far below that of a fault in the machine; sines and cosines of the points are those of rational rotations,
 //! and a position that enters a length is as independent of its sine and cosine as the functions are.
 
-use super::random_states::energies_at_random;
+use super::random_states::{energies_at_random, is_irrational};
 use super::regroup::{Regrouping, regroup};
 use crate::exact::{Form, Number};
 use crate::robot::{DriveTable, RobotTable};
@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 pub(super) fn regroup_dependent(robot: &RobotTable, standard: &[StandardParameter]) -> Regrouping {
     let mut regrouping = regroup_as_if_free(robot, standard);
     let inertial = |k: &usize| standard[*k].kind <= ParameterKind::M && !regrouping.contains_key(k);
-    let all = (0..standard.len()).filter(|&k| !robot.is_known(k));
+    let rational = |k: usize| !is_irrational(robot, &standard[k]);
+    let all = (0..standard.len()).filter(|&k| !robot.is_known(k) && rational(k));
     let of_kind = |kind: ParameterKind| all.clone().filter(move |&k| standard[k].kind == kind);
     // First choice is what stands first in the table; rotors and offsets go into bodies where they can, and what springs have
     // where their combination is 0 into offsets. What is known is kept only where nothing else can take it.
@@ -30,7 +31,9 @@ pub(super) fn regroup_dependent(robot: &RobotTable, standard: &[StandardParamete
         .chain(of_kind(ParameterKind::Ia))
         .chain(of_kind(ParameterKind::K))
         .chain(of_kind(ParameterKind::KR))
-        .chain(robot.fixed.iter().map(|&(k, _)| k).filter(|&k| !standard[k].kind.is_friction()))
+        .chain(
+            robot.fixed.iter().map(|&(k, _)| k).filter(|&k| !standard[k].kind.is_friction() && rational(k)),
+        )
         .collect();
     let dependent = dependencies(&energies_at_random(robot, standard, &columns));
     let second: BTreeMap<usize, Vec<(usize, Number)>> = dependent

@@ -58,7 +58,9 @@ pub struct BaseSet {
 /// The base parameters of a robot.
 pub fn base_set(robot: &RobotTable) -> BaseSet {
     let standard = robot.standard_parameters();
-    let plain = robot.dependent.is_empty() && robot.fixed.is_empty();
+    let plain = robot.dependent.is_empty()
+        && robot.fixed.is_empty()
+        && robot.couplings.iter().all(|c| c.law.between().is_none());
     let mut regrouping = if plain && springs::have_offsets(robot, &standard) {
         let mut regrouping = regroup::regroup(robot, &standard);
         springs::regroup_into_offsets(robot, &standard, &mut regrouping);
@@ -96,6 +98,6 @@ fn base_parameter(
         standard: kept,
         combination: combination.into(),
         relation: relation::relation(&parameter.name, &named).into(),
-        unit: parameter.kind.unit(robot.frames[parameter.frame].kind).into(),
+        unit: parameter.unit(robot.frames[parameter.frame].kind, &robot.couplings).into(),
     }
 }

@@ -67,12 +67,14 @@ pub(super) fn energies_at_random(
     let rotors = robot.drive.rotor_matrices();
     let joint_of = |frame: usize| joint_frames.iter().position(|&f| f == frame).unwrap_or(0);
     let energies = |state: &State| -> Vec<Number> {
-        let bodies = body_energies(robot, (&places, &motions, &angles), state);
-        let energy = |&column: &usize| {
+        let frames = frames_in_motion(robot, (&places, &motions, &angles), state);
+        let gravity = robot.gravity.map(|g| Number::from(decimal(g)));
+        let bodies: Vec<[Number; 10]> = frames.iter().map(|frame| energy(frame, &gravity)).collect();
+        let of_column = |&column: &usize| {
             let parameter = &standard[column];
             match parameter.kind {
                 ParameterKind::Off => state.q[joint_of(parameter.frame)],
-                ParameterKind::K | ParameterKind::KR => spring_energy(robot, parameter, &state.q),
+                ParameterKind::K | ParameterKind::KR => spring_energy(robot, parameter, &state.q, &frames),
                 ParameterKind::Ia => {
                     let form = &rotors[joint_of(parameter.frame)];
                     let product = |i: usize, k: usize| {
@@ -86,7 +88,7 @@ pub(super) fn energies_at_random(
                 kind => bodies[parameter.frame][kind as usize],
             }
         };
-        columns.iter().map(energy).collect()
+        columns.iter().map(of_column).collect()
     };
     let mut random = Random(2026);
     let rest = energies(&State::random(&mut random, joints).at_rest());
@@ -98,8 +100,22 @@ pub(super) fn energies_at_random(
         .collect()
 }
 
-/// Potential energy of a spring per unit of K, K s^2 / 2 - K s0 s, or of KR, -s.
-fn spring_energy(robot: &RobotTable, parameter: &StandardParameter, q: &[Number]) -> Number {
+/// Potential energy of a spring per unit of K, K s^2 / 2 - K s0 s, or of KR, -s. Of one between points only l^2 / 2: see
+/// [`is_irrational`].
+fn spring_energy(
+    robot: &RobotTable,
+    parameter: &StandardParameter,
+    q: &[Number],
+    frames: &[Moving],
+) -> Number {
+    if let Some(between) = parameter.coupling.and_then(|k| robot.couplings[k].law.between()) {
+        let place = |end: usize| {
+            let point = between.points[end].map(|x| Number::from(decimal(x)));
+            between.frames[end].map_or(point, |f| sum(&frames[f].origin, &times(&frames[f].axes, &point)))
+        };
+        let apart = sum(&place(0), &scaled(&place(1), -Number::ONE));
+        return half() * dot(&apart, &apart);
+    }
     let s: Number = robot.acts_on(parameter).into_iter().zip(q).map(|(c, q)| Number::from(c) * *q).sum();
     match parameter.coupling.map(|k| robot.couplings[k].law) {
         _ if parameter.kind == ParameterKind::KR => -s,
@@ -148,16 +164,22 @@ struct Moving {
     v: Vector,
 }
 
-/// Kinetic and potential energy per unit of XX .. M of every frame.
-fn body_energies(
+/// Whether the energy of a parameter has the length of a spring between points in it: the root of a polynomial that is no
+/// square, which no combination of polynomials is, and none of the roots of others that are not multiples of it.
+pub(super) fn is_irrational(robot: &RobotTable, parameter: &StandardParameter) -> bool {
+    let between = parameter.coupling.and_then(|k| robot.couplings[k].law.between());
+    between.is_some_and(|b| parameter.kind == ParameterKind::KR || b.rest.is_some_and(|rest| rest != 0.0))
+}
+
+/// Every frame in motion, seen from frame 0.
+fn frames_in_motion(
     robot: &RobotTable,
     (places, motions, angles): (&[Placement], &[Motion], &Angles),
     state: &State,
-) -> Vec<[Number; 10]> {
+) -> Vec<Moving> {
     let zero = [Number::ZERO; 3];
     let unit = |k: usize| std::array::from_fn(|i| if i == k { Number::ONE } else { Number::ZERO });
     let base = Moving { axes: [unit(0), unit(1), unit(2)], origin: zero, w: zero, v: zero };
-    let gravity = robot.gravity.map(|g| Number::from(decimal(g)));
     let mut frames: Vec<Moving> = Vec::with_capacity(robot.frames.len());
     for ((frame, place), motion) in robot.frames.iter().zip(places).zip(motions) {
         let parent = frame.parent.checked_sub(1).map_or(base, |p| frames[p]);
@@ -200,9 +222,10 @@ fn body_energies(
             v: sum(&swept, &scaled(&z, moving)),
         });
     }
-    frames.iter().map(|frame| energy(frame, &gravity)).collect()
+    frames
 }
 
+/// Kinetic and potential energy per unit of XX .. M of a frame.
 fn energy(frame: &Moving, gravity: &Vector) -> [Number; 10] {
     let axes = [0, 1, 2].map(|k| column(&frame.axes, k));
     let [x, y, z] = axes.each_ref().map(|axis| dot(axis, &frame.w));

@@ -60,6 +60,7 @@ fn coupling(coupling: &Coupling) -> String {
         CouplingLaw::Friction => "Friction".to_owned(),
         CouplingLaw::Spring => "Spring".to_owned(),
         CouplingLaw::SpringAt(rest) => format!("SpringAt({rest:?})"),
+        CouplingLaw::Between(between) => format!("Between({between:?})"),
     };
     format!(
         "Coupling {{ name: {}, terms: Cow::Borrowed(&{terms:?}), law: CouplingLaw::{law} }}",

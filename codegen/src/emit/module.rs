@@ -27,11 +27,12 @@ fn opening(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStr
     let nominal = robot.nominal.as_ref().map(|_| quote!(Nominal,));
     let dependent = (!robot.dependent.is_empty()).then(|| quote!(DependentFrame,));
     let coupling = (!robot.couplings.is_empty()).then(|| quote!(Coupling, CouplingLaw,));
+    let between = robot.couplings.iter().any(|c| c.law.between().is_some()).then(|| quote!(Between,));
     quote! {
         #![allow(non_snake_case, unused_variables, clippy::all)]
 
         use dynid_runtime::model::{
-            BaseParameter, #coupling #dependent Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
+            BaseParameter, #between #coupling #dependent Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
             ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut, evaluate_block, evaluate_line,
             evaluate_lines,
         };

@@ -168,6 +168,10 @@ impl<'a> Program<'a> {
                 let sign = Formula::Sign(Box::new(self.value(a)));
                 if e.is_negative() { Formula::Minus(Box::new(sign)) } else { sign }
             }
+            Node::InverseRoot(a) => {
+                let root = Formula::InverseRoot(Box::new(self.value(a)));
+                if e.is_negative() { Formula::Minus(Box::new(root)) } else { root }
+            }
             _ => self.value(e),
         }
     }

@@ -108,6 +108,10 @@ fn formula(formula: &Formula) -> TokenStream {
             let a = at_least(a, Binding::Atom);
             quote!(#a.sign())
         }
+        Formula::InverseRoot(a) => {
+            let a = at_least(a, Binding::Atom);
+            quote!(#a.inverse_root())
+        }
         Formula::Sum(a, b) => {
             let (a, b) = (at_least(a, Binding::Sum), at_least(b, Binding::Product));
             quote!(#a + #b)

@@ -11,6 +11,8 @@ pub enum Formula {
     Minus(Box<Formula>),
     /// -1, 0 or 1.
     Sign(Box<Formula>),
+    /// 1 / sqrt, 0 where there is none.
+    InverseRoot(Box<Formula>),
     /// A sum.
     Sum(Box<Formula>, Box<Formula>),
     /// A difference.
@@ -48,9 +50,11 @@ impl Formula {
             Formula::Sum(..) | Formula::Difference(..) => Binding::Sum,
             Formula::Product(..) => Binding::Product,
             Formula::Minus(_) => Binding::Sign,
-            Formula::Constant(_) | Formula::Variable(_) | Formula::Sign(_) | Formula::Accumulated { .. } => {
-                Binding::Atom
-            }
+            Formula::Constant(_)
+            | Formula::Variable(_)
+            | Formula::Sign(_)
+            | Formula::InverseRoot(_)
+            | Formula::Accumulated { .. } => Binding::Atom,
         }
     }
 }

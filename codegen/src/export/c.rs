@@ -164,6 +164,13 @@ impl Printer<'_> {
                  0;\n}}\n"
             );
         }
+        if formulas().any(|x| any(x, &|x| matches!(x, Formula::InverseRoot(_)))) {
+            let _ = writeln!(
+                text,
+                "/* 1 / sqrt(x), 0 where x is not above 0. */\nstatic {real} inverse_root({real} x)\n{{\n    return x > 0 ? 1 / \
+                 sqrt{f}(x) : 0;\n}}\n"
+            );
+        }
         for (name, subtracted, a) in [("add_product", false, "a"), ("sub_product", true, "-a")] {
             let operator = if subtracted { '-' } else { '+' };
             let is_it =
@@ -241,6 +248,7 @@ impl Printer<'_> {
             Formula::Variable(name) => name.clone(),
             Formula::Minus(a) => format!("-{}", at_least(a, Binding::Atom)),
             Formula::Sign(a) => format!("sign({})", self.formula(a)),
+            Formula::InverseRoot(a) => format!("inverse_root({})", self.formula(a)),
             Formula::Sum(a, b) => {
                 format!("{} + {}", at_least(a, Binding::Sum), at_least(b, Binding::Product))
             }
@@ -328,7 +336,7 @@ fn any(formula: &Formula, is_it: &impl Fn(&Formula) -> bool) -> bool {
     is_it(formula)
         || match formula {
             Formula::Constant(_) | Formula::Variable(_) => false,
-            Formula::Minus(a) | Formula::Sign(a) => any(a, is_it),
+            Formula::Minus(a) | Formula::Sign(a) | Formula::InverseRoot(a) => any(a, is_it),
             Formula::Sum(a, b) | Formula::Difference(a, b) | Formula::Product(a, b) => {
                 any(a, is_it) || any(b, is_it)
             }

@@ -64,6 +64,13 @@ fn number(export: &Export<'_>) -> TokenStream {
         let doc = format!(" `{name}` of the number.");
         quote!(#[doc = #doc] fn #name(self) -> Self;)
     });
+    let roots = export.table.couplings.iter().any(|c| c.law.between().is_some());
+    let declared_root = roots.then(|| {
+        quote!(
+            #[doc = " 1 / sqrt of the number, 0 where it is not above 0."]
+            fn inverse_root(self) -> Self;
+        )
+    });
     let power = names.contains("powf");
     let declared_power = power.then(|| {
         quote!(
@@ -75,6 +82,13 @@ fn number(export: &Export<'_>) -> TokenStream {
         let real = ident(real);
         let functions = plain.clone().map(|name| quote!(fn #name(self) -> Self { #real::#name(self) }));
         let power = power.then(|| quote!(fn powf(self, power: Self) -> Self { #real::powf(self, power) }));
+        let root = roots.then(|| {
+            quote!(
+                fn inverse_root(self) -> Self {
+                    if self > 0.0 { 1.0 / #real::sqrt(self) } else { 0.0 }
+                }
+            )
+        });
         quote! {
             #[cfg(feature = "std")]
             impl Number for #real {
@@ -93,6 +107,7 @@ fn number(export: &Export<'_>) -> TokenStream {
                 fn sub_product(self, a: Self, b: Self) -> Self {
                     if cfg!(target_feature = "fma") { #real::mul_add(-a, b, self) } else { self - a * b }
                 }
+                #root
                 #(#functions)*
                 #power
             }
@@ -127,6 +142,7 @@ fn number(export: &Export<'_>) -> TokenStream {
                 let pairs = angles.map(Self::sin_cos);
                 (pairs.map(|p| p.0), pairs.map(|p| p.1))
             }
+            #declared_root
             #(#declared)*
             #declared_power
         }

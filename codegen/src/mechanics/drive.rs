@@ -1,10 +1,12 @@
 //! Rotor inertia, friction, offsets and springs, with motors that several joints turn: (9), (25), (26).
 //! Equation numbers are those of Gautier and Briot.
 
+use super::between::Distance;
 use super::error::ModelError;
+use super::geometry::Geometry;
 use crate::robot::RobotTable;
 use crate::symbolic::{Expr, Graph, Symbol};
-use dynid_description::{Coupling, CouplingLaw, ParameterKind, StandardParameter};
+use dynid_description::{Coupling, ParameterKind, StandardParameter};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
@@ -47,8 +49,18 @@ impl DriveColumns {
     }
 
     /// Torques of all joints per unit of a drive parameter of joint `joint`.
-    pub fn column(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Vec<Expr> {
+    pub fn column(
+        &self,
+        g: &mut Graph,
+        geometry: &Geometry,
+        parameter: &StandardParameter,
+        joint: usize,
+    ) -> Vec<Expr> {
         let n = self.relative.len();
+        if let Some(distance) = self.distance(g, geometry, parameter) {
+            let level = distance.level(g, self.rest_of_length(parameter));
+            return distance.half_gradient.iter().map(|&slope| g.mul(level, slope)).collect();
+        }
         let mut column = vec![Graph::ZERO; n];
         let dq = g.symbol(Symbol::Velocity(joint));
         match parameter.kind {
@@ -103,14 +115,39 @@ impl DriveColumns {
 
     /// Where a spring is at rest, as far as the table knows; 0 where it does not.
     fn rest(&self, parameter: &StandardParameter) -> f64 {
-        match parameter.coupling.map(|k| self.couplings[k].law) {
-            Some(CouplingLaw::SpringAt(rest)) => rest,
-            _ => 0.0,
-        }
+        parameter.coupling.and_then(|k| self.couplings[k].law.rest()).unwrap_or(0.0)
+    }
+
+    /// The distance that a spring between two points acts on.
+    fn distance(
+        &self,
+        g: &mut Graph,
+        geometry: &Geometry,
+        parameter: &StandardParameter,
+    ) -> Option<Distance> {
+        let coupling = &self.couplings[parameter.coupling?];
+        Some(Distance::new(g, geometry, &coupling.law.between()?, &coupling.terms))
+    }
+
+    /// The length at rest of a spring between two points per unit of K; `None` for KR.
+    fn rest_of_length(&self, parameter: &StandardParameter) -> Option<f64> {
+        (parameter.kind == ParameterKind::K).then(|| self.rest(parameter))
     }
 
     /// Energy per unit of a rotor inertia, or of a spring; friction and offsets store none.
-    pub fn energy(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Expr {
+    pub fn energy(
+        &self,
+        g: &mut Graph,
+        geometry: &Geometry,
+        parameter: &StandardParameter,
+        joint: usize,
+    ) -> Expr {
+        if let Some(distance) = self.distance(g, geometry, parameter) {
+            let length = distance.length(g);
+            let Some(rest) = self.rest_of_length(parameter) else { return -length };
+            let (half, stretched) = (g.scale(0.5, distance.square), g.scale(rest, length));
+            return g.sub(half, stretched);
+        }
         if parameter.kind.is_spring() {
             let form = self.acts_on(parameter, joint);
             let s = weighted(g, &form, Symbol::Position);
@@ -136,7 +173,23 @@ impl DriveColumns {
     }
 
     /// Power per unit of a drive parameter: dqT times its column; of what acts on a combination of joints, its speed times the torque on it.
-    pub fn power(&self, g: &mut Graph, parameter: &StandardParameter, joint: usize) -> Expr {
+    pub fn power(
+        &self,
+        g: &mut Graph,
+        geometry: &Geometry,
+        parameter: &StandardParameter,
+        joint: usize,
+    ) -> Expr {
+        if let Some(distance) = self.distance(g, geometry, parameter) {
+            let speeds: Vec<Expr> = (0..distance.half_gradient.len())
+                .map(|k| {
+                    let dq = g.symbol(Symbol::Velocity(k));
+                    g.mul(dq, distance.half_gradient[k])
+                })
+                .collect();
+            let (speed, level) = (g.sum(&speeds), distance.level(g, self.rest_of_length(parameter)));
+            return g.mul(speed, level);
+        }
         if parameter.kind > ParameterKind::Off {
             let form = self.acts_on(parameter, joint);
             let speed = weighted(g, &form, Symbol::Velocity);
@@ -144,7 +197,7 @@ impl DriveColumns {
             return g.mul(speed, level);
         }
         let mut total = Graph::ZERO;
-        for (row, entry) in self.column(g, parameter, joint).into_iter().enumerate() {
+        for (row, entry) in self.column(g, geometry, parameter, joint).into_iter().enumerate() {
             let dq = g.symbol(Symbol::Velocity(row));
             let term = g.mul(dq, entry);
             total = g.add(total, term);

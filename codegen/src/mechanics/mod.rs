@@ -20,6 +20,7 @@
 //! assert_eq!(equations.idm[0][column("off1")], Graph::ONE);
 //! ```
 
+mod between;
 mod columns;
 mod drive;
 mod energy;

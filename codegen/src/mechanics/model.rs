@@ -122,9 +122,9 @@ impl Equations {
             let frame = parameter.frame;
             let column = match geometry.links[frame].joint {
                 Some(joint) if parameter.kind >= ParameterKind::Ia => {
-                    h.push(drive.energy(g, parameter, joint));
-                    dh.push(drive.power(g, parameter, joint));
-                    drive.column(g, parameter, joint)
+                    h.push(drive.energy(g, &geometry, parameter, joint));
+                    dh.push(drive.power(g, &geometry, parameter, joint));
+                    drive.column(g, &geometry, parameter, joint)
                 }
                 _ => {
                     h.push(energy(g, &motions[frame], &energies[frame], parameter));
@@ -156,7 +156,7 @@ impl Equations {
             let parameter = &set.standard[base.standard];
             if let (true, Some(joint)) = (parameter.kind.is_spring(), geometry.links[parameter.frame].joint) {
                 let chi = g.symbol(Symbol::Parameter(k));
-                for (torque, entry) in bias.iter_mut().zip(drive.column(g, parameter, joint)) {
+                for (torque, entry) in bias.iter_mut().zip(drive.column(g, &geometry, parameter, joint)) {
                     let term = g.mul(chi, entry);
                     *torque = g.add(*torque, term);
                 }

@@ -58,7 +58,7 @@ impl TorqueEquations {
             let joint = geometry.links[parameter.frame].joint;
             if let (true, Some(joint)) = (parameter.kind >= ParameterKind::Ia, joint) {
                 let chi = g.symbol(Symbol::Parameter(k));
-                for (torque, entry) in torques.iter_mut().zip(drive.column(g, parameter, joint)) {
+                for (torque, entry) in torques.iter_mut().zip(drive.column(g, &geometry, parameter, joint)) {
                     let term = g.mul(chi, entry);
                     *torque = g.add(*torque, term);
                 }

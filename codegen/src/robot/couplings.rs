@@ -1,5 +1,6 @@
 //! Friction between links or of a tendon, and springs: what the table says acts on several joints at once.
 
+use super::between::{joints_of, read_points};
 use super::document::{Node, Value};
 use super::drive_table::DriveTable;
 use super::magnitudes::within;
@@ -9,28 +10,30 @@ use super::table::TableRow;
 use crate::exact::{Number, Span, decimal};
 use crate::robot::formula::joint_variable;
 use dynid_description::bounds::{LONGEST, WIDEST};
-use dynid_description::{Coupling, CouplingLaw, JointKind};
+use dynid_description::{Between, Coupling, CouplingLaw, DependentFrame, JointKind};
 
 const FRICTION_KEYS: [&str; 2] = ["joints", "name"];
-const SPRING_KEYS: [&str; 5] = ["joint", "joints", "law", "rest", "name"];
+const SPRING_KEYS: [&str; 6] = ["joint", "joints", "between", "law", "rest", "name"];
 
 /// What an entry is checked against.
-struct Known<'a> {
+pub(super) struct Known<'a> {
     /// Numbers j of the joints.
-    joints: Vec<usize>,
+    pub joints: Vec<usize>,
+    pub frames: &'a [TableRow],
+    pub dependent: &'a [DependentFrame],
     drive: &'a DriveTable,
-    constants: &'a [(String, f64)],
+    pub constants: &'a [(String, f64)],
 }
 
 /// Reads `friction` and `springs`, in this order.
 pub(super) fn read_couplings(
     reader: &mut Reader,
     (friction, springs): (Option<&Node>, Option<&Node>),
-    (frames, drive): (&[TableRow], &DriveTable),
+    (frames, dependent, drive): (&[TableRow], &[DependentFrame], &DriveTable),
     constants: &[(String, f64)],
 ) -> Vec<Coupling> {
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).map(|f| f.j).collect();
-    let known = Known { joints, drive, constants };
+    let known = Known { joints, frames, dependent, drive, constants };
     let mut found = Vec::new();
     let what = "friction as a list of entries ({joints: {q6: 1, q7: -1}})";
     for item in friction.and_then(|node| reader.list(node, what)).unwrap_or_default() {
@@ -91,22 +94,22 @@ fn read_spring(
     {
         reader.report(law.place, format!("the law is linear, found {}", law.describe()));
     }
-    let terms = match (fields.get("joint"), fields.get("joints")) {
-        (Some(joint), None) => read_joint(reader, joint, known),
-        (None, Some(joints)) => read_terms(reader, joints, known),
+    if let (Some(between), None, None) = (fields.get("between"), fields.get("joint"), fields.get("joints")) {
+        return read_between(reader, node, &fields, between, (known, found));
+    }
+    let terms = match (fields.get("joint"), fields.get("joints"), fields.get("between")) {
+        (Some(joint), None, None) => read_joint(reader, joint, known),
+        (None, Some(joints), None) => read_terms(reader, joints, known),
         _ => {
             reader.report(
                 node.place,
-                "expected a spring on one joint (joint: 2) or on a sum (joints: {q2: 1, q3: -1})",
+                "expected a spring on one joint (joint: 2), on a sum (joints: {q2: 1, q3: -1}), or between two points \
+                 (between: [{frame: 0, point: [0, 0, 1]}, {frame: 2, point: [0.3, 0, 0]}])",
             );
             None
         }
     };
-    let rest = fields.get("rest").map(|node| {
-        let rest = reader.number(node, "rest", known.constants).unwrap_or_default();
-        within(reader, node, "rest", rest, [0.0, WIDEST]);
-        rest
-    });
+    let rest = read_rest(reader, &fields, known, WIDEST);
     let Some(terms) = terms else { return };
     let Some(name) = read_name(reader, &fields, node, (&terms, known)) else { return };
     if found.iter().any(|c| c.name == name && c.law != CouplingLaw::Friction) {
@@ -123,6 +126,39 @@ fn read_spring(
     }
     let law = rest.map_or(CouplingLaw::Spring, CouplingLaw::SpringAt);
     found.push(Coupling { name: name.into(), terms: terms.into(), law });
+}
+
+/// Where a spring is at rest, if the entry says it.
+fn read_rest(reader: &mut Reader, fields: &Fields<'_>, known: &Known<'_>, most: f64) -> Option<f64> {
+    fields.get("rest").map(|node| {
+        let rest = reader.number(node, "rest", known.constants).unwrap_or_default();
+        within(reader, node, "rest", rest, [0.0, most]);
+        rest
+    })
+}
+
+/// A spring between two points.
+fn read_between(
+    reader: &mut Reader,
+    node: &Node,
+    fields: &Fields<'_>,
+    between: &Node,
+    (known, found): (&Known<'_>, &mut Vec<Coupling>),
+) {
+    let rest = read_rest(reader, fields, known, LONGEST);
+    let Some(ends) = read_points(reader, between, known) else { return };
+    let others: Vec<Between> = found.iter().filter_map(|c| c.law.between()).collect();
+    let law = Between { rest, ..ends };
+    let terms = match joints_of(&law, &others, known) {
+        Ok(terms) => terms,
+        Err(message) => return reader.report(between.place, message),
+    };
+    let Some(name) = read_name(reader, fields, node, (&terms, known)) else { return };
+    if found.iter().any(|c| c.name == name && c.law != CouplingLaw::Friction) {
+        let message = format!("there is a spring of the name '{name}' already: give this one a `name`");
+        return reader.report(node.place, message);
+    }
+    found.push(Coupling { name: name.into(), terms: terms.into(), law: CouplingLaw::Between(law) });
 }
 
 /// The number of one joint as a combination.

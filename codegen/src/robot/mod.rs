@@ -56,6 +56,7 @@
 //! assert_eq!(text[1], "arm.yaml:4:19: expected sigma as 0 (revolute), 1 (prismatic) or 2 (fixed), found '3'");
 //! ```
 
+mod between;
 mod couplings;
 mod diagnostic;
 mod document;

@@ -104,7 +104,7 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
     };
     let zero = (fields.get("massless"), fields.get("known"));
     let acting = (fields.get("friction"), fields.get("springs"));
-    let couplings = read_couplings(reader, acting, (&frames, &drive), &constants);
+    let couplings = read_couplings(reader, acting, (&frames, &dependent, &drive), &constants);
     let standard = standard_parameters(&frames, &drive, &couplings);
     let known = read_known(reader, zero, &standard, &constants);
     let limits = match fields.get("limits") {

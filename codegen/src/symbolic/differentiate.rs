@@ -57,6 +57,12 @@ impl Graph {
                     let s = self.intern(Node::Sine(angle));
                     -self.mul(s, rate)
                 }
+                Node::InverseRoot(a) => {
+                    let root = Expr::new(at, false);
+                    let (cubed, da) = (self.product(&[root, root, root]), signed_lookup(known, a));
+                    let product = self.mul(cubed, da);
+                    -self.scale(0.5, product)
+                }
                 Node::Sum(a, b) => {
                     let (da, db) = (signed_lookup(known, a), signed_lookup(known, b));
                     self.add(da, db)

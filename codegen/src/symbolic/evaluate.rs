@@ -40,6 +40,10 @@ impl Graph {
                     let x = value_of(&values, a);
                     if x == 0.0 { 0.0 } else { x.signum() }
                 }
+                Node::InverseRoot(a) => {
+                    let square = value_of(&values, a);
+                    if square > 0.0 { square.sqrt().recip() } else { 0.0 }
+                }
                 Node::Sum(a, b) => value_of(&values, a) + value_of(&values, b),
                 Node::Product(a, b) => value_of(&values, a) * value_of(&values, b),
             };

@@ -71,6 +71,8 @@ pub enum Node {
     Cosine(usize),
     /// -1, 0 or 1.
     Sign(Expr),
+    /// 1 / sqrt(x), 0 where x is not above 0.
+    InverseRoot(Expr),
     /// first + second.
     Sum(Expr, Expr),
     /// first * second; a constant factor comes first.

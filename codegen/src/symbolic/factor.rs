@@ -41,6 +41,7 @@ impl Graph {
                     self.mul(a, b)
                 }
                 Node::Sign(a) => self.sign(moved(a, &anew)),
+                Node::InverseRoot(a) => self.inverse_root(moved(a, &anew)),
                 _ => continue,
             };
             if let Some(name) = self.name_of(at).map(str::to_owned) {

@@ -119,6 +119,14 @@ impl Graph {
         }
     }
 
+    /// 1 / sqrt(e); 0 where e is not above 0.
+    pub fn inverse_root(&mut self, e: Expr) -> Expr {
+        match self.constant_value(e) {
+            Some(value) => self.constant(if value > 0.0 { value.sqrt().recip() } else { 0.0 }),
+            None => self.intern(Node::InverseRoot(e)),
+        }
+    }
+
     /// The nodes that the outputs need, ascending (operands first).
     pub fn reachable(&self, outputs: &[Expr]) -> Vec<usize> {
         let mut needed = vec![false; self.nodes.len()];
@@ -139,7 +147,7 @@ impl Graph {
     pub fn operands(&self, node: usize) -> impl Iterator<Item = Expr> + use<> {
         let (a, b) = match self.nodes[node] {
             Node::Sum(a, b) | Node::Product(a, b) => (Some(a), Some(b)),
-            Node::Sign(a) => (Some(a), None),
+            Node::Sign(a) | Node::InverseRoot(a) => (Some(a), None),
             _ => (None, None),
         };
         a.into_iter().chain(b)

@@ -25,7 +25,10 @@ pub fn schedule(graph: &Graph, outputs: &[Expr]) -> Vec<Vec<usize>> {
             }
             if ready {
                 done[at] = true;
-                if matches!(graph.node(at), Node::Sum(..) | Node::Product(..) | Node::Sign(_)) {
+                if matches!(
+                    graph.node(at),
+                    Node::Sum(..) | Node::Product(..) | Node::Sign(_) | Node::InverseRoot(_)
+                ) {
                     order.push(at);
                 }
                 continue;

@@ -96,6 +96,8 @@ pub fn regressor(robot: &RobotTable, q: &[f64], dq: &[f64], ddq: &[f64]) -> DMat
             CouplingLaw::Friction => columns.extend([&c * speed, &c * speed.signum()]),
             CouplingLaw::Spring => columns.extend([&c * s, -c]),
             CouplingLaw::SpringAt(rest) => columns.push(c * (s - rest)),
+            // Compared in runtime/tests/between.rs.
+            CouplingLaw::Between(_) => panic!("these tables have no springs between points"),
         }
     }
     DMatrix::from_columns(&columns)

@@ -68,7 +68,8 @@ impl Motions {
                 motion.take_out(known);
             }
         }
-        let prior = settings.reference.as_ref().and_then(|r| r.prior_of_parameters()).map(Arc::new);
+        let prior =
+            settings.reference.as_ref().and_then(|r| r.prior_of_parameters(&model.robot().fixed_base()));
         let (slowest, slowest_fast) = match given {
             Some(speeds) => (speeds.clone(), speeds),
             None => {
@@ -90,7 +91,7 @@ impl Motions {
             cutoff,
             standstill_speeds: slowest.clone(),
             left_over: Vec::new(),
-            prior,
+            prior: prior.map(Arc::new),
             slowest,
             slowest_fast,
             directions: directions(model.robot()),

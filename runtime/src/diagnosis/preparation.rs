@@ -174,16 +174,16 @@ fn check_rows(
         let known = design.prior.is_some() && moving.friction_known.contains(&true);
         return if known { Ok(Vec::new()) } else { Err(nothing_moves(model, moving)) };
     }
-    let parameters = design.parameters;
-    let free: Vec<usize> =
-        fit.undetermined(rules::UNDETERMINED).into_iter().filter(|&k| k < parameters).collect();
+    let parameters = design.parameters - design.known.len();
+    let is_free = |k: &usize| *k < design.parameters && design.known.iter().all(|(known, _)| known != k);
+    let free: Vec<usize> = fit.undetermined(rules::UNDETERMINED).into_iter().filter(|k| is_free(k)).collect();
     let few =
         free.len() * rules::PARAMETERS_PER_UNDETERMINED <= parameters && !moving.fitted.contains(&false);
     let left_over = match &design.prior {
         _ if few => Vec::new(),
         // What a reference knows needs no motion.
         Some(_) => free.clone(),
-        None => left_over(design, &fit.sigma),
+        None => left_over(design, &fit.sigma).into_iter().filter(is_free).collect(),
     };
     let known = fit.known_beforehand(design).floor() as usize;
     let not_fitted = known + if few { free.len() } else { left_over.len() };
@@ -215,7 +215,7 @@ fn check_fit(design: &Design, fit: &Fit) -> Result<(), DiagnosisError> {
     for (j, s) in fit.sigma.iter().enumerate() {
         let rows = design.of_joint(j);
         left += s * s * rows.len() as f64;
-        all += design.y[rows].iter().map(|y| y * y).sum::<f64>();
+        all += rows.map(|r| design.torque(r).powi(2)).sum::<f64>();
     }
     let explained = 100.0 * (1.0 - left / all.max(1e-300));
     if explained < rules::LEAST_EXPLAINED_BY_MODEL {

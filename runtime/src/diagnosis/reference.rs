@@ -145,15 +145,15 @@ impl Reference {
         self.effects.iter().filter(|term| is_column(term))
     }
 
-    /// What is known of the base parameters alone.
-    pub(super) fn prior_of_parameters(&self) -> Option<Prior> {
+    /// What is known of the base parameters alone, beside values that the robot's table has.
+    pub(super) fn prior_of_parameters(&self, known: &[(usize, f64)]) -> Option<Prior> {
         let places: Vec<usize> = (0..self.chi.len()).collect();
-        self.prior(&places)
+        Some(self.prior(&places)?.given(known))
     }
 
     /// What is known of the base parameters and of what the amplitudes of the standing laws differ by from those that were
-    /// taken out of the torques, whose columns are `first` and following.
-    pub(super) fn prior_with_laws(&self, first: usize) -> Option<Prior> {
+    /// taken out of the torques, whose columns are `first` and following; beside values that the robot's table has.
+    pub(super) fn prior_with_laws(&self, first: usize, known: &[(usize, f64)]) -> Option<Prior> {
         let mut places: Vec<usize> = (0..self.chi.len()).collect();
         let (mut from, mut columns) = (self.chi.len(), self.chi.len()..self.chi.len());
         let mut at: Vec<usize> = places.clone();
@@ -167,7 +167,7 @@ impl Reference {
             }
             from = columns.end;
         }
-        self.prior(&places).map(|prior| prior.at(&places, &at))
+        Some(self.prior(&places)?.at(&places, &at).given(known))
     }
 
     /// Of some unknowns, whatever the others are.
@@ -207,7 +207,7 @@ mod tests {
         let reference =
             of(DMatrix::from_row_slice(2, 2, &[0.25, 0.0, 0.0, f64::INFINITY])).expect("half of it is known");
         let (mut g, mut v) = (DMatrix::zeros(2, 2), nalgebra::DVector::zeros(2));
-        reference.prior_of_parameters().expect("it is positive").add_to(&mut g, &mut v);
+        reference.prior_of_parameters(&[]).expect("it is positive").add_to(&mut g, &mut v);
         assert_eq!((g[(0, 0)], g[(1, 1)], v[0], v[1]), (4.0, 0.0, 4.0, 0.0));
     }
 }

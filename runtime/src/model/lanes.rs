@@ -146,6 +146,12 @@ impl Number for Lanes {
     }
 
     #[inline(always)]
+    fn inverse_root(self) -> Self {
+        let zero = f64x4::splat(0.0);
+        Self(self.0.simd_gt(zero).select(f64x4::splat(1.0) / self.0.sqrt(), zero))
+    }
+
+    #[inline(always)]
     fn add_product(self, a: Self, b: Self) -> Self {
         Self(a.0.mul_add(b.0, self.0))
     }
@@ -229,6 +235,7 @@ mod tests {
     fn signs_and_fused_products_go_lane_by_lane() {
         let x = Lanes::new([-2.0, 0.0, 3.0, -0.0]);
         assert_eq!(x.sign().to_array(), [-1.0, 0.0, 1.0, 0.0]);
+        assert_eq!(Lanes::new([4.0, 0.0, -1.0, 0.25]).inverse_root().to_array(), [0.5, 0.0, 0.0, 2.0]);
         let y = x.add_product(x, x).sub_product(Lanes::splat(2.0), x);
         assert_eq!(y.to_array(), [6.0, 0.0, 6.0, 0.0]);
     }

@@ -34,6 +34,9 @@ pub trait Number:
     /// -1, 0 or 1 with the sign of the number; 0 for 0. Its derivative is 0.
     fn sign(self) -> Self;
 
+    /// 1 / sqrt(self); 0 where the number is not above 0, and so is its derivative.
+    fn inverse_root(self) -> Self;
+
     /// self + a * b, rounded once where the machine has a fused multiply-add.
     #[inline(always)]
     fn add_product(self, a: Self, b: Self) -> Self {

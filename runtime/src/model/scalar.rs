@@ -26,6 +26,11 @@ impl Number for f64 {
     }
 
     #[inline(always)]
+    fn inverse_root(self) -> f64 {
+        if self > 0.0 { self.sqrt().recip() } else { 0.0 }
+    }
+
+    #[inline(always)]
     fn sin_cos_each<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
         let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
         for first in (0..N).step_by(LANES) {

@@ -14,7 +14,8 @@ use crate::model::{CouplingLaw, Robot};
 /// 5. for each frame that moves with other variables than its own joint's alone: its index, sigma, then each joint and its
 ///    coefficient;
 /// 6. for each combination of joints that friction or a spring acts on: its name, 0 for friction, 1 for a spring, 2 for one
-///    whose position at rest is known and that position, then each joint and its coefficient.
+///    whose position at rest is known and that position, then each joint and its coefficient; of a spring between two points
+///    3, or 4 and its length at rest, then for each point the number of its frame (0 for the base) and x y z, then as above.
 ///
 /// Name, description, limits and nominal values have no part in it.
 pub fn fingerprint(robot: &Robot) -> String {
@@ -52,6 +53,14 @@ pub fn fingerprint(robot: &Robot) -> String {
             CouplingLaw::SpringAt(rest) => {
                 hash.count(2);
                 hash.number(rest);
+            }
+            CouplingLaw::Between(between) => {
+                hash.count(if between.rest.is_none() { 3 } else { 4 });
+                between.rest.into_iter().for_each(|rest| hash.number(rest));
+                for (frame, point) in between.frames.iter().zip(between.points) {
+                    hash.count(frame.map_or(0, |frame| frame + 1));
+                    point.into_iter().for_each(|x| hash.number(x));
+                }
             }
         }
         for (joint, coefficient) in coupling.terms.iter() {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::model::{Coupling, CouplingLaw, Frame, JointIndex, JointKind, Motion, Robot};
+use crate::model::{Between, Coupling, CouplingLaw, Frame, JointIndex, JointKind, Motion, Robot};
 
 /// A robot as the YAML that it could have been read from: numbers in the place of expressions and constants. Limits and
 /// nominal values are not written.
@@ -62,12 +62,16 @@ pub fn to_yaml(robot: &Robot) -> String {
 fn entry(coupling: &Coupling, number: impl Fn(usize) -> usize) -> String {
     let joints: Vec<String> =
         coupling.terms.iter().map(|&(joint, c)| format!("q{}: {c}", number(joint))).collect();
-    let rest = match coupling.law {
-        CouplingLaw::SpringAt(rest) => format!(", rest: {rest}"),
-        _ => String::new(),
-    };
+    let rest = coupling.law.rest().map_or_else(String::new, |rest| format!(", rest: {rest}"));
     // A name that was given begins with an underscore.
     let name = coupling.name.strip_prefix('_').map_or_else(String::new, |name| format!(", name: {name}"));
+    if let Some(Between { frames, points, .. }) = coupling.law.between() {
+        let point = |k: usize| {
+            let [x, y, z] = points[k];
+            format!("{{frame: {}, point: [{x}, {y}, {z}]}}", frames[k].map_or(0, |frame| frame + 1))
+        };
+        return format!("{{between: [{}, {}]{rest}{name}}}", point(0), point(1));
+    }
     format!("{{joints: {{{}}}{rest}{name}}}", joints.join(", "))
 }
 

@@ -122,6 +122,13 @@ fn check_couplings(robot: &Robot, n: usize) -> Result<(), FileError> {
         if matches!(c.law, CouplingLaw::SpringAt(rest) if rest.is_nan() || rest.abs() > bounds::WIDEST) {
             return wrong("law", "its position at rest is not finite, or no robot has it");
         }
+        if let CouplingLaw::Between(between) = c.law {
+            let lengths = between.points.iter().flatten().chain(&between.rest);
+            let in_table = between.frames.iter().flatten().all(|&frame| frame < robot.frames.len());
+            if !in_table || lengths.into_iter().any(|x| x.is_nan() || x.abs() > bounds::LONGEST) {
+                return wrong("law", "it names a frame that is not there, or a length that no robot has");
+            }
+        }
     }
     Ok(())
 }

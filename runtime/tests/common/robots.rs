@@ -78,6 +78,17 @@ pub fn planar() -> SimulatedRobot {
     SimulatedRobot::of(PLANAR)
 }
 
+/// The planar arm, its table with another line.
+pub fn planar_that_knows(line: &str) -> SimulatedRobot {
+    planar_with(line, "")
+}
+
+/// The planar arm, its table with more lines, and more nominal parameters.
+pub fn planar_with(lines: &str, parameters: &str) -> SimulatedRobot {
+    let table = PLANAR.replace("limits:", &format!("{lines}\nlimits:"));
+    SimulatedRobot::of(&table.replace("parameters: {", &format!("parameters: {{{parameters}")))
+}
+
 /// The arm with a slide.
 pub fn scara() -> SimulatedRobot {
     SimulatedRobot::of(SCARA)

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use dynid_runtime::effects::EffectTerm;
-use dynid_runtime::model::{Coupling, CouplingLaw, JointIndex, ParameterKind, Robot, StandardParameter};
+use dynid_runtime::model::{Coupling, JointIndex, ParameterKind, Robot, StandardParameter};
 use dynid_runtime::report::significant;
 use serde::Serialize;
 
@@ -102,7 +102,8 @@ pub(super) fn tell(fitted: &Fitted, to: Target, what: &str, out: &Path) -> Resul
                 .map(|k| Written {
                     name: &robot.standard[k].name,
                     value: fitted.standard[k],
-                    unit: robot.standard[k].kind.unit(robot.frames[robot.standard[k].frame].kind),
+                    unit: robot.standard[k]
+                        .unit(robot.frames[robot.standard[k].frame].kind, &robot.couplings),
                     prior: fitted.prior[k],
                     from_data: near.map(|(_, bodies)| bodies.near.from_data[k]),
                 })
@@ -134,12 +135,18 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
         let value = fitted.standard[k];
         let formula = match p.coupling.and_then(|c| robot.couplings.get(c)) {
             // A fixed tendon, where it gives no power.
-            Some(_) if to == Target::Mjcf && (value >= 0.0 || p.kind == ParameterKind::KR) => None,
+            Some(coupling)
+                if to == Target::Mjcf
+                    && coupling.law.between().is_none()
+                    && (value >= 0.0 || p.kind == ParameterKind::KR) =>
+            {
+                None
+            }
             Some(coupling) => of_coupling(robot, p, coupling, value),
             None => formula(robot, p.kind, p.frame, value, to),
         };
         let Some(formula) = formula else { continue };
-        let unit = p.kind.unit(robot.frames[p.frame].kind).to_owned();
+        let unit = p.unit(robot.frames[p.frame].kind, &robot.couplings).to_owned();
         let joints = match p.coupling {
             Some(_) => robot.acts_on(p).iter().map(|t| robot.joint_number(JointIndex(t.0)).0).collect(),
             None => vec![p.frame + 1],
@@ -191,10 +198,10 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
 /// The formula of a parameter of friction between links or of a spring; `None` where there is nothing.
 fn of_coupling(robot: &Robot, p: &StandardParameter, coupling: &Coupling, value: f64) -> Option<String> {
     let s = coupling.combination(|joint| robot.joint_number(JointIndex(joint)).0);
-    let rest = match coupling.law {
-        CouplingLaw::SpringAt(rest) if rest < 0.0 => format!(" + {}", -rest),
-        CouplingLaw::SpringAt(rest) => format!(" - {rest}"),
-        _ => String::new(),
+    let rest = match coupling.law.rest() {
+        Some(rest) if rest < 0.0 => format!(" + {}", -rest),
+        Some(rest) => format!(" - {rest}"),
+        None => String::new(),
     };
     let law = match p.kind {
         ParameterKind::Fvc => "Fvc*ds".to_owned(),
@@ -203,7 +210,8 @@ fn of_coupling(robot: &Robot, p: &StandardParameter, coupling: &Coupling, value:
         ParameterKind::K => format!("K*(s{rest})"),
         _ => "-KR".to_owned(),
     };
-    (value != 0.0).then(|| format!("{law} on s = {s}: on each joint times its coefficient"))
+    let share = if coupling.law.between().is_some() { "ds/dq" } else { "its coefficient" };
+    (value != 0.0).then(|| format!("{law} on s = {s}: on each joint times {share}"))
 }
 
 /// The formula of a parameter that the format cannot hold; `None` where it can, or where there is nothing.

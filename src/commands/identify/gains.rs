@@ -100,7 +100,7 @@ fn words(recordings: &[&Observed; 2], found: &DriveGains, known: &KnownPayload) 
     match &found.payload {
         Some(body) => text.push_str(&format!("\n\n{}", payload_table(body, robot.flange().map_or(0, |k| k + 1)))),
         None => text.push_str(
-            "\n\nratios of the gains only: their scale needs the mass of the payload (`mass: ..` in the file of --payload)",
+            "\n\nratios of the gains only: their scale needs the mass of the payload (`mass: ..` in the file of --payload), or values that the robot's table knows",
         ),
     }
     if let Some(joints) = coupled(recordings, robot) {

@@ -51,7 +51,7 @@ impl Felt {
             let rows: Vec<usize> = rows.filter(inside).collect();
             let sigma = noise.sigma(joint, rows.len()).filter(|_| !rows.is_empty())?;
             let mean = rows.iter().map(|&r| around.residual[r]).sum::<f64>() / rows.len() as f64;
-            let y = rows.iter().map(|&r| design.y[r]).sum::<f64>() / rows.len() as f64;
+            let y = rows.iter().map(|&r| design.torque(r)).sum::<f64>() / rows.len() as f64;
             Some((joint, rows, JointRow { joint, residual: mean, y, sigma: sigma.max(1e-12) }))
         };
         Self { motion, places, joints: (0..design.joints).filter_map(of_joint).collect() }
@@ -92,7 +92,7 @@ impl Felt {
                 all += Squares {
                     before: weight * residual[i].powi(2),
                     after: weight * (residual[i] - mean_beside(&residual, i)).powi(2),
-                    torque: weight * around.design.y[r].powi(2),
+                    torque: weight * around.design.torque(r).powi(2),
                 };
             }
         }

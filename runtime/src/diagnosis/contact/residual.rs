@@ -127,7 +127,7 @@ impl RobustResidual {
             let range = design.of_joint(j);
             let mut absolute: Vec<f64> = self.residual[range.clone()].iter().map(|x| x.abs()).collect();
             absolute.sort_by(f64::total_cmp);
-            let largest = design.y[range].iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let largest = range.map(|r| design.torque(r).abs()).fold(0.0_f64, f64::max);
             let mad = SIGMA_PER_MAD * absolute.get(absolute.len() / 2).copied().unwrap_or(1.0);
             self.sigma[j] = mad.max(LEAST_ROBUST_SIGMA * largest).max(LEAST_SIGMA);
         }

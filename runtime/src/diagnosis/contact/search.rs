@@ -190,7 +190,7 @@ fn instants(
             let time = s.time(at.centre);
             if at.signal == signal && time >= window[0] && time <= window[1] {
                 let sigma = robust.sigma[joint];
-                let row = JointRow { joint, residual: robust.residual[r], y: design.y[r], sigma };
+                let row = JointRow { joint, residual: robust.residual[r], y: design.torque(r), sigma };
                 instants.entry(at.centre).or_default().push(row);
             }
         }

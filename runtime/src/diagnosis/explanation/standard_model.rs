@@ -38,7 +38,7 @@ impl StandardModelFit {
             estimated: estimated(slow),
             residual_slow: slow.residual(),
             held_slow: slow.held_out(model.change)?,
-            fitted_fast: fast.design.y.iter().zip(&residual).map(|(y, r)| y - r).collect(),
+            fitted_fast: residual.iter().enumerate().map(|(row, r)| fast.design.torque(row) - r).collect(),
             held_with_windows: HeldOutSquares::of(aligned, &sigma, model.change)?.errors(),
         })
     }
@@ -51,7 +51,7 @@ pub(in crate::diagnosis) fn in_sample(regression: &Regression) -> Errors {
     for j in 0..design.joints {
         for g in design.target_segments() {
             left[j] += regression.fit.squares(design, j, g);
-            whole[j] += design.gram(j, g).y_squares();
+            whole[j] += design.torque_squares(j, g);
         }
     }
     Errors::of_squares(&left, &whole)

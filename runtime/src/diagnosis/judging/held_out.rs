@@ -43,7 +43,7 @@ impl HeldOutSquares {
         for j in 0..design.joints {
             let squares = fit.squares(design, j, segment);
             // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
-            let torque = design.gram(j, segment).y_squares();
+            let torque = design.torque_squares(j, segment);
             self.left[j] += squares;
             self.whole[j] += torque;
             left += squares;

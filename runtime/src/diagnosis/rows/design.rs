@@ -43,7 +43,12 @@ pub(in crate::diagnosis) struct Design {
     pub columns: Vec<Vec<f64>>,
     /// Columns of curves, whose amplitudes are kept from what no motion determines.
     pub shrunk: Vec<Range<usize>>,
+    /// Torques, less those of parameters whose values are known.
     pub y: Vec<f64>,
+    /// Base parameters whose values are known beforehand, ascending: their columns are zero, and a fit has these values.
+    pub known: Vec<(usize, f64)>,
+    /// Torques of these, in the order of the rows; empty where nothing is known.
+    of_known: Vec<f64>,
     /// What is known of columns beforehand.
     pub prior: Option<Arc<Prior>>,
     kernels: Vec<Vec<f64>>,
@@ -72,6 +77,8 @@ impl Design {
             columns: vec![Vec::new(); parameters],
             shrunk: Vec::new(),
             y: Vec::new(),
+            known: model.robot().fixed_base(),
+            of_known: Vec::new(),
             prior: None,
             kernels: signals.iter().map(kernel).collect(),
             step: selection.half,
@@ -148,7 +155,35 @@ impl Design {
                 }
             }
         }
+        self.take_out_known();
         self.refresh();
+    }
+
+    /// Takes the torques of known parameters from the torques, and their columns from the unknowns.
+    fn take_out_known(&mut self) {
+        if self.known.is_empty() {
+            return;
+        }
+        self.of_known = vec![0.0; self.rows.len()];
+        for &(k, value) in &self.known {
+            for (sum, x) in self.of_known.iter_mut().zip(&mut self.columns[k]) {
+                *sum += value * std::mem::take(x);
+            }
+        }
+        self.y.iter_mut().zip(&self.of_known).for_each(|(y, known)| *y -= known);
+    }
+
+    /// The whole torque of a row, that of known parameters with it: what errors are relative to.
+    pub fn torque(&self, row: usize) -> f64 {
+        self.y[row] + self.of_known.get(row).copied().unwrap_or(0.0)
+    }
+
+    /// Squares of the whole torques of a joint in one segment.
+    pub fn torque_squares(&self, joint: usize, segment: usize) -> f64 {
+        match self.of_known.is_empty() {
+            true => self.gram(joint, segment).y_squares(),
+            false => self.ranges[joint][segment].clone().map(|r| self.torque(r).powi(2)).sum(),
+        }
     }
 
     /// Whether motions are held out in stretches.
@@ -299,6 +334,8 @@ impl Design {
             columns,
             shrunk: Vec::new(),
             y,
+            known: Vec::new(),
+            of_known: Vec::new(),
             prior: None,
             kernels: vec![hann(1); signals],
             step: 0.02,
@@ -320,3 +357,7 @@ impl Design {
         design
     }
 }
+
+#[cfg(test)]
+#[path = "known_tests.rs"]
+mod known_tests;

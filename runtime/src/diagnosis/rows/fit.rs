@@ -45,6 +45,7 @@ impl Fit {
         let factor = Cholesky::new(scaled).ok_or(SingularDesign { columns: p })?;
         let mut fit = Self { chi: DVector::zeros(p), sigma: sigma.to_vec(), train, scale, factor };
         fit.chi = fit.solve(&v);
+        design.known.iter().for_each(|&(k, value)| fit.chi[k] = value);
         // A column that is not finite has no norm, and would pass as one that is zero.
         if fit.chi.iter().all(|x| x.is_finite()) { Ok(fit) } else { Err(SingularDesign { columns: p }) }
     }
@@ -76,7 +77,7 @@ impl Fit {
         let rows = design.of_joint(joint);
         let squares = self.squares_of_joint(design, joint);
         let count = rows.len().max(1) as f64;
-        let largest = design.y[rows].iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let largest = rows.map(|r| design.torque(r).abs()).fold(0.0_f64, f64::max);
         (squares / count).sqrt().max(LEAST_RELATIVE_SIGMA * largest).max(LEAST_SIGMA)
     }
 

@@ -34,6 +34,22 @@ impl Prior {
         self
     }
 
+    /// What it says of the other columns where the values of these are known.
+    pub fn given(self, known: &[(usize, f64)]) -> Self {
+        let value = |k: usize| known.iter().find(|(column, _)| *column == k).map(|(_, value)| *value);
+        let kept: Vec<usize> =
+            (0..self.columns.len()).filter(|&i| value(self.columns[i]).is_none()).collect();
+        if kept.len() == self.columns.len() {
+            return self;
+        }
+        let values = DVector::from_fn(self.columns.len(), |i, _| value(self.columns[i]).unwrap_or(0.0));
+        Self {
+            right: (&self.right - &self.information * values).select_rows(&kept),
+            information: self.information.select_rows(&kept).select_columns(&kept),
+            columns: kept.iter().map(|&i| self.columns[i]).collect(),
+        }
+    }
+
     /// How many parameters it stands for in a fit with this covariance, all information together: the part of each unknown
     /// that it knows, summed. What is left of their number are the parameters that the rows have to tell (effective number
     /// of parameters; Bishop, Pattern Recognition and Machine Learning, 3.5.3).
@@ -84,5 +100,18 @@ mod tests {
         assert!(parameters(1e9) < 1e-6);
         // Eigenvalues 1/4 and 1/9 beside 1, were they not correlated.
         assert!((0.2..0.4).contains(&parameters(1.0)), "{}", parameters(1.0));
+    }
+
+    #[test]
+    fn beside_a_known_value_it_is_the_conditional_distribution() {
+        let covariance = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 9.0]);
+        let prior = Prior::of_covariance(&covariance, vec![1.0, 2.0], vec![0, 2]).expect("it is positive");
+        let left = prior.clone().given(&[(2, 5.0)]);
+        assert_eq!(left.columns, [0]);
+        // Mean 1 + 1/9 (5 - 2), variance 4 - 1/9.
+        approx::assert_relative_eq!(left.information[(0, 0)], 1.0 / (4.0 - 1.0 / 9.0), max_relative = 1e-12);
+        let mean = left.right[0] / left.information[(0, 0)];
+        approx::assert_relative_eq!(mean, 4.0 / 3.0, max_relative = 1e-12);
+        assert_eq!(prior.clone().given(&[(1, 7.0)]), prior);
     }
 }

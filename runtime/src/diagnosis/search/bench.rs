@@ -79,7 +79,8 @@ impl Bench {
         let segments = design.target_segments().into_iter();
         let rows: Vec<usize> = segments.flat_map(|g| design.ranges[j][g].clone()).collect();
         let size = if self.units.change() {
-            self.since_baseline(&rows, j, [&design.y, change, left])
+            let torque: Vec<f64> = (0..design.rows.len()).map(|r| design.torque(r)).collect();
+            self.since_baseline(&rows, j, [&torque, change, left])
         } else {
             where_it_acts(&rows, change, left)
         };

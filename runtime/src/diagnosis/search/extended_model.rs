@@ -41,7 +41,7 @@ impl<'a> ExtendedModel<'a> {
             let nuisances = always_there(&context, &design, change);
             if let Some(reference) = &context.reference {
                 let first = design.parameters + standing_from(design.joints);
-                design.prior = reference.prior_with_laws(first).map(Arc::new);
+                design.prior = reference.prior_with_laws(first, &design.known).map(Arc::new);
             }
             Regression::new(design, nuisances)
         };

@@ -48,9 +48,10 @@ pub enum DriveGain {
 pub struct DriveGains {
     /// One for each joint.
     pub gains: Vec<DriveGain>,
-    /// Whether the payload's mass gave the scale; else gains, base parameters and payload are known but for a factor.
+    /// Whether what is known gave the scale, the payload's mass or values of the robot's table; else gains, base parameters and
+    /// payload are known but for a factor.
     pub absolute: bool,
-    /// Base parameters of the robot without payload.
+    /// Base parameters of the robot without payload; with a scale, known ones have the values of the table.
     pub base: Vec<f64>,
     /// The payload; only with a scale.
     pub payload: Option<PayloadBody>,
@@ -87,7 +88,8 @@ pub enum DriveGainsError {
 ///
 /// The rows `diag(i) g - W chi = 0` without and `diag(i) g - W chi - W_L p - W_Lm m = 0` with a payload, i the recorded
 /// torques in whatever unit, m what is known of it, are homogeneous in gains g, base parameters chi, unknowns p of the
-/// payload and the factor of m, which is one. Only the torques have errors. Each joint is weighted by its error, at first that
+/// payload and the factor of m, which is one. Base parameters whose values the robot's table has count as m in both
+/// recordings; without a mass of the payload they give the scale where they determine a gain, else they are not used. Only the torques have errors. Each joint is weighted by its error, at first that
 /// of a fit of the joint alone, then that of this solution, over its gain; the weighted solution is that of maximum likelihood.
 /// Everything is done on the orthogonal factors of the observations.
 ///
@@ -107,14 +109,26 @@ pub fn drive_gains(
     if !fits(unloaded) || !fits(loaded) {
         return Err(DriveGainsError::Shape);
     }
-    let both = Both { observations: [unloaded, loaded], added: base_of_body(robot), split: known.split()? };
-    let absolute = known.mass.is_some();
+    let (added, split, fixed) = (base_of_body(robot), known.split()?, robot.fixed_base());
+    let both = Both { observations: [unloaded, loaded], added, split, fixed };
+    let in_table = both.fixed.iter().any(|(_, value)| *value != 0.0);
+    match known.mass {
+        None if in_table => scaled(robot, &both, true).or_else(|_| scaled(robot, &both, false)),
+        mass => scaled(robot, &both, mass.is_some()),
+    }
+}
+
+/// Gains with a scale, or their ratios.
+fn scaled(robot: &Robot, both: &Both<'_>, absolute: bool) -> Result<DriveGains, DriveGainsError> {
+    let ratios = (!absolute).then(|| both.of_ratios());
+    let both = ratios.as_ref().unwrap_or(both);
+    let [unloaded, loaded] = both.observations;
     let has_rows = |j: &usize| {
         let rows = |o: &Observation| o.groups.iter().any(|g| g.equation == *j && g.factor.rows() > 0);
         rows(unloaded) && rows(loaded)
     };
     let moving: Vec<usize> = (0..robot.joints()).filter(has_rows).collect();
-    let search = Search { both: &both, joints: robot.joints(), absolute };
+    let search = Search { both, joints: robot.joints(), absolute };
     if absolute && !moving.is_empty() && !search.shows_what_is_known(&moving) {
         return Err(DriveGainsError::NoScale);
     }
@@ -219,9 +233,10 @@ impl Search<'_> {
         for (&j, g) in joints.iter().zip(&x[base + free + 1..]) {
             gains[j] = *g;
         }
+        let of_base = |l: usize| self.both.known_value(l).map_or(x[l], |value| value * x[base + free]);
         Values {
             gains,
-            base: DVector::from_column_slice(&x[..base]),
+            base: DVector::from_fn(base, |l, _| of_base(l)),
             free: DVector::from_column_slice(&x[base..base + free]),
         }
     }

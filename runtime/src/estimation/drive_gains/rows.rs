@@ -24,6 +24,8 @@ pub(super) struct Both<'a> {
     pub added: DMatrix<f64>,
     /// What is known of the payload.
     pub split: Split,
+    /// Base parameters whose values are known, ascending.
+    pub fixed: Vec<(usize, f64)>,
 }
 
 impl<'a> Both<'a> {
@@ -46,8 +48,19 @@ impl<'a> Both<'a> {
         [self.added.nrows(), self.split.free.ncols()]
     }
 
+    /// The same where nothing gives a scale: no value is known then.
+    pub fn of_ratios(&self) -> Both<'a> {
+        Both { added: self.added.clone(), split: self.split.clone(), fixed: Vec::new(), ..*self }
+    }
+
+    /// The value of a base parameter, where it is known.
+    pub fn known_value(&self, base: usize) -> Option<f64> {
+        self.fixed.iter().find(|(k, _)| *k == base).map(|(_, value)| *value)
+    }
+
     /// The homogeneous rows of these joints, `[-W -W_L -W_Lm diag(i)]`, those of a joint over its error and its gain so far.
-    /// Columns: base parameters, free numbers of the payload, what is known of it, the joints' torques.
+    /// Columns: base parameters (zeros for those that are known), free numbers of the payload, what is known of both, the
+    /// joints' torques.
     pub fn homogeneous(&self, joints: &[usize], sigma: &[f64], gains: &[f64]) -> Factor {
         let [base, free] = self.sizes();
         let exact = base + free + 1;
@@ -61,11 +74,14 @@ impl<'a> Both<'a> {
             let k = group.columns.len();
             let mut to = DMatrix::zeros(k + 1, exact + joints.len() + 1);
             for (c, &l) in group.columns.iter().enumerate() {
-                to[(c, l)] = -1.0;
+                match self.known_value(l) {
+                    None => to[(c, l)] = -1.0,
+                    Some(value) => to[(c, base + free)] = -value,
+                }
                 if loaded {
                     let added = self.added.row(l);
                     to.view_mut((c, base), (1, free)).copy_from(&-(added * &self.split.free));
-                    to[(c, base + free)] = -(added * &self.split.known)[0];
+                    to[(c, base + free)] -= (added * &self.split.known)[0];
                 }
             }
             to[(k, exact + place)] = 1.0;
@@ -77,7 +93,7 @@ impl<'a> Both<'a> {
 
     /// The recorded torques as `W x / g` about a solution, to first order: an observation whose unknowns are the relative
     /// changes of the gains of `joints`, the base parameters and the free numbers of the payload. Its torques are those
-    /// recorded, less what the known part of the payload makes; only they have errors.
+    /// recorded, less what is known of robot and payload makes; only they have errors.
     pub fn linearised(&self, joints: &[usize], fixed: Option<usize>, values: &Values) -> Observation {
         let [base, free] = self.sizes();
         let first = joints.len();
@@ -92,7 +108,7 @@ impl<'a> Both<'a> {
             let own = joint.filter(|_| fixed != Some(group.equation));
             let columns: Vec<usize> = own
                 .into_iter()
-                .chain(group.columns.iter().map(|l| first + l))
+                .chain(self.unknown_of(group).map(|(_, l)| first + l))
                 .chain((0..free).filter(|_| is_loaded).map(|f| first + base + f))
                 .collect();
             let change = self.change(group, is_loaded, own.is_some(), values);
@@ -126,24 +142,33 @@ impl<'a> Both<'a> {
         }
     }
 
+    /// Base parameters of a group that are not known, with the places of their columns.
+    fn unknown_of(&self, group: &'a EquationFactor) -> impl Iterator<Item = (usize, usize)> {
+        group.columns.iter().copied().enumerate().filter(|&(_, l)| self.known_value(l).is_none())
+    }
+
     /// From the columns of a group, the torque last, to those of its linearisation.
-    fn change(&self, group: &EquationFactor, loaded: bool, own: bool, values: &Values) -> DMatrix<f64> {
+    fn change(&self, group: &'a EquationFactor, loaded: bool, own: bool, values: &Values) -> DMatrix<f64> {
         let k = group.columns.len();
         let free = if loaded { self.split.free.ncols() } else { 0 };
         let gain = values.gains[group.equation];
         let first = usize::from(own);
-        let mut to = DMatrix::zeros(k + 1, first + k + free + 1);
+        let unknown = self.unknown_of(group).count();
+        let mut to = DMatrix::zeros(k + 1, first + unknown + free + 1);
         let last = to.ncols() - 1;
+        for (place, (c, _)) in self.unknown_of(group).enumerate() {
+            to[(c, first + place)] = 1.0 / gain;
+        }
         for (c, &l) in group.columns.iter().enumerate() {
             let mut x = values.base[l];
-            to[(c, first + c)] = 1.0 / gain;
+            to[(c, last)] = -self.known_value(l).unwrap_or(0.0) / gain;
             if loaded {
                 let added = self.added.row(l);
                 let of_free = added * &self.split.free;
                 let of_known = (added * &self.split.known)[0];
                 x += (&of_free * &values.free)[0] + of_known;
-                to.view_mut((c, first + k), (1, free)).copy_from(&(of_free / gain));
-                to[(c, last)] = -of_known / gain;
+                to.view_mut((c, first + unknown), (1, free)).copy_from(&(of_free / gain));
+                to[(c, last)] -= of_known / gain;
             }
             if own {
                 to[(c, 0)] = -x / gain;

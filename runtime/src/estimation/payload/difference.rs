@@ -1,5 +1,7 @@
 //! A payload by itself: what a recording with it says beyond a model without it.
 
+use std::borrow::Cow;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::known::base_of_body;
@@ -24,7 +26,8 @@ const REACH: f64 = 2.0;
 pub struct ReferenceModel {
     /// Base parameters.
     pub chi: Vec<f64>,
-    /// Their covariance; a row and column of zeros is of one that the model does not determine.
+    /// Their covariance; a row and column of zeros is of one that the model does not determine, or whose value the robot's
+    /// table has.
     pub covariance: DMatrix<f64>,
 }
 
@@ -67,7 +70,8 @@ pub enum PayloadError {
 /// Base parameters of the robot as it was, chi, are known with their covariance; the ten numbers p of the payload add B p to
 /// them (`base_of_body`). The weighted rows and the model are combined as information, so that neither need determine
 /// everything, and chi is eliminated: J p = r with J = BT P (P + A)^-1 A B, P the information of the model and A that of the
-/// rows. Standard deviations are those of noise that lasts, where the observation kept its rows. What is then told is the
+/// rows. Values that the robot's table has are known for certain: they are not eliminated, and of these only what the payload
+/// adds is looked for. Standard deviations are those of noise that lasts, where the observation kept its rows. What is then told is the
 /// nearest body that can be ([`nearest_body`]).
 ///
 /// # Errors
@@ -82,13 +86,13 @@ pub fn payload_of(
     if !fits || reference.chi.len() != k || reference.covariance.shape() != (k, k) {
         return Err(PayloadError::Shape);
     }
-    let rows = Information::of(loaded).ok_or(PayloadError::Nothing)?;
-    let (prior, known) = inverse_of_known(&reference.covariance).ok_or(PayloadError::Covariance)?;
     let added = base_of_body(robot);
-    let chi = DVector::from_column_slice(&reference.chi);
-    // What no one determines has no say: it is zero in both.
-    let inverse = pseudo_inverse(&(&prior + &rows.information), f64::EPSILON * k as f64).inverse;
-    let to_payload = added.transpose() * &prior * &inverse;
+    let rows = Information::of(&without_known(loaded, &added)).ok_or(PayloadError::Nothing)?;
+    let (prior, known) = inverse_of_known(&reference.covariance).ok_or(PayloadError::Covariance)?;
+    let mut chi = DVector::from_column_slice(&reference.chi);
+    robot.fixed_base().into_iter().for_each(|(l, value)| chi[l] = value);
+    let Elimination { inverse, scores } = Elimination::of(robot, &prior, &rows.information);
+    let to_payload = added.transpose() * scores;
     let information = &to_payload * &rows.information * &added;
     let information = (&information + information.transpose()) * 0.5;
     let right = &to_payload * (&rows.right - &rows.information * &chi);
@@ -113,6 +117,51 @@ pub fn payload_of(
         determined: found.rank,
         chi: (with_payload + inverse * left).as_slice().to_vec(),
     })
+}
+
+/// The equations less what is known in them, but for parameters that a payload adds to.
+fn without_known<'a>(loaded: &'a Observation, added: &DMatrix<f64>) -> Cow<'a, Observation> {
+    let stays = |l: usize| added.row(l).iter().all(|x| *x == 0.0);
+    let fixed: Vec<(usize, f64)> = loaded.fixed.iter().copied().filter(|&(l, _)| stays(l)).collect();
+    if fixed.is_empty() {
+        return Cow::Borrowed(loaded);
+    }
+    let known = Observation { fixed, ..loaded.clone() };
+    known.without_fixed().map_or(Cow::Owned(known), Cow::Owned)
+}
+
+/// Base parameters taken out of the equations, all but those whose values the robot's table has.
+struct Elimination {
+    /// From the scores of all base parameters to changes of those that are not known.
+    inverse: DMatrix<f64>,
+    /// From the scores of the rows to those of what is added to each base parameter, all that is not known being free.
+    scores: DMatrix<f64>,
+}
+
+impl Elimination {
+    /// `prior` and `rows`: information on all base parameters.
+    fn of(robot: &Robot, prior: &DMatrix<f64>, rows: &DMatrix<f64>) -> Self {
+        let k = rows.nrows();
+        let fixed: Vec<usize> = robot.fixed_base().into_iter().map(|(l, _)| l).collect();
+        let free: Vec<usize> = (0..k).filter(|l| !fixed.contains(l)).collect();
+        let of_free = |all: &DMatrix<f64>| all.select_rows(&free).select_columns(&free);
+        // What no one determines has no say: it is zero in both.
+        let inverse = pseudo_inverse(&(of_free(prior) + of_free(rows)), f64::EPSILON * k as f64).inverse;
+        let own = of_free(prior) * &inverse;
+        let beside = rows.select_rows(&fixed).select_columns(&free) * &inverse;
+        let mut all = Self { inverse: DMatrix::zeros(k, k), scores: DMatrix::zeros(k, k) };
+        for (c, &l) in free.iter().enumerate() {
+            for (r, &m) in free.iter().enumerate() {
+                all.inverse[(m, l)] = inverse[(r, c)];
+                all.scores[(m, l)] = own[(r, c)];
+            }
+            for (r, &m) in fixed.iter().enumerate() {
+                all.scores[(m, l)] = -beside[(r, c)];
+            }
+        }
+        fixed.iter().for_each(|&l| all.scores[(l, l)] = 1.0);
+        all
+    }
 }
 
 /// How far a payload can be from the last frame, m; nothing is known where the table has no lengths.

@@ -1,8 +1,9 @@
 //! Columns of rotor inertias, friction, offsets and springs, with any transmission matrix: (3), (9), (25) and (26).
 //! Equation numbers are those of Gautier and Briot.
 
+use super::distance::Distance;
 use super::error::RecursiveModelError;
-use crate::model::{CouplingLaw, Number, ParameterKind, Robot, StandardParameter};
+use crate::model::{Between, Number, ParameterKind, Robot};
 use nalgebra::DMatrix;
 
 /// What an entry is a function of.
@@ -18,6 +19,16 @@ enum Law {
     Stretch(f64),
     /// 1.
     Constant,
+    /// The slope of the distance of two points times what it is longer than at rest; without a rest the slope alone, which
+    /// is that of KR but for its sign.
+    Distance(Option<f64>),
+}
+
+impl Law {
+    /// Of a parameter of a spring between two points.
+    fn of_distance(kind: ParameterKind, between: &Between) -> Law {
+        Law::Distance((kind == ParameterKind::K).then(|| between.rest.unwrap_or(0.0)))
+    }
 }
 
 /// One entry of IDM that does not come from a rigid body: scale * law(sum of coefficient * signal).
@@ -30,6 +41,10 @@ pub(super) struct DriveEntry {
     law: Law,
     scale: f64,
     form: Vec<(usize, f64)>,
+    /// What a spring between two points acts on.
+    distance: Option<Distance>,
+    /// Whether it holds the energy of its column, where that is no sum over rows.
+    holds_energy: bool,
     /// Its torque has a potential that the energy row holds, and belongs to the bias of M ddq + N.
     pub is_spring: bool,
 }
@@ -45,6 +60,11 @@ impl DriveEntry {
             Law::Direction => scale * self.form_of(dq).sign(),
             Law::Stretch(rest) => scale * (self.form_of(q) - T::constant(rest)),
             Law::Constant => scale,
+            Law::Distance(rest) => {
+                let Some(distance) = &self.distance else { return T::constant(0.0) };
+                let (square, slope) = distance.square_and_slope(q, self.row);
+                scale * slope * level(square, rest)
+            }
         }
     }
 
@@ -57,6 +77,12 @@ impl DriveEntry {
             Law::Acceleration => dq[self.row] * scale * self.form_of(dq),
             Law::Stretch(rest) => q[self.row] * scale * (self.form_of(q) - T::constant(2.0 * rest)),
             Law::Constant if self.is_spring => q[self.row] * scale * T::constant(2.0),
+            Law::Distance(rest) if self.holds_energy => {
+                let Some(distance) = &self.distance else { return T::constant(0.0) };
+                let (square, _) = distance.square_and_slope(q, self.row);
+                let twice_length = T::constant(2.0) * square * square.inverse_root();
+                scale * rest.map_or(twice_length, |rest| square - T::constant(rest) * twice_length)
+            }
             _ => T::constant(0.0),
         }
     }
@@ -83,13 +109,34 @@ pub(super) fn drive_entries(robot: &Robot) -> Result<Vec<DriveEntry>, RecursiveM
     let gear = checked_gear(robot)?;
     let inertias = rotor_inertia_matrices(&gear);
     let joint_of_frame = robot.joint_of_frame();
-    let mut entries = Vec::new();
+    let mut entries: Vec<DriveEntry> = Vec::new();
     for (column, base) in robot.base.iter().enumerate() {
         let standard = &robot.standard[base.standard];
         let Some(j) = joint_of_frame[standard.frame] else { continue };
         let is_spring = standard.kind.is_spring();
-        let mut push =
-            |row, law, scale, form| entries.push(DriveEntry { row, column, law, scale, form, is_spring });
+        let law = standard.coupling.and_then(|k| robot.couplings.get(k)).map(|c| c.law);
+        let plain = |row, law, scale, form| DriveEntry {
+            row,
+            column,
+            law,
+            scale,
+            form,
+            distance: None,
+            holds_energy: false,
+            is_spring,
+        };
+        if let Some(between) = law.and_then(|law| law.between()) {
+            let of_row = |row, holds_energy| DriveEntry {
+                distance: Some(Distance::new(robot, &between)),
+                holds_energy,
+                ..plain(row, Law::of_distance(standard.kind, &between), sign(standard.kind), Vec::new())
+            };
+            let rows = robot.acts_on(standard).into_iter().enumerate();
+            entries.extend(rows.map(|(place, (row, _))| of_row(row, place == 0)));
+            continue;
+        }
+        let rest = law.and_then(|law| law.rest()).unwrap_or(0.0);
+        let mut push = |row, law, scale, form| entries.push(plain(row, law, scale, form));
         match standard.kind {
             ParameterKind::Ia => {
                 for row in 0..n {
@@ -105,9 +152,7 @@ pub(super) fn drive_entries(robot: &Robot) -> Result<Vec<DriveEntry>, RecursiveM
                 let form = robot.acts_on(standard);
                 for &(row, share) in &form {
                     match kind {
-                        ParameterKind::K => {
-                            push(row, Law::Stretch(rest(robot, standard)), share, form.clone())
-                        }
+                        ParameterKind::K => push(row, Law::Stretch(rest), share, form.clone()),
                         ParameterKind::KR => push(row, Law::Constant, -share, Vec::new()),
                         _ if kind.is_viscous() => push(row, Law::Speed, share, form.clone()),
                         _ => push(row, Law::Direction, share, form.clone()),
@@ -119,12 +164,16 @@ pub(super) fn drive_entries(robot: &Robot) -> Result<Vec<DriveEntry>, RecursiveM
     Ok(entries)
 }
 
-/// Where a spring is at rest, as far as the table knows; 0 where it is a parameter.
-fn rest(robot: &Robot, parameter: &StandardParameter) -> f64 {
-    match parameter.coupling.and_then(|k| robot.couplings.get(k)).map(|c| c.law) {
-        Some(CouplingLaw::SpringAt(rest)) => rest,
-        _ => 0.0,
-    }
+/// The pull of a spring per unit of K, and against it of KR.
+fn sign(kind: ParameterKind) -> f64 {
+    if kind == ParameterKind::KR { -1.0 } else { 1.0 }
+}
+
+/// Torque over l dl/dq of a distance l, per unit of K with a length at rest, or of -KR.
+#[inline(always)]
+fn level<T: Number>(square: T, rest: Option<f64>) -> T {
+    let inverse = square.inverse_root();
+    rest.map_or(inverse, |rest| T::constant(1.0) - T::constant(rest) * inverse)
 }
 
 fn checked_gear(robot: &Robot) -> Result<DMatrix<f64>, RecursiveModelError> {

@@ -2,6 +2,7 @@
 
 mod columns;
 mod composite;
+mod distance;
 mod drive;
 mod error;
 mod group;

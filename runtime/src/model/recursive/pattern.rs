@@ -3,7 +3,7 @@
 use super::columns::standard_idm;
 use super::error::{MAX_FRAMES, RecursiveModelError};
 use super::kinematics::Link;
-use crate::model::{CouplingLaw, Robot};
+use crate::model::Robot;
 use dynid_description::MAX_TERMS;
 
 /// Entries of one (joint, frame) block that are wanted: (place among the ten columns, entry of the pattern).
@@ -28,11 +28,12 @@ pub(super) fn check(robot: &Robot) -> Result<(), RecursiveModelError> {
     }
     for coupling in robot.couplings.iter() {
         let known = |&(joint, c): &(usize, f64)| joint < robot.joints() && c.is_finite();
-        let rest = match coupling.law {
-            CouplingLaw::SpringAt(rest) => rest,
-            _ => 0.0,
-        };
-        if coupling.terms.is_empty() || !coupling.terms.iter().all(known) || !rest.is_finite() {
+        let rest = coupling.law.rest().unwrap_or(0.0);
+        let placed = coupling.law.between().is_none_or(|between| {
+            let in_table = between.frames.iter().flatten().all(|&frame| frame < found);
+            in_table && between.points.iter().flatten().all(|x| x.is_finite())
+        });
+        if coupling.terms.is_empty() || !coupling.terms.iter().all(known) || !rest.is_finite() || !placed {
             return Err(RecursiveModelError::Coupling { name: coupling.name.to_string() });
         }
     }

@@ -55,7 +55,7 @@ pub fn excite(
         MotionKind::PointToPoint { points, .. } => 24 * (points - 1),
     };
     let observer = Observer::new(model, chi, settings.identification, samples.clamp(60, 400));
-    let size = robot.base.len();
+    let size = observer.unknowns();
     let mut known = DMatrix::zeros(size, size);
     let mut known_before = DMatrix::zeros(size, size);
     let mut plan = ExcitationPlan {

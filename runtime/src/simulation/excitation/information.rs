@@ -23,6 +23,8 @@ pub struct Observer<'m> {
     pub identification: Identification,
     /// A priori size of each base parameter.
     pub scale: Vec<f64>,
+    /// Place of each base parameter among the unknowns; none where its value is known beforehand.
+    place: Vec<Option<usize>>,
     /// Noise of each joint's torque, 1 sigma.
     pub noise: Vec<f64>,
     chi: Option<Vec<f64>>,
@@ -51,6 +53,7 @@ impl<'m> Observer<'m> {
             model,
             identification,
             scale: parameter_sizes(robot, chi),
+            place: places(robot),
             noise,
             chi: chi.map(<[f64]>::to_vec),
             samples,
@@ -59,7 +62,12 @@ impl<'m> Observer<'m> {
         }
     }
 
-    /// Adds the information of a motion to `information` (nb x nb, lower triangle). Returns the largest share of
+    /// Number of unknowns: base parameters but for those whose values are known.
+    pub fn unknowns(&self) -> usize {
+        self.place.iter().flatten().count()
+    }
+
+    /// Adds the information of a motion to `information` (unknowns x unknowns, lower triangle). Returns the largest share of
     /// a torque limit that the sampled torques take; 0 where the parameters or the limits are not known.
     pub fn add(&mut self, motion: &dyn Reference, information: &mut DMatrix<f64>) -> f64 {
         self.sample(motion);
@@ -114,10 +122,12 @@ impl<'m> Observer<'m> {
             for a in entries.clone() {
                 let column_a = &self.columns[a * samples..][..samples];
                 let ca = pattern.columns[a];
+                let Some(row) = self.place[ca] else { continue };
                 for b in entries.start..=a {
                     let cb = pattern.columns[b];
+                    let Some(column) = self.place[cb] else { continue };
                     let product = dot(column_a, &self.columns[b * samples..][..samples]);
-                    information[(ca, cb)] += weight * self.scale[ca] * self.scale[cb] * product;
+                    information[(row, column)] += weight * self.scale[ca] * self.scale[cb] * product;
                 }
             }
         }
@@ -140,14 +150,16 @@ impl<'m> Observer<'m> {
         }
         for a in 0..self.scale.len() {
             let column_a = &self.columns[a * samples..][..samples];
+            let Some(row) = self.place[a] else { continue };
             for b in 0..=a {
+                let Some(column) = self.place[b] else { continue };
                 let product = dot(column_a, &self.columns[b * samples..][..samples]);
-                information[(a, b)] += self.scale[a] * self.scale[b] * product / variance;
+                information[(row, column)] += self.scale[a] * self.scale[b] * product / variance;
             }
         }
     }
 
-    /// Which parameter blocks of (21) the motion reaches: `true` for joint j where any column of its parameters
+    /// Which parameter blocks of (21) the motion reaches: `true` for joint j where any column of its unknown parameters
     /// is not zero. Fixed frames count to the joint that carries them.
     pub fn blocks(&mut self, motion: &dyn Reference) -> Vec<bool> {
         self.sample(motion);
@@ -163,7 +175,7 @@ impl<'m> Observer<'m> {
         };
         let largest = (0..robot.base.len()).map(size).fold(0.0, f64::max);
         let mut blocks = vec![false; robot.joints()];
-        for (k, parameter) in robot.base.iter().enumerate() {
+        for (k, parameter) in robot.base.iter().enumerate().filter(|(k, _)| self.place[*k].is_some()) {
             if let Some(j) = carriers[robot.standard[parameter.standard].frame] {
                 blocks[j] |= size(k) > 1e-12 * largest;
             }
@@ -239,6 +251,14 @@ fn carriers(robot: &Robot) -> Vec<Option<usize>> {
         carriers.push(carrier);
     }
     carriers
+}
+
+/// Place of each base parameter among those whose values are not known.
+fn places(robot: &Robot) -> Vec<Option<usize>> {
+    let known = robot.fixed_base();
+    let mut next = 0..;
+    let is_free = |k: usize| known.iter().all(|(known, _)| *known != k);
+    (0..robot.base.len()).map(|k| if is_free(k) { next.next() } else { None }).collect()
 }
 
 /// A priori size of each base parameter: its own value, but not less than 0.3 of the largest of its kind on the

@@ -226,3 +226,27 @@ fn a_robot_without_limits_and_settings_out_of_range_are_refused() {
         assert!(excite(&model, Some(&chi), &bad, &|_| {}).is_err(), "{bad:?}");
     }
 }
+
+#[test]
+fn what_is_known_is_no_part_of_what_a_motion_is_to_tell() {
+    let (arm, _) = limited_arm();
+    let robot = with_numeric_base(arm.robot());
+    let places: Vec<usize> =
+        (0..robot.base.len()).filter(|k| robot.base[*k].combination.len() == 1).step_by(3).collect();
+    let fixed: Vec<(usize, f64)> = places.iter().map(|&k| (robot.base[k].standard, 0.7)).collect();
+    let base: Vec<_> =
+        (0..robot.base.len()).filter(|k| !places.contains(k)).map(|k| robot.base[k].clone()).collect();
+    let known = RecursiveModel::new(Robot { fixed: fixed.into(), ..robot.clone() }).unwrap();
+    let less = RecursiveModel::new(Robot { base: base.into(), ..robot.clone() }).unwrap();
+    let free = RecursiveModel::new(robot).unwrap();
+    for (identification, sets) in [(Identification::Idim, 1), (Identification::Pim, 2)] {
+        for criterion in [Criterion::Determinant, Criterion::Condition] {
+            let settings = ExcitationSettings { criterion, ..settings(FOURIER, sets, identification) };
+            // Without sizes and torque limits nothing else tells the robots apart.
+            let [known, less, free] =
+                [&known, &less, &free].map(|model| excite(model, None, &settings, &|_| {}).unwrap());
+            assert_eq!(known, less);
+            assert!(known.condition_after.is_finite() && known.condition_after < free.condition_after);
+        }
+    }
+}
