@@ -66,6 +66,8 @@ pub struct Motion {
     pub outcome: Outcome,
     /// What to know about it, or why it is not used.
     pub message: Option<String>,
+    /// The name that the robot's table has.
+    pub table_name: Option<String>,
 }
 
 /// Reduces the recording at a path or an address: a row for each of its motions, at least one. Whatever is wrong with it
@@ -91,6 +93,7 @@ fn none(outcome: Outcome, message: String) -> Motion {
         relative_error: None,
         outcome,
         message,
+        table_name: None,
     }
 }
 
@@ -144,6 +147,7 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
             relative_error: found.relative_error,
             outcome: Outcome::Used,
             message: message.clone(),
+            table_name: Some(model.robot().name.to_string()),
         }
     };
     let names = &observation.trajectories;

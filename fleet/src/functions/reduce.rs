@@ -24,6 +24,7 @@ pub fn motion_fields() -> Fields {
         ("relative_error", DataType::Float64),
         ("outcome", DataType::Utf8),
         ("message", DataType::Utf8),
+        ("table_name", DataType::Utf8),
     ])
 }
 
@@ -93,5 +94,6 @@ fn arrays_of(motions: &[Motion]) -> Vec<ArrayRef> {
         Arc::new(Float64Array::from_iter(motions.iter().map(|m| m.relative_error))),
         Arc::new(StringArray::from_iter_values(motions.iter().map(|m| m.outcome.name()))),
         Arc::new(StringArray::from_iter(motions.iter().map(|m| m.message.as_deref()))),
+        Arc::new(StringArray::from_iter(motions.iter().map(|m| m.table_name.as_deref()))),
     ]
 }

@@ -23,6 +23,8 @@ pub struct RobotDay {
     pub temperature: Option<f64>,
     /// Mean of their loads, where they say one.
     pub load: Option<f64>,
+    /// The name that the robot's table has.
+    pub table_name: Option<String>,
 }
 
 /// Keys of the recordings that a day was done with; none where it was not done.
@@ -129,21 +131,29 @@ pub fn robots(factors: &RecordBatch) -> Result<(BTreeMap<String, RobotDay>, BTre
             },
             None => {
                 let recordings = BTreeMap::from([(recording, factor.clone())]);
-                robots.insert(robot, RobotDay { all: factor, recordings, temperature: None, load: None });
+                let own =
+                    RobotDay { all: factor, recordings, temperature: None, load: None, table_name: None };
+                robots.insert(robot, own);
             }
         }
     }
     for (robot, day) in &mut robots {
         day.temperature = mean(factors, robot, "temperature");
         day.load = mean(factors, robot, "load");
+        let mut own = used(factors, robot);
+        day.table_name = own.find_map(|k| text(factors, "table_name", k).map(str::to_owned));
     }
     Ok((robots, left_out))
 }
 
 /// Mean of a column over the motions of a robot that are used.
 fn mean(factors: &RecordBatch, robot: &str, column: &str) -> Option<f64> {
-    let of_robot = (0..factors.num_rows())
-        .filter(|&k| text(factors, "robot", k) == Some(robot) && bytes(factors, "factor", k).is_some());
-    let values: Vec<f64> = of_robot.filter_map(|k| number(factors, column, k)).collect();
+    let values: Vec<f64> = used(factors, robot).filter_map(|k| number(factors, column, k)).collect();
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// Rows of the motions of a robot that are used.
+fn used<'a>(factors: &'a RecordBatch, robot: &'a str) -> impl Iterator<Item = usize> + 'a {
+    (0..factors.num_rows())
+        .filter(move |&k| text(factors, "robot", k) == Some(robot) && bytes(factors, "factor", k).is_some())
 }

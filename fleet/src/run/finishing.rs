@@ -78,6 +78,7 @@ struct Parameters {
     tables: Vec<String>,
     temperatures: Vec<Option<f64>>,
     loads: Vec<Option<f64>>,
+    table_names: Vec<Option<String>>,
 }
 
 impl Parameters {
@@ -92,6 +93,7 @@ impl Parameters {
         self.tables.extend(std::iter::repeat_n(day.all.fingerprint().to_owned(), count));
         self.temperatures.extend(std::iter::repeat_n(day.temperature, count));
         self.loads.extend(std::iter::repeat_n(day.load, count));
+        self.table_names.extend(std::iter::repeat_n(day.table_name.clone(), count));
         for (parameter, (_, unit)) in found.parameters.iter().zip(day.all.parameters()) {
             self.robots.push(robot.to_owned());
             self.names.push(parameter.name.clone());
@@ -114,6 +116,7 @@ impl Parameters {
             texts(self.tables.iter().map(|t| Some(t.as_str()))),
             numbers(self.temperatures),
             numbers(self.loads),
+            texts(self.table_names.iter().map(Option::as_deref)),
         ];
         batch(&parameters_schema(), columns)
     }

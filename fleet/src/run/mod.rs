@@ -5,17 +5,21 @@
 //! pending    -> factors/<day>.parquet     all of a day were                          day
 //!            -> parameters, findings      merged, solved, compared, diagnosed        finishing, findings
 //!            -> screening/<day>.parquet   the day is done
-//! parameters -> trends, alarms, fleet.html
+//! parameters -> trends, alarms            all days anew                              watching, alarms
+//!            -> fleet.html, robots/*.html                                            pages
 //! ```
 //!
 //! Each file is written whole or not at all, and what is there is not done again, so that a run that was interrupted goes on
 //! where it was.
 
+pub mod alarms;
 mod day;
 mod findings;
 mod finishing;
 mod folder;
 mod history;
+mod outcomes;
+mod pages;
 mod reducing;
 mod references;
 pub mod rows;
@@ -30,19 +34,27 @@ use crate::engine::Engine;
 use crate::error::{FleetError, Result};
 use crate::fleet_file::FleetFile;
 use crate::work::{Item, work};
+use alarms::{AlarmRow, Before};
 use folder::OutFolder;
 use history::History;
+pub use outcomes::Outcomes;
 use references::References;
 
 /// What a run did.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Summary {
     /// Recordings of the fleet, from the day on that was asked for.
     pub recordings: usize,
     /// Of these, those that were reduced now.
     pub reduced: usize,
-    /// Days that were worked out now.
+    /// Days of these recordings.
+    pub all_days: usize,
+    /// Of these, those that were worked out now.
     pub days: usize,
+    /// What became of the recordings, those of earlier runs too.
+    pub outcomes: Outcomes,
+    /// All alarms of the fleet, the worst first.
+    pub alarms: Vec<AlarmRow>,
 }
 
 /// Brings the results of a fleet up to date.
@@ -81,8 +93,16 @@ pub async fn run(fleet: &FleetFile, path: &Path, engine: &Engine, since: Option<
     for &one in &unfinished {
         finishing::finish((engine, fleet, &out), &mut references, &mut history, one, &by_day[&one]).await?;
     }
-    if !unfinished.is_empty() || !out.file("alarms.parquet").exists() {
+    let before = Before::read(&out)?;
+    if !unfinished.is_empty() || !pages::are_there(&out) {
         watching::watch_all(&out)?;
     }
-    Ok(Summary { recordings: items.len(), reduced: missing.len(), days: unfinished.len() })
+    Ok(Summary {
+        recordings: items.len(),
+        reduced: missing.len(),
+        all_days: by_day.len(),
+        days: unfinished.len(),
+        outcomes: Outcomes::of(&out, by_day.keys().copied())?,
+        alarms: alarms::read(&out, &before)?,
+    })
 }

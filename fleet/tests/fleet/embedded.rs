@@ -176,3 +176,62 @@ fn two_runs_do_not_write_to_one_folder() {
     let said = String::from_utf8_lossy(&run.stderr);
     assert!(!run.status.success() && said.contains("another run writes to it"), "{said}");
 }
+
+#[test]
+fn a_run_ends_with_its_alarms_and_pages_that_lead_to_each_robot() {
+    let fleet = Fleet::new(3, 18);
+    let bad = fleet.recording("r001", 4).join("recording.yaml");
+    std::fs::write(bad, "robot: tx40\ntime: [\n").unwrap();
+    // The last robot is the second one up to the 15th day, and then one with other gears.
+    for day in 1..16 {
+        for file in std::fs::read_dir(fleet.recording("r002", day)).unwrap().flatten() {
+            std::fs::copy(file.path(), fleet.recording("r003", day).join(file.file_name())).unwrap();
+        }
+    }
+    // Names of folders are names of robots.
+    std::fs::rename(fleet.folder.path().join("logs/r002"), fleet.folder.path().join("logs/r 2 & co"))
+        .unwrap();
+    let out = fleet.out("o");
+    let told = || {
+        let arguments = ["run", &fleet.file.display().to_string(), "--out", &out.display().to_string()];
+        let run = Command::new(PROGRAM).args(arguments).output().unwrap();
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        String::from_utf8(run.stdout).unwrap()
+    };
+    let first = told();
+    assert!(
+        first.starts_with(
+            "18 days (18 worked out now), 54 recordings (54 reduced now): 53 used, 1 unreadable\n"
+        ),
+        "{first}"
+    );
+    let alarms: Vec<&str> = first.lines().skip(2).take_while(|line| !line.starts_with("look at")).collect();
+    assert!(
+        !alarms.is_empty() && first.contains(&format!("{0} alarms, {0} of them new", alarms.len())),
+        "{first}"
+    );
+    for alarm in &alarms {
+        assert!(
+            alarm.starts_with("new  r003  F") && alarm.contains("jumped on about 2026-03-16; siblings "),
+            "{alarm}"
+        );
+        assert!(alarm.contains(" meanwhile (median of 2)"), "{alarm}");
+    }
+    let page = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
+    let pages = || ["fleet.html", "robots/r003.html", "robots/r~202~20~26~20co.html"].map(page);
+    let before = pages();
+    let [all, worn, other] = &before;
+    assert!(all.contains("<a href=\"robots/r003.html\">r003</a> <span class=\"note\">tx40</span>"), "{all}");
+    assert!(all.contains("<a href=\"robots/r~202~20~26~20co.html\">r 2 &amp; co</a>"));
+    assert!(worn.contains("jumped up on about 2026-03-16") && worn.contains("Recordings: 18 used."));
+    assert!(other.contains("No alarm; "));
+    assert!(page("robots/r001.html").contains("recording.yaml:"));
+    // The same again, and pages that were lost.
+    std::fs::remove_file(out.join("fleet.html")).unwrap();
+    let again = told();
+    assert!(
+        again.contains("18 days (0 worked out now)") && again.contains("alarms, 0 of them new"),
+        "{again}"
+    );
+    assert_eq!(before, pages());
+}
