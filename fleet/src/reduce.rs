@@ -12,7 +12,7 @@ use dynid_runtime::estimation::{
     observe_recording,
 };
 use dynid_runtime::plausibility::Judged;
-use dynid_runtime::recording::Side;
+use dynid_runtime::recording::{Conditions, Side, conditions};
 
 use crate::error::FleetError;
 use crate::fetch::{Fetched, fetch};
@@ -68,6 +68,8 @@ pub struct Motion {
     pub message: Option<String>,
     /// The name that the robot's table has.
     pub table_name: Option<String>,
+    /// Mean temperature of the recording, °C, and mean of its load, where it says them.
+    pub conditions: Conditions,
 }
 
 /// Reduces the recording at a path or an address: a row for each of its motions, at least one. Whatever is wrong with it
@@ -94,6 +96,7 @@ fn none(outcome: Outcome, message: String) -> Motion {
         outcome,
         message,
         table_name: None,
+        conditions: Conditions::default(),
     }
 }
 
@@ -134,6 +137,10 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
     words.extend(doubts(&fetched, &observed, &found).map_err(of_failure)?);
     words.extend(found.warnings.iter().map(ToString::to_string));
     words.extend(observed.left_out.iter().map(|what| format!("left out: {what}")));
+    let conditions = conditions(&fetched.manifest).unwrap_or_else(|error| {
+        words.push(format!("temperature and load are not known: {error}"));
+        Conditions::default()
+    });
     let message = (!words.is_empty()).then(|| words.join("; "));
     let row = |k: Option<usize>, name: &str| {
         let factor = Reduced::of(observation, &found, model.robot(), k);
@@ -148,6 +155,7 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
             outcome: Outcome::Used,
             message: message.clone(),
             table_name: Some(model.robot().name.to_string()),
+            conditions,
         }
     };
     let names = &observation.trajectories;

@@ -138,17 +138,18 @@ pub fn robots(factors: &RecordBatch) -> Result<(BTreeMap<String, RobotDay>, BTre
         }
     }
     for (robot, day) in &mut robots {
-        day.temperature = mean(factors, robot, "temperature");
-        day.load = mean(factors, robot, "load");
+        day.temperature = mean(factors, robot, ["temperature", "own_temperature"]);
+        day.load = mean(factors, robot, ["load", "own_load"]);
         let mut own = used(factors, robot);
         day.table_name = own.find_map(|k| text(factors, "table_name", k).map(str::to_owned));
     }
     Ok((robots, left_out))
 }
 
-/// Mean of a column over the motions of a robot that are used.
-fn mean(factors: &RecordBatch, robot: &str, column: &str) -> Option<f64> {
-    let values: Vec<f64> = used(factors, robot).filter_map(|k| number(factors, column, k)).collect();
+/// Mean over the motions of a robot that are used: of what the table of recordings says, else of what the recording does.
+fn mean(factors: &RecordBatch, robot: &str, [said, own]: [&str; 2]) -> Option<f64> {
+    let value = |k: usize| number(factors, said, k).or_else(|| number(factors, own, k));
+    let values: Vec<f64> = used(factors, robot).filter_map(value).collect();
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 

@@ -235,3 +235,43 @@ fn a_run_ends_with_its_alarms_and_pages_that_lead_to_each_robot() {
     );
     assert_eq!(before, pages());
 }
+
+#[test]
+fn temperature_and_load_of_a_recording_stand_beside_its_parameters_and_the_table_wins() {
+    let fleet = Fleet::new(3, 1);
+    let plain = fleet.out("plain");
+    fleet.run(&plain);
+    let also = |robot: &str, keys: &str| {
+        let manifest = fleet.recording(robot, 1).join("recording.yaml");
+        let text = std::fs::read_to_string(&manifest).unwrap();
+        std::fs::write(&manifest, format!("{text}\n{keys}\n")).unwrap();
+        std::fs::write(fleet.recording(robot, 1).join("slow.csv"), "celsius,kg\n20,1\n22,2\n24,\n").unwrap();
+    };
+    also("r001", "temperature: {file: slow.csv, columns: [celsius]}\nload: {file: slow.csv, columns: [kg]}");
+    also("r002", "temperature: {file: slow.csv, columns: [celsius]}");
+    also("r003", "temperature: {file: slow.csv, columns: [kelvin]}");
+    let line = |robot: &str, said: &str| {
+        format!("{robot},2026-03-01,logs/{robot}/2026-03-01/recording.yaml,{said}\n")
+    };
+    let list = [line("r001", ""), line("r002", "31.5"), line("r003", "")].concat();
+    std::fs::write(fleet.folder.path().join("list.csv"), format!("robot,day,recording,temperature\n{list}"))
+        .unwrap();
+    fleet.write("recordings: list.csv\ndiagnosis: {enabled: false}\n");
+    let out = fleet.out("o");
+    fleet.run(&out);
+    let known = |column: &str| {
+        pairs(
+            &out,
+            &format!("SELECT DISTINCT robot, CAST({column} AS VARCHAR) FROM parameters ORDER BY robot"),
+        )
+    };
+    let told: Vec<String> = known("temperature").into_iter().map(|(_, value)| value).collect();
+    assert_eq!(told, ["22.0", "31.5", ""]);
+    let told: Vec<String> = known("load").into_iter().map(|(_, value)| value).collect();
+    assert_eq!(told, ["1.5", "", ""]);
+    // What cannot be read of them is told, and the recording is used all the same.
+    let third = pairs(&out, "SELECT outcome, message FROM screening WHERE robot = 'r003'");
+    assert!(third[0].0 == "used" && third[0].1.contains("temperature and load are not known: "), "{third:?}");
+    let values = "SELECT value FROM parameters WHERE value IS NOT NULL ORDER BY robot, parameter";
+    assert_eq!(numbers(&out, values), numbers(&plain, values));
+}
