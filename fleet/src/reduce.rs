@@ -16,6 +16,7 @@ use dynid_runtime::recording::{Conditions, Side, conditions};
 
 use crate::error::FleetError;
 use crate::fetch::{Fetched, fetch};
+use crate::stamp::Stamps;
 
 /// Most motions of a recording that have rows of their own: each is 15 to 30 kB, which travel and are kept.
 const MOST_MOTIONS: usize = 32;
@@ -70,17 +71,23 @@ pub struct Motion {
     pub table_name: Option<String>,
     /// Mean temperature of the recording, °C, and mean of its load, where it says them.
     pub conditions: Conditions,
+    /// [`Stamps`] of the recording's files as text.
+    pub files: Option<String>,
 }
 
 /// Reduces the recording at a path or an address: a row for each of its motions, at least one. Whatever is wrong with it
 /// is told in the row.
 pub fn reduce(recording: &str, table: Option<&str>, band: Option<f64>) -> Vec<Motion> {
-    let reduced = catch_unwind(AssertUnwindSafe(|| reduced(recording, table, band)));
-    match reduced {
+    let mut stamps = Stamps::default();
+    let reduced = catch_unwind(AssertUnwindSafe(|| reduced(recording, table, band, &mut stamps)));
+    let mut motions = match reduced {
         Ok(Ok(motions)) => motions,
         Ok(Err((outcome, message))) => vec![none(outcome, message)],
         Err(_) => vec![none(Outcome::Failed, "dynid failed on this recording; please report it".to_owned())],
-    }
+    };
+    let files = stamps.to_text();
+    motions.iter_mut().for_each(|motion| motion.files.clone_from(&files));
+    motions
 }
 
 fn none(outcome: Outcome, message: String) -> Motion {
@@ -97,6 +104,7 @@ fn none(outcome: Outcome, message: String) -> Motion {
         message,
         table_name: None,
         conditions: Conditions::default(),
+        files: None,
     }
 }
 
@@ -117,8 +125,13 @@ pub fn of_reading(error: FleetError) -> Why {
     (Outcome::Unreadable, error.to_string())
 }
 
-fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Vec<Motion>, Why> {
-    let fetched = fetch(recording, table).map_err(of_reading)?;
+fn reduced(
+    recording: &str,
+    table: Option<&str>,
+    band: Option<f64>,
+    stamps: &mut Stamps,
+) -> Result<Vec<Motion>, Why> {
+    let fetched = fetch(recording, table, stamps).map_err(of_reading)?;
     let model = fetched.dynamics.model();
     // Recordings go beside each other, so that each needs one thread only.
     let rows = ObserveSettings { threads: 1, ..ObserveSettings::default() };
@@ -156,6 +169,7 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
             message: message.clone(),
             table_name: Some(model.robot().name.to_string()),
             conditions,
+            files: None,
         }
     };
     let names = &observation.trajectories;

@@ -12,11 +12,12 @@ use crate::run::{Outcomes, Summary};
 /// Days, recordings and alarms, line by line.
 pub(super) fn told(did: &Summary, out: &Path) -> String {
     let mut lines = vec![format!(
-        "{} ({} worked out now), {} ({} reduced now): {}",
+        "{} ({} worked out now), {} ({} reduced now{}): {}",
         counted(did.all_days, "day"),
         did.days,
         counted(did.recordings, "recording"),
         did.reduced,
+        if did.replaced > 0 { format!(", {} of them replaced", did.replaced) } else { String::new() },
         outcomes(&did.outcomes)
     )];
     let new = did.alarms.iter().filter(|alarm| alarm.new).count();
@@ -119,10 +120,11 @@ mod tests {
     #[test]
     fn a_run_tells_days_recordings_and_alarms_and_that_there_are_none() {
         let outcomes = Outcomes { used: 5, unreadable: 1, ..Outcomes::default() };
-        let did = Summary { recordings: 6, reduced: 2, all_days: 3, days: 1, outcomes, alarms: Vec::new() };
+        let (recordings, reduced, replaced, all_days, days) = (6, 2, 1, 3, 1);
+        let did = Summary { recordings, reduced, replaced, all_days, days, outcomes, alarms: Vec::new() };
         assert_eq!(
             told(&did, Path::new("o")),
-            "3 days (1 worked out now), 6 recordings (2 reduced now): 5 used, 1 unreadable\nno alarms\nlook at o/fleet.html"
+            "3 days (1 worked out now), 6 recordings (2 reduced now, 1 of them replaced): 5 used, 1 unreadable\nno alarms\nlook at o/fleet.html"
         );
         let forged = AlarmRow { robot: "r1\nno alarms\u{1b}[31m".into(), ..alarm() };
         let did = Summary { alarms: vec![forged], ..did };

@@ -27,6 +27,7 @@ pub fn motion_fields() -> Fields {
         ("table_name", DataType::Utf8),
         ("own_temperature", DataType::Float64),
         ("own_load", DataType::Float64),
+        ("files", DataType::Utf8),
     ])
 }
 
@@ -102,5 +103,6 @@ fn arrays_of(motions: &[Motion]) -> Vec<ArrayRef> {
         Arc::new(StringArray::from_iter(motions.iter().map(|m| m.table_name.as_deref()))),
         number(|m| m.conditions.temperature),
         number(|m| m.conditions.load),
+        Arc::new(StringArray::from_iter(motions.iter().map(|m| m.files.as_deref()))),
     ]
 }

@@ -164,6 +164,7 @@ fn screening(
         numbers(first.iter().map(|(k, ..)| number(factors, "relative_error", *k))),
         numbers(first.iter().map(|(k, ..)| rise(*k).map(|rise| rise.ratio))),
         flags(first.iter().map(|(k, ..)| rise(*k).map(|rise| rise.certain))),
+        column("files"),
     ];
     batch(&screening_schema(), columns)
 }

@@ -24,6 +24,7 @@ mod reducing;
 mod references;
 pub mod rows;
 pub mod tables;
+mod todo;
 mod watching;
 
 use std::collections::BTreeMap;
@@ -47,6 +48,8 @@ pub struct Summary {
     pub recordings: usize,
     /// Of these, those that were reduced now.
     pub reduced: usize,
+    /// Of these, those that had been reduced before and were replaced under the same name.
+    pub replaced: usize,
     /// Days of these recordings.
     pub all_days: usize,
     /// Of these, those that were worked out now.
@@ -75,33 +78,24 @@ pub async fn run(fleet: &FleetFile, path: &Path, engine: &Engine, since: Option<
     for item in &items {
         by_day.entry(item.day).or_default().push(item);
     }
-    let mut missing = Vec::new();
-    let mut unfinished = Vec::new();
-    for (&one, own) in &by_day {
-        let done = day::done(&out, one)?;
-        if own.iter().all(|item| done.contains(&item.key())) {
-            continue;
-        }
-        let reduced = day::reduced(&out, one)?;
-        let is_missing = |item: &&&Item| !reduced.contains(&item.key()) && !out.pending(&item.key()).exists();
-        missing.extend(own.iter().filter(is_missing).copied());
-        unfinished.push(one);
-    }
-    reducing::reduce_missing(engine, &out, &missing).await?;
+    let todo = todo::of(&out, &by_day).await?;
+    reducing::reduce_missing(engine, &out, &todo.missing).await?;
     let mut references = References::read(fleet, &out)?;
+    todo.replaced.iter().for_each(|item| references.forget(&item.robot, item.day));
     let mut history = History::read(&out)?;
-    for &one in &unfinished {
+    for &one in &todo.days {
         finishing::finish((engine, fleet, &out), &mut references, &mut history, one, &by_day[&one]).await?;
     }
     let before = Before::read(&out)?;
-    if !unfinished.is_empty() || !pages::are_there(&out) {
+    if !todo.days.is_empty() || !pages::are_there(&out) {
         watching::watch_all(&out)?;
     }
     Ok(Summary {
         recordings: items.len(),
-        reduced: missing.len(),
+        reduced: todo.missing.len(),
+        replaced: todo.replaced.len(),
         all_days: by_day.len(),
-        days: unfinished.len(),
+        days: todo.days.len(),
         outcomes: Outcomes::of(&out, by_day.keys().copied())?,
         alarms: alarms::read(&out, &before)?,
     })

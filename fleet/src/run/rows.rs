@@ -53,6 +53,7 @@ pub fn screening_schema() -> SchemaRef {
     fields.extend(["motions", "rows", "samples", "left_out"].map(|name| field(name, DataType::Int64)));
     fields.extend(["band", "relative_error", "rise"].map(|name| field(name, DataType::Float64)));
     fields.push(field("rose", DataType::Boolean));
+    fields.push(field("files", DataType::Utf8));
     schema(fields)
 }
 

@@ -275,3 +275,34 @@ fn temperature_and_load_of_a_recording_stand_beside_its_parameters_and_the_table
     let values = "SELECT value FROM parameters WHERE value IS NOT NULL ORDER BY robot, parameter";
     assert_eq!(numbers(&out, values), numbers(&plain, values));
 }
+
+#[test]
+fn a_recording_that_was_replaced_under_its_name_is_done_again_with_its_day() {
+    let fleet = Fleet::new(2, 3);
+    let out = fleet.out("o");
+    let bad = fleet.recording("r002", 3).join("recording.yaml");
+    let good = std::fs::read(&bad).unwrap();
+    std::fs::write(&bad, "robot: tx40\ntime: [\n").unwrap();
+    fleet.run(&out);
+    let before = parquet_files(&out);
+    // Data of the second day in the place of the first: the robot's reference is of that day.
+    for file in std::fs::read_dir(fleet.recording("r001", 2)).unwrap().flatten() {
+        std::fs::copy(file.path(), fleet.recording("r001", 1).join(file.file_name())).unwrap();
+    }
+    std::fs::write(&bad, good).unwrap();
+    let again = fleet.run(&out);
+    assert_eq!((again.recordings, again.reduced, again.replaced, again.days), (6, 2, 2, 2));
+    let after = parquet_files(&out);
+    assert_eq!(before["parameters/2026-03-02.parquet"], after["parameters/2026-03-02.parquet"]);
+    let of_day = |day: u32| {
+        let robot = "robot = 'r001' AND value IS NOT NULL ORDER BY parameter";
+        numbers(&out, &format!("SELECT value FROM parameters WHERE day = DATE '2026-03-0{day}' AND {robot}"))
+    };
+    assert_eq!(of_day(1), of_day(2));
+    let whole = fleet.out("whole");
+    fleet.run(&whole);
+    for name in ["references.parquet", "parameters/2026-03-01.parquet", "factors/2026-03-03.parquet"] {
+        assert_eq!(parquet_files(&whole)[name], after[name], "{name}");
+    }
+    assert_eq!(fleet.run(&out).days, 0);
+}

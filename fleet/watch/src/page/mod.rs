@@ -43,7 +43,8 @@ impl Labels<'_> {
 /// use dynid_fleet_watch::{Labels, Pages, Settings, watch};
 ///
 /// let watched = watch(&[], &Settings::default());
-/// let pages = Pages::new(&[], &watched, &Default::default(), Labels::plain());
+/// let facts = Default::default();
+/// let pages = Pages::new(&[], &watched, &facts, Labels::plain());
 /// assert!(pages.fleet().contains("No alarm"));
 /// ```
 pub struct Pages<'a> {
