@@ -47,9 +47,12 @@ impl Stamps {
 
     /// Whether one of the files is there and is another one now. What is not there any more, or cannot be asked for, tells
     /// nothing.
-    pub async fn are_old(&self) -> bool {
+    async fn are_old(&self, stores: &Stores) -> bool {
         for (name, stamp) in &self.0 {
-            let now = if name.contains("://") { asked(name).await } else { local(Path::new(name)) };
+            let now = match in_store(name) {
+                Some((base, path)) => stores.asked(base, path).await,
+                None => local(Path::new(name)),
+            };
             if now.is_some_and(|now| now != *stamp) {
                 return true;
             }
@@ -73,16 +76,37 @@ fn remote(meta: &ObjectMeta) -> String {
     }
 }
 
-async fn asked(address: &str) -> Option<String> {
-    let (folder, name) = address.rsplit_once('/')?;
-    Folder::of(folder).ok()?.meta(name).await.as_ref().map(remote)
+/// The address of a store, and the path within it; `None` of a path of this machine.
+fn in_store(address: &str) -> Option<(&str, &str)> {
+    let (scheme, rest) = address.split_once("://")?;
+    let host = rest.split('/').next()?.len();
+    let base = scheme.len() + 3 + host;
+    Some((&address[..base], address[base..].trim_start_matches('/')))
+}
+
+/// Stores by their addresses: a client of one takes much longer to make than to ask.
+#[derive(Default)]
+struct Stores(BTreeMap<String, Folder>);
+
+impl Stores {
+    /// Those of some recordings. One that cannot be had is none, and tells nothing.
+    fn of<'a>(recordings: impl Iterator<Item = &'a Stamps>) -> Self {
+        let files = recordings.flat_map(|stamps| stamps.0.keys());
+        let bases: BTreeSet<&str> = files.filter_map(|name| Some(in_store(name)?.0)).collect();
+        Self(bases.into_iter().filter_map(|base| Some((base.to_owned(), Folder::of(base).ok()?))).collect())
+    }
+
+    async fn asked(&self, base: &str, path: &str) -> Option<String> {
+        self.0.get(base)?.meta(path).await.as_ref().map(remote)
+    }
 }
 
 /// Of recordings with their stamps as texts those of which a file was replaced.
 pub async fn replaced(known: BTreeMap<String, String>) -> BTreeSet<String> {
-    let one = |(key, text): (String, String)| async move {
-        Stamps::from_text(&text).are_old().await.then_some(key)
-    };
+    let known: BTreeMap<String, Stamps> =
+        known.into_iter().map(|(key, text)| (key, Stamps::from_text(&text))).collect();
+    let stores = &Stores::of(known.values());
+    let one = |(key, stamps): (String, Stamps)| async move { stamps.are_old(stores).await.then_some(key) };
     futures::stream::iter(known)
         .map(one)
         .buffer_unordered(ASKED)
@@ -95,6 +119,13 @@ pub async fn replaced(known: BTreeMap<String, String>) -> BTreeSet<String> {
 mod tests {
     use super::*;
 
+    #[test]
+    fn an_address_is_a_store_and_a_path_within() {
+        assert_eq!(in_store("s3://bucket/a/b.yaml"), Some(("s3://bucket", "a/b.yaml")));
+        assert_eq!(in_store("http://host:80"), Some(("http://host:80", "")));
+        assert_eq!(in_store("/data/a.yaml"), None);
+    }
+
     #[tokio::test]
     async fn a_file_with_another_size_or_time_is_another_one() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -104,18 +135,18 @@ mod tests {
         stamps.add_local(&one);
         stamps.add_local(&two);
         let stamps = Stamps::from_text(&stamps.to_text().expect("two lines"));
-        assert!(!stamps.are_old().await);
+        assert!(!stamps.are_old(&Stores::default()).await);
         // What was not there has come.
         std::fs::write(&two, "b").expect("a file");
-        assert!(stamps.are_old().await);
+        assert!(stamps.are_old(&Stores::default()).await);
         std::fs::remove_file(&two).expect("removed");
-        assert!(!stamps.are_old().await);
+        assert!(!stamps.are_old(&Stores::default()).await);
         let changed = std::fs::metadata(&one).and_then(|m| m.modified()).expect("a time");
         std::fs::write(&one, "ab").expect("a file");
         std::fs::File::options().write(true).open(&one).and_then(|f| f.set_modified(changed)).expect("set");
-        assert!(stamps.are_old().await, "the same time, another size");
+        assert!(stamps.are_old(&Stores::default()).await, "the same time, another size");
         std::fs::remove_file(&one).expect("removed");
-        assert!(!stamps.are_old().await, "what is gone tells nothing");
+        assert!(!stamps.are_old(&Stores::default()).await, "what is gone tells nothing");
         assert_eq!(Stamps::default().to_text(), None);
     }
 }
