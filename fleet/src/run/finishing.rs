@@ -49,7 +49,8 @@ pub async fn finish(
         for (recording, factor) in &own.recordings {
             let Some(rise) = rise(factor, &chi) else { continue };
             rises.insert(recording.as_str(), rise);
-            let news = rise.ratio > fleet.diagnosis.error_rises * history.before(robot, day);
+            let news = rise.ratio > fleet.diagnosis.error_rises * history.before(robot, day)
+                && history.predicted(robot, day).is_some_and(|limit| rise.ratio > limit);
             if fleet.diagnosis.enabled && rise.certain && news {
                 let table = items.iter().find(|i| &i.recording == recording).and_then(|i| i.table.clone());
                 let reference = reference.clone();

@@ -147,19 +147,25 @@ fn functions_of_queries_give_what_the_tables_hold() {
 
 #[test]
 fn a_gear_that_wears_is_found_where_errors_rose_and_nothing_else_is_looked_for() {
-    let fleet = Fleet::new(2, 2);
+    let fleet = Fleet::new(2, 6);
+    // It is as its sibling for four days: how much it differs from day to day must be known first.
+    for day in 1..5 {
+        for file in std::fs::read_dir(fleet.recording("r001", day)).unwrap().flatten() {
+            std::fs::copy(file.path(), fleet.recording("r002", day).join(file.file_name())).unwrap();
+        }
+    }
     fleet.write(
         "recordings: logs/{robot}/{day}/recording.yaml\nout: results\ndiagnosis: {error_rises: 1.5}\n",
     );
     let out = fleet.out("o");
     fleet.run(&out);
-    let found = pairs(&out, "SELECT robot, effect FROM findings");
-    assert_eq!(found, [("r002".to_owned(), "friction_level_change".to_owned())]);
-    let joints = pairs(&out, "SELECT robot, joints FROM findings");
-    assert_eq!(joints[0].1, "2");
+    let found = pairs(&out, "SELECT DISTINCT robot, 'found' FROM findings");
+    assert_eq!(found, [("r002".to_owned(), "found".to_owned())]);
+    let found = pairs(&out, "SELECT joints, effect FROM findings WHERE effect = 'friction_level_change'");
+    assert!(found.iter().any(|(joints, _)| joints.split(' ').any(|joint| joint == "2")), "{found:?}");
     let certain =
         pairs(&out, "SELECT robot, CAST(rose AS VARCHAR) FROM screening WHERE robot = 'r002' ORDER BY day");
-    assert_eq!(certain.iter().map(|(_, rose)| rose.as_str()).collect::<Vec<_>>(), ["false", "true"]);
+    assert_eq!((certain[0].1.as_str(), certain[5].1.as_str()), ("false", "true"));
 }
 
 #[test]
