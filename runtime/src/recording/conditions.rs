@@ -200,9 +200,10 @@ mod tests {
     fn mistakes_are_told_with_their_place() {
         let mistake = |keys: &str| read(keys, "{file: a.csv}").expect_err("a mistake");
         assert!(
-            mistake("temperature: {columns: [temp], unit: V}").contains("r.yaml:5:1")
-                || mistake("temperature: {columns: [temp], unit: V}")
-                    .contains("`V` is no unit of temperature")
+            mistake("temperature: {columns: [temp], unit: V}")
+                .contains("r.yaml:5:32: temperature.unit: `V` is no unit"),
+            "{}",
+            mistake("temperature: {columns: [temp], unit: V}")
         );
         assert!(mistake("temperature: {columns: []}").contains("temperature.columns: no column is named"));
         assert!(mistake("load: {columns: [nothing]}").contains("nothing"));
