@@ -235,6 +235,7 @@ fn every_key_of_a_recording_yaml_stands_in_the_reference() {
         whole.replace("{file: a.csv}", "{zzzz: 1}"),
         format!("{whole}layout: {{zzzz: 1}}\n"),
         format!("{whole}fields: {{zzzz: 1}}\n"),
+        format!("{whole}temperature: {{zzzz: 1}}\n"),
     ];
     for text in places {
         let error = error_of(&folder.write("r.yaml", &text).run(&["look", "r.yaml"]));

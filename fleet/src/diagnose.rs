@@ -13,6 +13,7 @@ use dynid_runtime::recording::{Loader, Trajectory};
 
 use crate::fetch::{Fetched, fetch};
 use crate::reduce::{Outcome, Why, of_failure, of_reading};
+use crate::stamp::Stamps;
 
 /// What a robot is compared with.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +67,7 @@ fn rows_of(diagnosis: &Diagnosis) -> Vec<FindingRow> {
 }
 
 fn found(recording: &str, table: Option<&str>, against: Against<'_>, rows: usize) -> Result<Diagnosis, Why> {
-    let fetched = fetch(recording, table).map_err(of_reading)?;
+    let fetched = fetch(recording, table, &mut Stamps::default()).map_err(of_reading)?;
     let model = fetched.dynamics.model();
     let trajectories = beginning(&fetched, rows)?;
     let mut settings = Settings::default();

@@ -50,7 +50,8 @@ pub struct DiagnosisRule {
     /// Whether at all.
     pub enabled: bool,
     /// How many times the error with the recording's own parameters that with the reference's must be, and how many times
-    /// the largest such ratio of the robot's earlier days: what was there yesterday is no news today.
+    /// the largest such ratio of the robot's earlier days: what was there yesterday is no news today. It must also be more
+    /// than these days predict.
     ///
     /// 1.05 is a tenth more squares: one joint of six whose error is a quarter larger. Less than that costs a diagnosis,
     /// which takes a hundred times as long as an identification, and finds nothing that stands out.

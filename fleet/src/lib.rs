@@ -21,4 +21,5 @@ pub mod reduce;
 pub mod rise;
 pub mod run;
 pub mod simulated;
+pub mod stamp;
 pub mod work;

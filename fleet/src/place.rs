@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use futures::TryStreamExt;
 use object_store::path::Path as StorePath;
-use object_store::{ObjectStore, ObjectStoreExt};
+use object_store::{ObjectMeta, ObjectStore, ObjectStoreExt};
 use tokio::io::AsyncWriteExt;
 
 use crate::error::{FleetError, Result};
@@ -77,32 +77,44 @@ impl Folder {
         Ok(names)
     }
 
-    /// Brings the object at a relative path into a file, block by block.
+    /// What a store says of the object at a relative path; `None` of a folder of this machine, and where it says nothing.
+    pub async fn meta(&self, relative: &str) -> Option<ObjectMeta> {
+        let Self::Remote(_, store, path) = self else { return None };
+        store.head(&below(path, relative).ok()?).await.ok()
+    }
+
+    /// Brings the object at a relative path into a file, block by block; what its store says of it.
     ///
     /// # Errors
     /// What the store or the file system says.
-    pub async fn download(&self, relative: &str, to: &Path) -> Result<()> {
+    pub async fn download(&self, relative: &str, to: &Path) -> Result<Option<ObjectMeta>> {
         let Self::Remote(base, store, path) = self else {
             let from = PathBuf::from(self.at(relative));
             return match tokio::fs::copy(&from, to).await {
-                Ok(_) => Ok(()),
+                Ok(_) => Ok(None),
                 Err(error) => Err(FleetError::io(&from, "read it", &error)),
             };
         };
         let url = self.at(relative);
         let failed = |message: String| FleetError::Store { url: url.clone(), message };
-        let whole =
-            [path.as_ref(), relative].into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join("/");
-        let whole = StorePath::parse(&whole).map_err(|error| failed(error.to_string()))?;
+        let whole = below(path, relative).map_err(|error| failed(error.to_string()))?;
         let answer = store.get(&whole).await.map_err(|error| failed(said(base, &error)))?;
         let write = |error: std::io::Error| FleetError::io(to, "write it", &error);
         let mut file = tokio::fs::File::create(to).await.map_err(write)?;
+        let meta = answer.meta.clone();
         let mut blocks = answer.into_stream();
         while let Some(block) = blocks.try_next().await.map_err(|error| failed(said(base, &error)))? {
             file.write_all(&block).await.map_err(write)?;
         }
-        file.flush().await.map_err(write)
+        file.flush().await.map_err(write)?;
+        Ok(Some(meta))
     }
+}
+
+/// A relative path beneath one of a store.
+fn below(path: &StorePath, relative: &str) -> std::result::Result<StorePath, object_store::path::Error> {
+    let parts = [path.as_ref(), relative].into_iter().filter(|p| !p.is_empty());
+    StorePath::parse(parts.collect::<Vec<_>>().join("/"))
 }
 
 fn said(base: &str, error: &object_store::Error) -> String {

@@ -12,10 +12,11 @@ use dynid_runtime::estimation::{
     observe_recording,
 };
 use dynid_runtime::plausibility::Judged;
-use dynid_runtime::recording::Side;
+use dynid_runtime::recording::{Conditions, Side, conditions};
 
 use crate::error::FleetError;
 use crate::fetch::{Fetched, fetch};
+use crate::stamp::Stamps;
 
 /// Most motions of a recording that have rows of their own: each is 15 to 30 kB, which travel and are kept.
 const MOST_MOTIONS: usize = 32;
@@ -66,17 +67,27 @@ pub struct Motion {
     pub outcome: Outcome,
     /// What to know about it, or why it is not used.
     pub message: Option<String>,
+    /// The name that the robot's table has.
+    pub table_name: Option<String>,
+    /// Mean temperature of the recording, °C, and mean of its load, where it says them.
+    pub conditions: Conditions,
+    /// [`Stamps`] of the recording's files as text.
+    pub files: Option<String>,
 }
 
 /// Reduces the recording at a path or an address: a row for each of its motions, at least one. Whatever is wrong with it
 /// is told in the row.
 pub fn reduce(recording: &str, table: Option<&str>, band: Option<f64>) -> Vec<Motion> {
-    let reduced = catch_unwind(AssertUnwindSafe(|| reduced(recording, table, band)));
-    match reduced {
+    let mut stamps = Stamps::default();
+    let reduced = catch_unwind(AssertUnwindSafe(|| reduced(recording, table, band, &mut stamps)));
+    let mut motions = match reduced {
         Ok(Ok(motions)) => motions,
         Ok(Err((outcome, message))) => vec![none(outcome, message)],
         Err(_) => vec![none(Outcome::Failed, "dynid failed on this recording; please report it".to_owned())],
-    }
+    };
+    let files = stamps.to_text();
+    motions.iter_mut().for_each(|motion| motion.files.clone_from(&files));
+    motions
 }
 
 fn none(outcome: Outcome, message: String) -> Motion {
@@ -91,6 +102,9 @@ fn none(outcome: Outcome, message: String) -> Motion {
         relative_error: None,
         outcome,
         message,
+        table_name: None,
+        conditions: Conditions::default(),
+        files: None,
     }
 }
 
@@ -111,8 +125,13 @@ pub fn of_reading(error: FleetError) -> Why {
     (Outcome::Unreadable, error.to_string())
 }
 
-fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Vec<Motion>, Why> {
-    let fetched = fetch(recording, table).map_err(of_reading)?;
+fn reduced(
+    recording: &str,
+    table: Option<&str>,
+    band: Option<f64>,
+    stamps: &mut Stamps,
+) -> Result<Vec<Motion>, Why> {
+    let fetched = fetch(recording, table, stamps).map_err(of_reading)?;
     let model = fetched.dynamics.model();
     // Recordings go beside each other, so that each needs one thread only.
     let rows = ObserveSettings { threads: 1, ..ObserveSettings::default() };
@@ -131,6 +150,10 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
     words.extend(doubts(&fetched, &observed, &found).map_err(of_failure)?);
     words.extend(found.warnings.iter().map(ToString::to_string));
     words.extend(observed.left_out.iter().map(|what| format!("left out: {what}")));
+    let conditions = conditions(&fetched.manifest).unwrap_or_else(|error| {
+        words.push(format!("temperature and load are not known: {error}"));
+        Conditions::default()
+    });
     let message = (!words.is_empty()).then(|| words.join("; "));
     let row = |k: Option<usize>, name: &str| {
         let factor = Reduced::of(observation, &found, model.robot(), k);
@@ -144,6 +167,9 @@ fn reduced(recording: &str, table: Option<&str>, band: Option<f64>) -> Result<Ve
             relative_error: found.relative_error,
             outcome: Outcome::Used,
             message: message.clone(),
+            table_name: Some(model.robot().name.to_string()),
+            conditions,
+            files: None,
         }
     };
     let names = &observation.trajectories;

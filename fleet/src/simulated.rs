@@ -23,10 +23,8 @@ const WORN: &str = "Fc2";
 /// First day: 2026-03-01.
 const FIRST: Day = 20_513;
 
-/// Standard deviation of what distinguishes the friction of siblings, and that of a robot from day to day. Real friction
-/// varies more, with temperature.
+/// Standard deviation of what distinguishes the friction of siblings.
 const BETWEEN_ROBOTS: f64 = 0.03;
-const DAY_TO_DAY: f64 = 0.002;
 
 /// By how much the friction of the worn gear has grown on the last day.
 const WEAR: f64 = 0.6;
@@ -42,6 +40,9 @@ pub struct Plan {
     pub motions: usize,
     /// Rows a second, Hz.
     pub rate: f64,
+    /// Standard deviation of a robot's friction from day to day, as a part of it. Real friction varies by some hundredths, with
+    /// temperature.
+    pub day_to_day: f64,
     /// The same seed gives the same fleet.
     pub seed: u64,
 }
@@ -65,12 +66,9 @@ pub fn simulate(folder: &Path, plan: &Plan) -> Result<PathBuf> {
             let day = FIRST + past as Day;
             let wears = robot + 1 == plan.robots;
             let since = past as f64 / (plan.days.max(2) - 1) as f64;
-            let today = today(
-                model,
-                &own,
-                random(plan, [2, robot as u64, past as u64]),
-                if wears { WEAR * since } else { 0.0 },
-            );
+            let wear = if wears { WEAR * since } else { 0.0 };
+            let of_day = random(plan, [2, robot as u64, past as u64]);
+            let today = today(model, &own, of_day, (wear, plan.day_to_day));
             let mut noise = random(plan, [3, robot as u64, past as u64]);
             let recorded: Vec<Trajectory> = signals
                 .iter()
@@ -139,12 +137,12 @@ fn own_parameters(model: &dyn Model, chi: &[f64], mut random: Pcg64) -> Vec<f64>
         .collect()
 }
 
-/// The parameters of a robot on a day, with what its gear has worn.
-fn today(model: &dyn Model, own: &[f64], mut random: Pcg64, wear: f64) -> Vec<f64> {
+/// The parameters of a robot on a day, with what its gear has worn and its friction varies.
+fn today(model: &dyn Model, own: &[f64], mut random: Pcg64, (wear, varies): (f64, f64)) -> Vec<f64> {
     let base = model.robot().base.iter().zip(own);
     base.map(|(b, &x)| {
         let worn = if b.name == WORN { 1.0 + wear } else { 1.0 };
-        if is_friction(&b.name) { x * worn * (1.0 + DAY_TO_DAY * draw(&mut random)) } else { x }
+        if is_friction(&b.name) { x * worn * (1.0 + varies * draw(&mut random)) } else { x }
     })
     .collect()
 }

@@ -3,6 +3,7 @@
 mod run;
 mod simulate;
 mod sql;
+mod told;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -5,8 +5,10 @@ use std::time::Duration;
 
 use clap::Args;
 use clap::builder::TypedValueParser;
+use dynid::output::{finished, print};
 
 use super::out_of;
+use super::told::told;
 use crate::day::{self, Day};
 use crate::engine::Engine;
 use crate::error::Result;
@@ -44,12 +46,6 @@ pub(super) async fn run(options: &Options) -> Result<()> {
     let out = out_of(&fleet, options.out.as_deref());
     let engine = Engine::at(options.cluster.as_deref(), Duration::from_secs(options.timeout));
     let did = crate::run::run(&fleet, &out, &engine, options.since).await?;
-    println!(
-        "{} recordings, {} reduced now, {} days worked out now; results in {}",
-        did.recordings,
-        did.reduced,
-        did.days,
-        out.display()
-    );
-    Ok(())
+    print(&told(&did, &out));
+    Ok(finished()?)
 }

@@ -25,9 +25,17 @@ pub(super) struct Options {
     /// Rows a second, Hz
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(50..=5000))]
     rate: u16,
+    /// Standard deviation of a robot's friction from day to day, as a part of it; real friction varies by some hundredths
+    #[arg(long, default_value_t = 0.002, value_parser = a_part, value_name = "PART")]
+    day_to_day: f64,
     /// The same seed gives the same fleet
     #[arg(long, default_value_t = 1)]
     seed: u64,
+}
+
+fn a_part(text: &str) -> std::result::Result<f64, String> {
+    let part = text.parse().ok().filter(|part| (0.0..=0.2).contains(part));
+    part.ok_or_else(|| "expected a number from 0 to 0.2".to_owned())
 }
 
 /// Simulates a fleet.
@@ -37,6 +45,7 @@ pub(super) fn run(options: &Options) -> Result<()> {
         days: options.days.into(),
         motions: options.motions.into(),
         rate: options.rate.into(),
+        day_to_day: options.day_to_day,
         seed: options.seed,
     };
     let fleet = simulate(&options.out, &plan)?;

@@ -24,6 +24,10 @@ pub fn motion_fields() -> Fields {
         ("relative_error", DataType::Float64),
         ("outcome", DataType::Utf8),
         ("message", DataType::Utf8),
+        ("table_name", DataType::Utf8),
+        ("own_temperature", DataType::Float64),
+        ("own_load", DataType::Float64),
+        ("files", DataType::Utf8),
     ])
 }
 
@@ -83,15 +87,22 @@ fn arrays_of(motions: &[Motion]) -> Vec<ArrayRef> {
             motions.iter().map(|m| i64::try_from(of(m)).unwrap_or(i64::MAX)),
         ))
     };
+    let number = |of: fn(&Motion) -> Option<f64>| -> ArrayRef {
+        Arc::new(Float64Array::from_iter(motions.iter().map(of)))
+    };
     vec![
         Arc::new(StringArray::from_iter(motions.iter().map(|m| m.name.as_deref()))),
         Arc::new(BinaryArray::from_iter(motions.iter().map(|m| m.factor.as_deref()))),
         counts(|m| m.rows),
         counts(|m| m.samples),
         counts(|m| m.left_out),
-        Arc::new(Float64Array::from_iter(motions.iter().map(|m| m.band))),
-        Arc::new(Float64Array::from_iter(motions.iter().map(|m| m.relative_error))),
+        number(|m| m.band),
+        number(|m| m.relative_error),
         Arc::new(StringArray::from_iter_values(motions.iter().map(|m| m.outcome.name()))),
         Arc::new(StringArray::from_iter(motions.iter().map(|m| m.message.as_deref()))),
+        Arc::new(StringArray::from_iter(motions.iter().map(|m| m.table_name.as_deref()))),
+        number(|m| m.conditions.temperature),
+        number(|m| m.conditions.load),
+        Arc::new(StringArray::from_iter(motions.iter().map(|m| m.files.as_deref()))),
     ]
 }

@@ -1,9 +1,11 @@
 //! A day of a fleet: the factors of its recordings, robot by robot.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use datafusion::arrow::array::{BooleanArray, RecordBatch};
 use datafusion::arrow::compute::{concat_batches, filter_record_batch};
+use datafusion::arrow::datatypes::SchemaRef;
 use dynid_runtime::estimation::Reduced;
 
 use super::folder::OutFolder;
@@ -23,31 +25,46 @@ pub struct RobotDay {
     pub temperature: Option<f64>,
     /// Mean of their loads, where they say one.
     pub load: Option<f64>,
+    /// The name that the robot's table has.
+    pub table_name: Option<String>,
 }
 
-/// Keys of the recordings that a day was done with; none where it was not done.
+/// Keys of recordings, and the stamps of their files where they are known.
+pub type Known = BTreeMap<String, Option<String>>;
+
+/// The recordings that a day was done with; none where it was not done.
 ///
 /// # Errors
 /// A table that is none.
-pub fn done(out: &OutFolder, day: Day) -> Result<BTreeSet<String>> {
-    let table = tables::read(&out.of_day("screening", day), &screening_schema())?;
-    Ok(table.iter().flat_map(keys).collect())
+pub fn done(out: &OutFolder, day: Day) -> Result<Known> {
+    known(&out.of_day("screening", day), &screening_schema())
 }
 
-/// Keys of the recordings of a day that were reduced, whether the day is done or not.
+/// The recordings of a day that were reduced, whether the day is done or not.
 ///
 /// # Errors
 /// A table that is none.
-pub fn reduced(out: &OutFolder, day: Day) -> Result<BTreeSet<String>> {
-    let table = tables::read(&out.of_day("factors", day), &factors_schema())?;
-    Ok(table.iter().flat_map(keys).collect())
+pub fn reduced(out: &OutFolder, day: Day) -> Result<Known> {
+    known(&out.of_day("factors", day), &factors_schema())
 }
 
-fn keys(table: &RecordBatch) -> Vec<String> {
-    (0..table.num_rows()).filter_map(|k| text(table, "key", k).map(str::to_owned)).collect()
+/// A recording that was reduced and whose day is not done since.
+///
+/// # Errors
+/// A table that is none.
+pub fn pending(out: &OutFolder, key: &str) -> Result<Known> {
+    known(&out.pending(key), &factors_schema())
 }
 
-/// Brings the motions of a day together, from its table and from what was reduced since, and writes the table.
+fn known(path: &Path, schema: &SchemaRef) -> Result<Known> {
+    let table = tables::read(path, schema)?;
+    let row = |table: &RecordBatch, k: usize| {
+        Some((text(table, "key", k)?.to_owned(), text(table, "files", k).map(str::to_owned)))
+    };
+    Ok(table.iter().flat_map(|table| (0..table.num_rows()).filter_map(|k| row(table, k))).collect())
+}
+
+/// Brings the motions of a day together, from what was reduced since its table was written and from it, and writes the table.
 ///
 /// # Errors
 /// A table that is none, or what the file system says.
@@ -57,21 +74,21 @@ pub fn gather(out: &OutFolder, day: Day, items: &[&Item]) -> Result<RecordBatch>
     let path = out.of_day("factors", day);
     let wanted: BTreeSet<String> = items.iter().map(|item| item.key()).collect();
     let mut parts = Vec::new();
-    let mut have = BTreeSet::new();
-    if let Some(before) = tables::read(&path, &schema)? {
-        let still: BooleanArray = (0..before.num_rows())
-            .map(|k| Some(text(&before, "key", k).is_some_and(|key| wanted.contains(key))))
-            .collect();
-        have.extend(keys(&before));
-        parts.push(filter_record_batch(&before, &still).map_err(failed)?);
-    }
+    let mut fresh = BTreeSet::new();
     for item in items {
         let key = item.key();
-        if !have.contains(&key)
-            && let Some(part) = tables::read(&out.pending(&key), &schema)?
-        {
+        if let Some(part) = tables::read(&out.pending(&key), &schema)? {
             parts.push(part);
+            fresh.insert(key);
         }
+    }
+    if let Some(before) = tables::read(&path, &schema)? {
+        let still: BooleanArray = (0..before.num_rows())
+            .map(|k| {
+                Some(text(&before, "key", k).is_some_and(|key| wanted.contains(key) && !fresh.contains(key)))
+            })
+            .collect();
+        parts.push(filter_record_batch(&before, &still).map_err(failed)?);
     }
     let all = concat_batches(&schema, &parts).map_err(failed)?;
     // The same recordings give the same table, whenever each of them was reduced.
@@ -88,7 +105,7 @@ pub fn gather(out: &OutFolder, day: Day, items: &[&Item]) -> Result<RecordBatch>
 /// Removes what was kept of recordings beside the table of their day.
 pub fn clear_pending(out: &OutFolder, items: &[&Item]) {
     for item in items {
-        // What stays is found in the table first.
+        // What stays is what the table has.
         let _ = std::fs::remove_file(out.pending(&item.key()));
     }
 }
@@ -129,21 +146,30 @@ pub fn robots(factors: &RecordBatch) -> Result<(BTreeMap<String, RobotDay>, BTre
             },
             None => {
                 let recordings = BTreeMap::from([(recording, factor.clone())]);
-                robots.insert(robot, RobotDay { all: factor, recordings, temperature: None, load: None });
+                let own =
+                    RobotDay { all: factor, recordings, temperature: None, load: None, table_name: None };
+                robots.insert(robot, own);
             }
         }
     }
     for (robot, day) in &mut robots {
-        day.temperature = mean(factors, robot, "temperature");
-        day.load = mean(factors, robot, "load");
+        day.temperature = mean(factors, robot, ["temperature", "own_temperature"]);
+        day.load = mean(factors, robot, ["load", "own_load"]);
+        let mut own = used(factors, robot);
+        day.table_name = own.find_map(|k| text(factors, "table_name", k).map(str::to_owned));
     }
     Ok((robots, left_out))
 }
 
-/// Mean of a column over the motions of a robot that are used.
-fn mean(factors: &RecordBatch, robot: &str, column: &str) -> Option<f64> {
-    let of_robot = (0..factors.num_rows())
-        .filter(|&k| text(factors, "robot", k) == Some(robot) && bytes(factors, "factor", k).is_some());
-    let values: Vec<f64> = of_robot.filter_map(|k| number(factors, column, k)).collect();
+/// Mean over the motions of a robot that are used: of what the table of recordings says, else of what the recording does.
+fn mean(factors: &RecordBatch, robot: &str, [said, own]: [&str; 2]) -> Option<f64> {
+    let value = |k: usize| number(factors, said, k).or_else(|| number(factors, own, k));
+    let values: Vec<f64> = used(factors, robot).filter_map(value).collect();
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// Rows of the motions of a robot that are used.
+fn used<'a>(factors: &'a RecordBatch, robot: &'a str) -> impl Iterator<Item = usize> + 'a {
+    (0..factors.num_rows())
+        .filter(move |&k| text(factors, "robot", k) == Some(robot) && bytes(factors, "factor", k).is_some())
 }

@@ -49,7 +49,8 @@ pub async fn finish(
         for (recording, factor) in &own.recordings {
             let Some(rise) = rise(factor, &chi) else { continue };
             rises.insert(recording.as_str(), rise);
-            let news = rise.ratio > fleet.diagnosis.error_rises * history.before(robot, day);
+            let news = rise.ratio > fleet.diagnosis.error_rises * history.before(robot, day)
+                && history.predicted(robot, day).is_some_and(|limit| rise.ratio > limit);
             if fleet.diagnosis.enabled && rise.certain && news {
                 let table = items.iter().find(|i| &i.recording == recording).and_then(|i| i.table.clone());
                 let reference = reference.clone();
@@ -78,6 +79,7 @@ struct Parameters {
     tables: Vec<String>,
     temperatures: Vec<Option<f64>>,
     loads: Vec<Option<f64>>,
+    table_names: Vec<Option<String>>,
 }
 
 impl Parameters {
@@ -92,6 +94,7 @@ impl Parameters {
         self.tables.extend(std::iter::repeat_n(day.all.fingerprint().to_owned(), count));
         self.temperatures.extend(std::iter::repeat_n(day.temperature, count));
         self.loads.extend(std::iter::repeat_n(day.load, count));
+        self.table_names.extend(std::iter::repeat_n(day.table_name.clone(), count));
         for (parameter, (_, unit)) in found.parameters.iter().zip(day.all.parameters()) {
             self.robots.push(robot.to_owned());
             self.names.push(parameter.name.clone());
@@ -114,6 +117,7 @@ impl Parameters {
             texts(self.tables.iter().map(|t| Some(t.as_str()))),
             numbers(self.temperatures),
             numbers(self.loads),
+            texts(self.table_names.iter().map(Option::as_deref)),
         ];
         batch(&parameters_schema(), columns)
     }
@@ -161,6 +165,7 @@ fn screening(
         numbers(first.iter().map(|(k, ..)| number(factors, "relative_error", *k))),
         numbers(first.iter().map(|(k, ..)| rise(*k).map(|rise| rise.ratio))),
         flags(first.iter().map(|(k, ..)| rise(*k).map(|rise| rise.certain))),
+        column("files"),
     ];
     batch(&screening_schema(), columns)
 }

@@ -1,5 +1,6 @@
 //! The folder of a fleet's results.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -49,6 +50,14 @@ impl OutFolder {
     /// The file of a recording that was reduced, until its day is done.
     pub fn pending(&self, key: &str) -> PathBuf {
         self.path.join("pending").join(format!("{key}.parquet"))
+    }
+
+    /// Keys of the recordings that were reduced and whose days are not done since.
+    pub fn all_pending(&self) -> BTreeSet<String> {
+        let files = std::fs::read_dir(self.path.join("pending")).into_iter().flatten().flatten();
+        files
+            .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".parquet")?.to_owned()))
+            .collect()
     }
 
     /// Days of a table that are there, ascending.

@@ -62,6 +62,13 @@ impl<'a> References<'a> {
         Ok(Self { fleet, out, first, known: BTreeMap::new() })
     }
 
+    /// Forgets what a robot's first day said, of which a recording was replaced.
+    pub fn forget(&mut self, robot: &str, day: Day) {
+        if self.first.get(robot).is_some_and(|(first, _)| *first == day) {
+            self.first.remove(robot);
+        }
+    }
+
     /// The reference of a robot, of which a day gave this factor: that becomes its reference where it has none.
     ///
     /// # Errors

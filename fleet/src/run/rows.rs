@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use datafusion::arrow::array::{
-    ArrayRef, AsArray, BooleanArray, Date32Array, Float64Array, Int64Array, RecordBatch, StringArray,
+    Array, ArrayRef, AsArray, BooleanArray, Date32Array, Float64Array, Int64Array, RecordBatch, StringArray,
 };
 use datafusion::arrow::datatypes::{DataType, Date32Type, Field, Schema, SchemaRef};
 
@@ -30,13 +30,14 @@ pub fn factors_schema() -> SchemaRef {
 }
 
 /// `parameters`: robot, day, parameter, value, sigma, reference, unit, robot_table (the fingerprint of the robot's table, which
-/// siblings share), and the means of the day's temperatures and loads.
+/// siblings share), the means of the day's temperatures and loads, and the name that the robot's table has.
 pub fn parameters_schema() -> SchemaRef {
     let mut fields = of_recording();
     fields[2] = Field::new("parameter", DataType::Utf8, false);
     fields.extend(["value", "sigma", "reference"].map(|name| Field::new(name, DataType::Float64, true)));
     fields.extend(["unit", "robot_table"].map(|name| Field::new(name, DataType::Utf8, false)));
     fields.extend(["temperature", "load"].map(|name| Field::new(name, DataType::Float64, true)));
+    fields.push(Field::new("table_name", DataType::Utf8, true));
     schema(fields)
 }
 
@@ -52,6 +53,7 @@ pub fn screening_schema() -> SchemaRef {
     fields.extend(["motions", "rows", "samples", "left_out"].map(|name| field(name, DataType::Int64)));
     fields.extend(["band", "relative_error", "rise"].map(|name| field(name, DataType::Float64)));
     fields.push(field("rose", DataType::Boolean));
+    fields.push(field("files", DataType::Utf8));
     schema(fields)
 }
 
@@ -117,5 +119,11 @@ pub fn bytes<'a>(batch: &'a RecordBatch, column: &str, row: usize) -> Option<&'a
 
 /// The day of a row.
 pub fn day_of(batch: &RecordBatch, row: usize) -> Option<Day> {
-    Some(batch.column_by_name("day")?.as_primitive_opt::<Date32Type>()?.value(row))
+    date(batch, "day", row)
+}
+
+/// A day of a table.
+pub fn date(batch: &RecordBatch, column: &str, row: usize) -> Option<Day> {
+    let column = batch.column_by_name(column)?.as_primitive_opt::<Date32Type>()?;
+    (!column.is_null(row)).then(|| column.value(row))
 }

@@ -3,9 +3,9 @@
 use std::fs::File;
 use std::path::Path;
 
-use datafusion::arrow::array::RecordBatch;
+use datafusion::arrow::array::{RecordBatch, new_null_array};
 use datafusion::arrow::compute::concat_batches;
-use datafusion::arrow::datatypes::SchemaRef;
+use datafusion::arrow::datatypes::{FieldRef, SchemaRef};
 use datafusion::parquet::arrow::ArrowWriter;
 use datafusion::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use dynid::output::fill;
@@ -26,7 +26,7 @@ pub fn write(path: &Path, batch: &RecordBatch) -> Result<()> {
     fill(path, &mut |out: &mut dyn std::io::Write| out.write_all(&bytes)).map_err(|error| failed(&error))
 }
 
-/// Reads a table; `None` where there is none.
+/// Reads a table; `None` where there is none. A column that may be empty and that an older dynid-fleet did not write is empty.
 ///
 /// # Errors
 /// A file that is no Parquet, or has other columns.
@@ -48,8 +48,11 @@ pub fn read(path: &Path, schema: &SchemaRef) -> Result<Option<RecordBatch>> {
         .collect::<std::result::Result<_, _>>()
         .map_err(|error| failed(&error))?;
     let renamed = batches.iter().map(|batch| {
-        let columns: Option<Vec<_>> =
-            schema.fields().iter().map(|f| batch.column_by_name(f.name()).cloned()).collect();
+        let column = |field: &FieldRef| match batch.column_by_name(field.name()) {
+            None if field.is_nullable() => Some(new_null_array(field.data_type(), batch.num_rows())),
+            found => found.cloned(),
+        };
+        let columns: Option<Vec<_>> = schema.fields().iter().map(column).collect();
         columns.and_then(|columns| RecordBatch::try_new(schema.clone(), columns).ok())
     });
     let batches: Option<Vec<RecordBatch>> = renamed.collect();

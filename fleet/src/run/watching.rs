@@ -1,15 +1,15 @@
-//! From the parameters of all days to `trends`, `alarms` and `fleet.html`.
+//! From the parameters of all days to `trends`, `alarms` and pages.
 
 use std::collections::BTreeMap;
 
 use datafusion::arrow::array::RecordBatch;
 use datafusion::arrow::datatypes::{DataType, Field, Schema, SchemaRef};
-use dynid::output::write;
-use dynid_fleet_watch::{Alarm, Kind, Observation, Series, Settings, Trend, page, watch};
+use dynid_fleet_watch::{Observation, Series, Settings, Trend, watch};
 
 use super::folder::OutFolder;
+use super::pages::{self, TableNames};
 use super::rows::{batch, counts, days, number, numbers, parameters_schema, text, texts};
-use super::tables;
+use super::{alarms, tables};
 use crate::day::Day;
 use crate::error::Result;
 
@@ -19,28 +19,30 @@ use crate::error::Result;
 /// # Errors
 /// A table that is none, or what the file system says.
 pub fn watch_all(out: &OutFolder) -> Result<()> {
-    let series = series(out)?;
+    let (series, names) = series(out)?;
     let watched = watch(&series, &Settings::default());
     tables::write(&out.file("trends.parquet"), &trends(&watched.trends)?)?;
-    tables::write(&out.file("alarms.parquet"), &alarms(&watched.alarms)?)?;
-    write(&out.file("fleet.html"), &page(&series, &watched, &|_| None))?;
-    Ok(())
+    alarms::write(out, &watched.alarms)?;
+    pages::write(out, &series, &watched, &names)
 }
 
 /// What a series is of: robot, table and parameter.
 type Name = (String, String, String);
 
-fn series(out: &OutFolder) -> Result<Vec<Series>> {
+/// All series, and the names of robot tables by their fingerprints.
+fn series(out: &OutFolder) -> Result<(Vec<Series>, TableNames)> {
     let mut all: BTreeMap<Name, Series> = BTreeMap::new();
+    let mut names = TableNames::default();
     for day in out.days("parameters") {
         let Some(rows) = tables::read(&out.of_day("parameters", day), &parameters_schema())? else {
             continue;
         };
         for k in 0..rows.num_rows() {
             add(&mut all, &rows, k, day);
+            names.add(text(&rows, "robot_table", k), text(&rows, "table_name", k));
         }
     }
-    Ok(all.into_values().collect())
+    Ok((all.into_values().collect(), names))
 }
 
 fn add(all: &mut BTreeMap<Name, Series>, rows: &RecordBatch, k: usize, day: Day) {
@@ -62,12 +64,9 @@ fn add(all: &mut BTreeMap<Name, Series>, rows: &RecordBatch, k: usize, day: Day)
     own.observations.push(Observation { day: day.into(), value, sigma, temperature, load });
 }
 
-fn named() -> Vec<Field> {
-    ["robot", "robot_table", "parameter", "unit"].map(|name| Field::new(name, DataType::Utf8, false)).into()
-}
-
 fn schema(fields: &[(&str, DataType)]) -> SchemaRef {
-    let mut all = named();
+    let named = ["robot", "robot_table", "parameter", "unit"];
+    let mut all: Vec<Field> = named.map(|name| Field::new(name, DataType::Utf8, false)).into();
     all.extend(fields.iter().map(|(name, kind)| Field::new(*name, kind.clone(), true)));
     Schema::new(all).into()
 }
@@ -116,51 +115,6 @@ fn trends(trends: &[Trend]) -> Result<RecordBatch> {
         number(|t| Some(t.day_to_day)),
         number(|t| t.siblings.map(|s| s.deviations)),
         number(|t| t.e_value),
-    ];
-    batch(&schema, columns)
-}
-
-fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Drift => "drift",
-        Kind::Step => "step",
-        Kind::UnlikeSiblings => "unlike_siblings",
-        _ => "change",
-    }
-}
-
-fn alarms(alarms: &[Alarm]) -> Result<RecordBatch> {
-    use DataType::{Date32, Float64, Utf8};
-    let schema = schema(&[
-        ("day", Date32),
-        ("began", Date32),
-        ("began_from", Date32),
-        ("began_to", Date32),
-        ("kind", Utf8),
-        ("change", Float64),
-        ("change_sigma", Float64),
-        ("before", Float64),
-        ("e_value", Float64),
-        ("sentence", Utf8),
-    ]);
-    let text = |of: fn(&Alarm) -> &str| texts(alarms.iter().map(|a| Some(of(a))));
-    let day = |of: fn(&Alarm) -> i64| days(alarms.iter().map(|a| of_table(of(a))));
-    let number = |of: fn(&Alarm) -> f64| numbers(alarms.iter().map(|a| Some(of(a))));
-    let columns = vec![
-        text(|a| &a.robot),
-        text(|a| &a.table),
-        text(|a| &a.parameter),
-        text(|a| &a.unit),
-        day(|a| a.day),
-        day(|a| a.began),
-        day(|a| a.began_between.0),
-        day(|a| a.began_between.1),
-        text(|a| kind(a.kind)),
-        number(|a| a.change),
-        number(|a| a.change_sigma),
-        number(|a| a.before),
-        number(|a| a.e_value),
-        text(|a| &a.sentence),
     ];
     batch(&schema, columns)
 }

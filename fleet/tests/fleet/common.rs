@@ -23,12 +23,12 @@ pub struct Fleet {
 impl Fleet {
     /// So many robots and days with a short recording each, which are not diagnosed.
     pub fn new(robots: usize, days: usize) -> Self {
-        Self::of(&Plan { robots, days, motions: 1, rate: 100.0, seed: 3 })
+        Self::of(&Plan { robots, days, motions: 1, rate: 100.0, day_to_day: 0.002, seed: 3 })
     }
 
     /// The same with recordings that take some tenths of a second each, in which a process can be killed.
     pub fn long(robots: usize, days: usize) -> Self {
-        Self::of(&Plan { robots, days, motions: 8, rate: 500.0, seed: 3 })
+        Self::of(&Plan { robots, days, motions: 8, rate: 500.0, day_to_day: 0.002, seed: 3 })
     }
 
     fn of(plan: &Plan) -> Self {

@@ -6,4 +6,6 @@ mod cluster;
 mod common;
 mod embedded;
 mod listing;
+#[cfg(feature = "s3")]
+mod s3;
 mod store;

@@ -1,5 +1,6 @@
 //! Recordings on a web server.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{BufRead, BufReader, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
@@ -32,12 +33,19 @@ fn answer(stream: TcpStream, folder: &Path) -> Option<()> {
         }
         let path: PathBuf = folder.join(first.split(' ').nth(1)?.trim_start_matches('/'));
         let (status, body) = match std::fs::read(&path) {
-            _ if !first.starts_with("GET") => ("405 Method Not Allowed", Vec::new()),
+            _ if !first.starts_with("GET") && !first.starts_with("HEAD") => {
+                ("405 Method Not Allowed", Vec::new())
+            }
             Ok(body) => ("200 OK", body),
             Err(_) => ("404 Not Found", Vec::new()),
         };
-        write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {}\r\n\r\n", body.len()).ok()?;
-        stream.write_all(&body).ok()?;
+        let mut tag = DefaultHasher::new();
+        body.hash(&mut tag);
+        let (length, tag) = (body.len(), tag.finish());
+        write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {length}\r\nETag: \"{tag:x}\"\r\n\r\n").ok()?;
+        if first.starts_with("GET") {
+            stream.write_all(&body).ok()?;
+        }
     }
 }
 
@@ -60,6 +68,23 @@ fn recordings_on_a_web_server_give_the_same_parameters() {
         outcomes[2].0 == "unreadable" && outcomes[2].1.contains("there is no such object"),
         "{outcomes:?}"
     );
+    // The server tells what was replaced, and what has come.
+    assert_eq!(fleet.run(&remote).reduced, 0);
+    for file in std::fs::read_dir(fleet.recording("r002", 1)).unwrap().flatten() {
+        std::fs::copy(file.path(), fleet.recording("r001", 1).join(file.file_name())).unwrap();
+    }
+    std::fs::rename(fleet.recording("r002", 1), fleet.folder.path().join("logs/none")).unwrap();
+    let again = fleet.run(&remote);
+    assert_eq!((again.reduced, again.replaced), (2, 2));
+    let of = |robot: &str| {
+        numbers(
+            &remote,
+            &format!(
+                "SELECT value FROM parameters WHERE robot = '{robot}' AND value IS NOT NULL ORDER BY parameter"
+            ),
+        )
+    };
+    assert!(of("r001") == of("r002") && of("r001") == of("r003") && of("r001").len() > 30);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::Series;
 use crate::calendar::date;
 use crate::evidence::Began;
 use crate::filter::Estimated;
+use crate::meanwhile::Meanwhile;
 use crate::words::{percent_of, plus_minus, rarity};
 use serde::Serialize;
 
@@ -48,7 +49,12 @@ pub struct Alarm {
     pub before: f64,
     /// Evidence against "nothing has changed" on the day of the alarm, at most 1e300.
     pub e_value: f64,
-    /// All of this in plain words.
+    /// Siblings that had days before the change and after it; for [`Kind::UnlikeSiblings`] those compared with.
+    pub siblings: usize,
+    /// Median of the changes of these siblings from before `began` to the day of the alarm, as identified, in `unit`; `None`
+    /// where there are none, and for [`Kind::UnlikeSiblings`].
+    pub siblings_change: Option<f64>,
+    /// What it is of, when and how much it changed, in plain words.
     pub sentence: String,
 }
 
@@ -64,7 +70,12 @@ pub(crate) struct Raised<'a> {
 
 impl Raised<'_> {
     /// For a change of a robot against itself.
-    pub(crate) fn change(&self, began: &Began, (change, before): (Estimated, Estimated)) -> Alarm {
+    pub(crate) fn change(
+        &self,
+        began: &Began,
+        (change, before): (Estimated, Estimated),
+        meanwhile: Meanwhile,
+    ) -> Alarm {
         let Series { robot, parameter, unit, .. } = self.source;
         let verb = match (began.kind, change.mean > 0.0) {
             (Kind::Drift, true) => "has been rising",
@@ -86,11 +97,17 @@ impl Raised<'_> {
             date(self.day),
             rarity(self.ln_e_value),
         );
-        self.alarm(began.kind, (began.start, began.between), change, before.mean, sentence)
+        let alarm = self.alarm(began.kind, (began.start, began.between), change, before.mean, sentence);
+        Alarm { siblings: meanwhile.siblings, siblings_change: meanwhile.change, ..alarm }
     }
 
     /// For a robot that has not been like its siblings since its first day.
-    pub(crate) fn unlike_siblings(&self, first: i64, level: Estimated, centre: f64) -> Alarm {
+    pub(crate) fn unlike_siblings(
+        &self,
+        first: i64,
+        level: Estimated,
+        (siblings, centre): (usize, f64),
+    ) -> Alarm {
         let Series { robot, parameter, unit, .. } = self.source;
         let change = Estimated { mean: level.mean - centre, sigma: level.sigma };
         let side = if change.mean > 0.0 { "above" } else { "below" };
@@ -100,7 +117,10 @@ impl Raised<'_> {
             percent_of(change, Estimated { mean: centre, sigma: level.sigma }),
             rarity(self.ln_e_value),
         );
-        self.alarm(Kind::UnlikeSiblings, (first, (first, first)), change, centre, sentence)
+        Alarm {
+            siblings,
+            ..self.alarm(Kind::UnlikeSiblings, (first, (first, first)), change, centre, sentence)
+        }
     }
 
     fn alarm(
@@ -124,6 +144,8 @@ impl Raised<'_> {
             change_sigma: change.sigma,
             before,
             e_value: self.ln_e_value.exp().min(LARGEST),
+            siblings: 0,
+            siblings_change: None,
             sentence,
         }
     }

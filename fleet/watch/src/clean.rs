@@ -26,9 +26,9 @@ pub(crate) struct Clean<'a> {
     pub(crate) days: Vec<Day>,
 }
 
-impl Clean<'_> {
+impl<'a> Clean<'a> {
     /// What robots of one table and parameter share.
-    pub(crate) fn family(&self) -> (&str, &str) {
+    pub(crate) fn family(&self) -> (&'a str, &'a str) {
         (&self.source.table, &self.source.parameter)
     }
 }

@@ -3,6 +3,7 @@
 use crate::alarm::{Alarm, Raised};
 use crate::clean::{Clean, Day, clean};
 use crate::discoveries::{Weights, rejected};
+use crate::meanwhile::{Meanwhile, meanwhile};
 use crate::member::{Group, Member};
 use crate::siblings::{Levels, ln_e_value};
 use crate::{Series, Settings};
@@ -219,21 +220,28 @@ impl<'a> Fleet<'a> {
         let ln_e_value = member.evidence.ln_e_value();
         let raised = Raised { source: entry.clean.source, day, ln_e_value };
         Some(match member.evidence.began() {
-            Some(began) => raised.change(&began, member.sizes(&began)),
-            None => raised.unlike_siblings(
-                entry.clean.days.first()?.day,
-                member.level,
-                self.centre_of_siblings(e)?,
-            ),
+            Some(began) => raised.change(&began, member.sizes(&began), self.meanwhile(e, began.start)),
+            None => {
+                let levels = self.levels_of_siblings(e)?;
+                let centre = crate::robust::median(&levels)?;
+                raised.unlike_siblings(entry.clean.days.first()?.day, member.level, (levels.len(), centre))
+            }
         })
     }
 
-    /// Median of the levels of a series' siblings.
-    fn centre_of_siblings(&self, e: usize) -> Option<f64> {
+    /// What robots with the same table did up to now while a series changed.
+    fn meanwhile(&self, e: usize, began: i64) -> Meanwhile {
+        let family = self.entries[e].clean.family();
+        let same = |(k, other): &(usize, &Entry<'_>)| *k != e && other.clean.family() == family;
+        let siblings = self.entries.iter().enumerate().filter(same);
+        meanwhile(siblings.map(|(_, sibling)| &sibling.clean.days[..sibling.seen]), began)
+    }
+
+    /// Levels of a series' siblings.
+    fn levels_of_siblings(&self, e: usize) -> Option<Vec<f64>> {
         let key = self.entries[e].key()?;
         let same = self.entries.iter().enumerate().filter(|(k, other)| *k != e && other.key() == Some(key));
-        let levels: Vec<f64> = same.filter_map(|(_, s)| Some(s.member.as_ref()?.level.mean)).collect();
-        crate::robust::median(&levels)
+        Some(same.filter_map(|(_, s)| Some(s.member.as_ref()?.level.mean)).collect())
     }
 }
 

@@ -10,7 +10,7 @@
 //!    every day     prediction (filter) -> evidence of a change (evidence); level against siblings (siblings)
 //!                  -> which series are alarmed (discoveries) -> Alarm
 //! whole series  -> monotone trend (trend), change of level (change) -> Trend
-//! Trends, alarms -> fleet.html (page)
+//! Trends, alarms -> fleet.html, a page for each robot (page)
 //! ```
 //!
 //! ```
@@ -38,6 +38,7 @@ mod dispersion;
 mod evidence;
 mod filter;
 mod fleet;
+mod meanwhile;
 mod member;
 mod page;
 mod robust;
@@ -53,9 +54,10 @@ mod types;
 mod words;
 
 pub use alarm::{Alarm, Kind};
-pub use page::page;
+pub use page::{FindingFact, Labels, Pages, RecordingFact, RobotFacts};
 pub use settings::Settings;
 pub use types::{Observation, Series, SiblingComparison, Trend, Watched};
+pub use words::{plus_minus, signed, significant};
 
 /// Trends and alarms of a fleet.
 ///

@@ -1,7 +1,11 @@
 //! What the whole promises.
 
 use crate::testing::{Noise, fleet, series};
-use crate::{Alarm, Kind, Observation, Series, Settings, page, watch};
+use crate::{
+    Alarm, FindingFact, Kind, Labels, Observation, Pages, RecordingFact, RobotFacts, Series, Settings,
+    Watched, watch,
+};
+use std::collections::BTreeMap;
 
 fn alarms(series: &[Series]) -> Vec<Alarm> {
     watch(series, &Settings::default()).alarms
@@ -88,6 +92,10 @@ fn later_days_change_no_earlier_alarm() {
     }
 }
 
+fn fleet_page(series: &[Series], watched: &Watched) -> String {
+    Pages::new(series, watched, &BTreeMap::new(), Labels::plain()).fleet()
+}
+
 #[test]
 fn the_order_of_series_changes_no_byte() {
     let mut noise = Noise::new(24);
@@ -98,7 +106,7 @@ fn the_order_of_series_changes_no_byte() {
     turned.swap(3, 11);
     let text = |s: &[Series]| {
         let watched = watch(s, &Settings::default());
-        (serde_json::to_string(&watched).expect("numbers and strings"), page(s, &watched, &|_| None))
+        (serde_json::to_string(&watched).expect("numbers and strings"), fleet_page(s, &watched))
     };
     assert_eq!(text(&all), text(&turned));
 }
@@ -180,7 +188,9 @@ fn no_input_is_too_strange() {
         settings.outlier_days = strange;
         settings.calibration_days = if strange > 1.0 { usize::MAX } else { 0 };
         let watched = watch(&all, &settings);
-        assert!(page(&all, &watched, &|_| None).contains("<html"));
+        assert!(fleet_page(&all, &watched).contains("<html"));
+        let facts = BTreeMap::new();
+        assert!(Pages::new(&all, &watched, &facts, Labels::plain()).robot("odd0").contains("<html"));
     }
     watch(&[], &Settings::default());
 }
@@ -194,7 +204,9 @@ fn the_page_tells_the_worst_robot_first_and_escapes_names() {
     all[9].robot = "<b>&\"worst\"".into();
     all[9].unit = "<i>".into();
     let watched = watch(&all, &Settings::default());
-    let html = page(&all, &watched, &|robot| (robot != "r002").then(|| format!("reports/{robot}\"x.html")));
+    let link = |robot: &str| (robot != "r002").then(|| format!("reports/{robot}\"x.html"));
+    let facts = BTreeMap::new();
+    let html = Pages::new(&all, &watched, &facts, Labels { link: &link, ..Labels::plain() }).fleet();
     let at = |text: &str| html.find(text).unwrap_or_else(|| panic!("{text} is not there"));
     let strongest = watched.alarms.iter().max_by(|a, b| a.e_value.total_cmp(&b.e_value)).expect("two alarms");
     assert_eq!((watched.alarms.len(), strongest.robot.as_str()), (2, "<b>&\"worst\""));
@@ -227,4 +239,75 @@ fn load_explains_as_temperature_does_and_days_without_either_raise_no_alarm() {
     assert!(watched.alarms.is_empty(), "{:?}", watched.alarms);
     let near = watched.trends.iter().filter_map(|t| t.per_load).filter(|l| (l.0 - 2.0).abs() < 0.2).count();
     assert!(near >= 27, "{near}");
+}
+
+#[test]
+fn a_robot_without_siblings_says_so_and_with_them_what_they_did() {
+    let mut noise = Noise::new(32);
+    let mut all = fleet(&mut noise, 20, 40, 0.3);
+    changed(&mut all[2], |k| if k >= 25 { 30.0 } else { 0.0 });
+    all[7].table = "other".into();
+    changed(&mut all[7], |k| if k >= 25 { 30.0 } else { 0.0 });
+    let found = alarms(&all);
+    let of = |robot: &str| found.iter().find(|a| a.robot == robot).expect("an alarm");
+    assert_eq!(of("r002").siblings, 18);
+    assert!(of("r002").siblings_change.is_some_and(|change| change.abs() < 1.0), "{found:?}");
+    assert_eq!((of("r007").siblings, of("r007").siblings_change), (0, None));
+    let watched = watch(&all, &Settings::default());
+    let facts = BTreeMap::new();
+    let pages = Pages::new(&all, &watched, &facts, Labels::plain());
+    assert!(pages.robot("r002").contains("Meanwhile 18 robots with the same table: "));
+    assert!(pages.robot("r007").contains("No other robot with the same table was recorded meanwhile."));
+}
+
+#[test]
+fn a_robots_page_tells_its_alarms_findings_and_recordings_and_escapes_all_of_them() {
+    let mut noise = Noise::new(33);
+    let mut all = fleet(&mut noise, 12, 40, 0.3);
+    changed(&mut all[3], |k| if k >= 25 { 12.0 } else { 0.0 });
+    all[3].robot = "<b>".into();
+    let recording = |day, outcome: &str, message: &str| RecordingFact {
+        day,
+        recording: format!("logs/<{day}>.yaml"),
+        outcome: outcome.into(),
+        message: message.into(),
+        relative_error: Some(0.0312),
+        rise: Some(1.5),
+    };
+    let finding = FindingFact {
+        day: 20_025,
+        effect: "friction level change".into(),
+        sentence: "Friction of joint 1 & 2 rose.".into(),
+        confidence: Some(0.94),
+        ..FindingFact::default()
+    };
+    let recordings = vec![recording(20_001, "used", ""), recording(20_002, "unreadable", "<i>no table</i>")];
+    let facts = BTreeMap::from([
+        ("<b>".to_owned(), RobotFacts { recordings, findings: vec![finding] }),
+        (
+            "never".to_owned(),
+            RobotFacts { recordings: vec![recording(20_003, "refused", "why")], findings: vec![] },
+        ),
+    ]);
+    let watched = watch(&all, &Settings::default());
+    let table = |table: &str| format!("{table} & more");
+    let pages = Pages::new(&all, &watched, &facts, Labels { table: &table, ..Labels::plain() });
+    let html = pages.robot("<b>");
+    for told in [
+        "jumped up",
+        "Friction of joint 1 &amp; 2 rose.",
+        "confidence 0.940",
+        "&lt;i&gt;no table&lt;/i&gt;",
+        "Recordings: 1 used, 1 unreadable.",
+        "arm &amp; more",
+        "\u{d7} 1.50",
+        "class=\"band\"",
+        "href=\"../fleet.html\"",
+    ] {
+        assert!(html.contains(told), "{told}");
+    }
+    assert!(!html.contains("<b>") && !html.contains("<i>") && !html.contains("NaN"));
+    assert!(pages.robot("never").contains("No alarm; no recording gave parameters. Recordings: 1 refused."));
+    let all = pages.fleet();
+    assert!(all.contains("Not watched: no recording gave parameters") && all.contains("never"));
 }

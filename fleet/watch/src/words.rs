@@ -3,7 +3,7 @@
 use crate::filter::Estimated;
 
 /// A number with this many significant digits.
-pub(crate) fn significant(value: f64, digits: i32) -> String {
+pub fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".into() } else { "unknown".into() };
     }
@@ -20,7 +20,7 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
 }
 
 /// A value and its standard deviation, both to the place of the first digit of the latter.
-pub(crate) fn plus_minus(value: f64, sigma: f64, unit: &str) -> String {
+pub fn plus_minus(value: f64, sigma: f64, unit: &str) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     let place = sigma.abs().log10().floor();
     if !(place.is_finite() && (-6.0..6.0).contains(&place)) {
@@ -28,6 +28,18 @@ pub(crate) fn plus_minus(value: f64, sigma: f64, unit: &str) -> String {
     }
     let decimals = (-place).max(0.0) as usize;
     format!("{value:.decimals$} ± {sigma:.decimals$}{unit}")
+}
+
+/// A change with its sign, to the place of the first digit of `sigma`: `+0.01`.
+pub fn signed(change: f64, sigma: f64) -> String {
+    let size = plus_minus(change.abs(), sigma, "");
+    let size = size.split(" ±").next().unwrap_or_default();
+    let sign = match size.parse() {
+        Ok(0.0) => "",
+        _ if change < 0.0 => "\u{2212}",
+        _ => "+",
+    };
+    format!("{sign}{size}")
 }
 
 /// ` (12 %)` where the level before is known well enough to be divided by.
@@ -59,5 +71,9 @@ mod tests {
         assert_eq!(plus_minus(1234.5, 20.0, ""), "1234 ± 20");
         assert_eq!(plus_minus(3.0, 0.0, "kg"), "3.00 kg");
         assert_eq!(significant(45_678.0, 1), "50000");
+        assert_eq!(
+            [signed(0.26, 0.03), signed(-12.0, 3.0), signed(-0.01, 0.3)],
+            ["+0.26", "\u{2212}12", "0.0"]
+        );
     }
 }

@@ -175,19 +175,34 @@ impl<'a> Files<'a> {
         channel.columns.iter().map(|c| self.find(channel.file.as_ref(), c)).collect()
     }
 
+    /// Where columns of a file are, the trajectory's where none is named.
+    pub(super) fn columns(
+        &mut self,
+        file: Option<&String>,
+        columns: &[Column],
+    ) -> Result<Vec<Slot>, RecordingError> {
+        columns.iter().map(|column| self.find(file, column)).collect()
+    }
+
+    /// Where time comes from.
     pub(super) fn clock(&mut self) -> Result<Clock, RecordingError> {
+        self.clock_in(None)
+    }
+
+    /// Where the time of the rows of a file comes from; `None`: of those of the motion.
+    pub(super) fn clock_in(&mut self, own: Option<&String>) -> Result<Clock, RecordingError> {
         let stamps = |source, slot, factor, origin| Clock::Stamps { source, slot, factor, origin };
         Ok(match &self.manifest.time {
             Time::Rate(rate) => Clock::Step(1.0 / rate),
             Time::Column { column: Column::Name(name), file: None, .. }
-                if self.by_joint && !STAMPS.contains(&name.as_str()) =>
+                if self.by_joint && own.is_none() && !STAMPS.contains(&name.as_str()) =>
             {
                 // The column is that of the tables of the same recording.
                 let (source, slot) = self.find(None, &Column::Name(STAMP.into()))?;
                 stamps(source, slot, 1.0, Some(0.0))
             }
             Time::Column { column, unit, from_first_row, file } => {
-                let (source, slot) = self.find(file.as_ref(), column)?;
+                let (source, slot) = self.find(own.or(file.as_ref()), column)?;
                 let factor = unit.as_ref().map_or(1.0, |unit| unit.factor);
                 stamps(source, slot, factor, (!from_first_row).then_some(0.0))
             }

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::RecordingError;
 use super::column::Column;
+use super::conditions::Condition;
 use super::manifest_values::{number, numbers, one_byte, one_or_many};
 use super::unit::Unit;
 use super::yaml::Node;
@@ -42,6 +43,10 @@ pub struct Manifest {
     pub velocity: Option<Channel>,
     /// Torques.
     pub torque: Channel,
+    /// Temperature of the robot, where it was recorded.
+    pub temperature: Option<Condition>,
+    /// A measure of the load that the robot carried, where it was recorded.
+    pub load: Option<Condition>,
     /// The motions.
     pub trajectories: Vec<Window>,
     /// Where its values stand.

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::RecordingError;
 use super::column::Column;
+use super::conditions::Condition;
 use super::manifest::{Channel, Layout, Manifest, MessageFields, Side, Time, Window};
 use super::manifest_values::number;
 use super::unit::{Quantity, Unit};
@@ -44,6 +45,8 @@ struct Raw {
     #[serde(default)]
     velocity: Option<Channel>,
     torque: Option<Channel>,
+    temperature: Option<Condition>,
+    load: Option<Condition>,
     #[serde(default)]
     trajectories: Vec<Window>,
 }
@@ -111,6 +114,8 @@ impl Manifest {
             position: raw.position.unwrap_or_default(),
             velocity: raw.velocity,
             torque: raw.torque.unwrap_or_default(),
+            temperature: raw.temperature,
+            load: raw.load,
             trajectories: raw.trajectories,
             places,
         };
@@ -124,6 +129,7 @@ impl Manifest {
             },
         };
         manifest.check_channels()?;
+        manifest.check_conditions()?;
         manifest.check()?;
         Ok(manifest)
     }

@@ -26,6 +26,7 @@
 
 mod channel;
 mod column;
+mod conditions;
 mod error;
 mod fields;
 mod files;
@@ -55,6 +56,7 @@ mod write;
 pub mod yaml;
 
 pub use column::Column;
+pub use conditions::{Condition, Conditions, conditions};
 pub use error::RecordingError;
 pub use formats::is_log;
 pub use load::{Loader, Recording, load};

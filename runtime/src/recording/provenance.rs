@@ -20,7 +20,9 @@ impl Manifest {
         let channels = [Some(&self.position), self.velocity.as_ref(), Some(&self.torque)];
         let of_channels = || channels.into_iter().flatten().filter_map(|channel| channel.file.as_ref());
         let mut names: Vec<&String> = self.trajectories.iter().filter_map(|t| t.file.as_ref()).collect();
-        names.extend(of_channels().chain(of_time));
+        let conditions = [&self.temperature, &self.load].into_iter().flatten();
+        let of_conditions = conditions.filter_map(|condition| condition.file.as_ref());
+        names.extend(of_channels().chain(of_time).chain(of_conditions));
         let mut files: Vec<(String, PathBuf)> = Vec::new();
         for name in names {
             let path = self.folder.join(name);

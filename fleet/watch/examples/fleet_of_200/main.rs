@@ -12,7 +12,7 @@ mod story;
 mod words;
 
 use arm::Arm;
-use dynid_fleet_watch::{Settings, Watched, page, watch};
+use dynid_fleet_watch::{Labels, Pages, Settings, Watched, watch};
 use score::Score;
 use std::time::Instant;
 use story::{Story, estimates_by_identification, simulated_estimates};
@@ -32,7 +32,7 @@ fn main() -> Result<(), Failure> {
     let watched = watch(&series, &Settings::default());
     eprintln!("watched {} series in {:.1} s", series.len(), started.elapsed().as_secs_f64());
     if let Some(path) = picture {
-        std::fs::write(path, page(&series, &watched, &|_| None))?;
+        std::fs::write(path, Pages::new(&series, &watched, &Default::default(), Labels::plain()).fleet())?;
     }
     let mut text = words::one_fleet(&arm, &story, &series, &watched, fleets);
     let with = many(&arm, fleets, true);

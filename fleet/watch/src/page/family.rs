@@ -19,7 +19,7 @@ pub(super) struct Band {
 }
 
 /// The bands of all tables and parameters, by both.
-pub(super) fn bands<'a>(series: &'a [Clean<'_>]) -> BTreeMap<(&'a str, &'a str), Band> {
+pub(super) fn bands<'a>(series: &[Clean<'a>]) -> BTreeMap<(&'a str, &'a str), Band> {
     let mut values: BTreeMap<(&str, &str), BTreeMap<i64, Vec<f64>>> = BTreeMap::new();
     for one in series {
         let days = values.entry(one.family()).or_default();

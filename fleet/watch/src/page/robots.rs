@@ -1,6 +1,5 @@
 //! Robots in the order in which they are told: the worst first.
 
-use super::strongest;
 use crate::clean::Clean;
 use crate::{Alarm, Watched};
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,8 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A robot with all its series.
 pub(super) struct Robot<'a> {
     pub(super) name: &'a str,
-    /// Those with an alarm first.
-    pub(super) series: Vec<&'a Clean<'a>>,
+    /// Places of its series among all of them, those with an alarm first.
+    pub(super) series: Vec<usize>,
     /// The strongest first.
     pub(super) alarms: Vec<&'a Alarm>,
     /// Largest e-value on the last day.
@@ -23,20 +22,15 @@ impl Robot<'_> {
         let s = series.source;
         self.alarms.iter().copied().find(|a| a.table == s.table && a.parameter == s.parameter)
     }
-
-    pub(super) fn tables(&self) -> String {
-        let tables: BTreeSet<&str> = self.series.iter().map(|s| s.source.table.as_str()).collect();
-        tables.into_iter().collect::<Vec<_>>().join(", ")
-    }
 }
 
 /// All robots: with the strongest alarm first, then those without by their evidence, then by name.
-pub(super) fn robots<'a>(clean: &'a [Clean<'a>], watched: &'a Watched) -> Vec<Robot<'a>> {
+pub(super) fn robots<'a>(clean: &[Clean<'a>], watched: &'a Watched) -> Vec<Robot<'a>> {
     let mut all: BTreeMap<&str, Robot<'_>> = BTreeMap::new();
-    for series in clean {
+    for (place, series) in clean.iter().enumerate() {
         let name = series.source.robot.as_str();
         let new = || Robot { name, series: vec![], alarms: vec![], e_value: 0.0, most_evidence_in: "" };
-        all.entry(name).or_insert_with(new).series.push(series);
+        all.entry(name).or_insert_with(new).series.push(place);
     }
     for alarm in &watched.alarms {
         if let Some(robot) = all.get_mut(alarm.robot.as_str()) {
@@ -54,10 +48,15 @@ pub(super) fn robots<'a>(clean: &'a [Clean<'a>], watched: &'a Watched) -> Vec<Ro
         robot.alarms.sort_by(|a, b| b.e_value.total_cmp(&a.e_value));
         let alarmed: BTreeSet<(&str, &str)> =
             robot.alarms.iter().map(|a| (a.table.as_str(), a.parameter.as_str())).collect();
-        robot.series.sort_by_key(|s| !alarmed.contains(&s.family()));
+        robot.series.sort_by_key(|&place| !alarmed.contains(&clean[place].family()));
     }
     robots.sort_by(|a, b| {
         strongest(&b.alarms).total_cmp(&strongest(&a.alarms)).then_with(|| b.e_value.total_cmp(&a.e_value))
     });
     robots
+}
+
+/// The strongest of some alarms.
+fn strongest(alarms: &[&Alarm]) -> f64 {
+    alarms.iter().map(|a| a.e_value).fold(0.0, f64::max)
 }
