@@ -104,6 +104,20 @@ fn how_sure_a_contact_is_follows_from_how_far_it_stands_out() {
 }
 
 #[test]
+fn errors_before_and_after_a_push_was_found_are_of_one_band() {
+    let robot = planar();
+    let name = recorded(&robot, vec![], 1)[0].name.clone();
+    let push = on_joint(&name, [3.0, 3.5], 2, 0.6);
+    let diagnosis = diagnosed(&robot, &recorded(&robot, vec![push], 1), &[]);
+    let held = &diagnosis.held_out;
+    assert_eq!(contact(&diagnosis).contacts.len(), 1);
+    assert_eq!(held.band, diagnosis.sampling.slow_band);
+    // Outside of the push nothing has changed.
+    assert!(held.after < held.before, "{held:?}");
+    assert!(held.by_motion.iter().all(|(_, before, after)| (before - after).abs() < 1e-9), "{held:?}");
+}
+
+#[test]
 fn a_push_before_the_change_is_no_news() {
     let robot = planar();
     let name = recorded(&robot, vec![], 1)[0].name.clone();

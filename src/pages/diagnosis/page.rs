@@ -73,14 +73,14 @@ pub(crate) fn error_rows(diagnosis: &Diagnosis, extras: &Extras) -> Vec<Vec<Stri
         Some(evaluation) => rows.push(evaluated("fitted motion".to_owned(), evaluation)),
         None => rows.push(vec![
             "fitted motion".to_owned(),
-            own_band(diagnosis),
+            own_rows(diagnosis.sampling.band),
             percent(diagnosis.before.relative_error),
             percent(diagnosis.after.relative_error),
         ]),
     }
     rows.push(vec![
         format!("held out ({})", diagnosis.held_out.how),
-        own_band(diagnosis),
+        own_rows(diagnosis.held_out.band),
         percent(diagnosis.held_out.before),
         percent(diagnosis.held_out.after),
     ]);
@@ -95,8 +95,8 @@ pub(crate) fn error_rows(diagnosis: &Diagnosis, extras: &Extras) -> Vec<Vec<Stri
 }
 
 /// The band of what only the diagnosis' own rows say: they are smoothed, not decimated.
-fn own_band(diagnosis: &Diagnosis) -> String {
-    format!("{} Hz, its own rows", significant(diagnosis.sampling.band, 3))
+fn own_rows(band: f64) -> String {
+    format!("{} Hz, its own rows", significant(band, 3))
 }
 
 fn band(evaluation: &Evaluation) -> String {
@@ -119,7 +119,7 @@ fn errors(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras) {
         (0..held.per_joint_before.len()).map(|j| row(j).collect()).collect()
     };
     let own: [&[Option<f64>]; 2] = [&held.per_joint_before, &held.per_joint_after];
-    let header = format!("held out, {}, before", own_band(diagnosis));
+    let header = format!("held out, {}, before", own_rows(held.band));
     page.table(&["", &header, "after"], &per_joint(&own));
     let columns = |predictions: &[Prediction]| -> Vec<Vec<Option<f64>>> {
         predictions.iter().map(|p| p.errors.per_joint.clone()).collect()

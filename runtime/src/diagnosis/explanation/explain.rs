@@ -14,6 +14,7 @@ use crate::diagnosis::outcome::{
     Sampling, SearchOutcome, Small,
 };
 use crate::diagnosis::rate::WrongRate;
+use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{SHIFTED, TOLD_APART};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
@@ -120,12 +121,29 @@ fn found(
     let late = delay::finding(model, skew - expected, settings)?;
     let named_skew = late.is_some().then_some(skew - expected);
     findings.extend(late);
-    let held = model.fast.held_out(false)?;
+    // Pushes and a wrong rate are looked for on slow rows, and what was there before them was predicted on these.
+    let slow = ended.contacts.is_some() || ended.rate.is_some();
+    let (regression, standard, band) = if slow {
+        (&model.slow, &ended.standard.held_slow, ended.sampling.slow_band)
+    } else {
+        (&model.fast, &ended.standard.held, ended.sampling.band)
+    };
+    let held = regression.held_out(false)?;
     findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
     let before = before(model, ended, named_skew)?;
     // Without a finding the model is the standard one.
-    let held = if findings.is_empty() { &ended.standard.held } else { &held };
-    Ok((findings, held_out(model, ended.standard, held, before)))
+    let held = if findings.is_empty() { standard } else { &held };
+    let after = held.errors();
+    let held_out = HeldOut {
+        how: how(model),
+        band,
+        before: before.relative_error.unwrap_or_default(),
+        after: after.relative_error.unwrap_or_default(),
+        per_joint_before: before.per_joint,
+        per_joint_after: after.per_joint,
+        by_motion: by_motion(model, &regression.design, [standard, held]),
+    };
+    Ok((findings, held_out))
 }
 
 /// What was there before, and how all that the model has varies together.
@@ -248,24 +266,6 @@ fn before(
     }
 }
 
-/// Errors on held-out motion of the standard model and of the model with its terms.
-fn held_out(
-    model: &ExtendedModel<'_>,
-    standard: &StandardModelFit,
-    held: &HeldOutSquares,
-    before: Errors,
-) -> HeldOut {
-    let after = held.errors();
-    HeldOut {
-        how: how(model),
-        before: before.relative_error.unwrap_or_default(),
-        after: after.relative_error.unwrap_or_default(),
-        per_joint_before: before.per_joint,
-        per_joint_after: after.per_joint,
-        by_motion: by_motion(model, &standard.held, held),
-    }
-}
-
 fn how(model: &ExtendedModel<'_>) -> String {
     let design = &model.slow.design;
     let mut targets = design.segments.iter().filter(|s| s.is_target).map(|s| s.signal);
@@ -287,10 +287,10 @@ fn how(model: &ExtendedModel<'_>) -> String {
 
 fn by_motion(
     model: &ExtendedModel<'_>,
-    before: &HeldOutSquares,
-    after: &HeldOutSquares,
+    design: &Design,
+    [before, after]: [&HeldOutSquares; 2],
 ) -> Vec<(String, f64, f64)> {
-    let name = |g: usize| model.context.signals[model.fast.design.segments[g].signal].name.clone();
+    let name = |g: usize| model.context.signals[design.segments[g].signal].name.clone();
     let mut list: Vec<(String, [f64; 4])> = Vec::new();
     for ((g, l0, w0), (_, l1, w1)) in before.by_segment.iter().zip(&after.by_segment) {
         let name = name(*g);

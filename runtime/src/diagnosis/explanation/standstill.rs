@@ -45,6 +45,7 @@ pub(in crate::diagnosis) fn explain(
             how: format!(
                 "gravity and static friction, as the {before_it} has them, while the robot holds still"
             ),
+            band: sampling.band,
             before: before.relative_error.unwrap_or_default(),
             after: after.relative_error.unwrap_or_default(),
             per_joint_before: before.per_joint,

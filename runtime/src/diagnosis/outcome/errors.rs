@@ -28,6 +28,9 @@ impl Errors {
 pub struct HeldOut {
     /// How motion was held out.
     pub how: String,
+    /// Highest frequency of the rows, Hz.
+    #[serde(default)]
+    pub band: f64,
     /// Standard model.
     pub before: f64,
     /// With the findings.
