@@ -19,10 +19,13 @@ pub(in crate::diagnosis) fn between_motions(
     levels: usize,
     (residual, threads): (&[f64], usize),
 ) -> Vec<Option<BetweenMotions>> {
-    let freed = Regressors { free: friction, ..*regressors };
-    let background = Background::new(units, &freed, residual, threads);
     // Where the recording is compared with a baseline, nothing has changed in that.
     let taken = |f: usize| units.is_target(f) != units.change();
+    if !units.are_several(taken) {
+        return Vec::new();
+    }
+    let freed = Regressors { free: friction, ..*regressors };
+    let background = Background::new(units, &freed, residual, threads);
     let p = regressors.shared.len();
     let of_joint = |j: usize| {
         let companions = &regressors.companions[j];
@@ -33,7 +36,7 @@ pub(in crate::diagnosis) fn between_motions(
 
         // What its level differs by shows where it is the same in all motions.
         let (level, held) = friction[j].split_at(levels.min(friction[j].len()));
-        let level: Vec<Vec<f64>> = level.iter().map(|c| on_rows(c, regressors, j)).collect();
+        let level: Vec<Vec<f64>> = level.iter().map(|c| regressors.on_all_rows(j, c)).collect();
         let mut free = friction.to_vec();
         free[j] = held.to_vec();
         let bound = Regressors { free: &free, ..*regressors };
@@ -53,13 +56,6 @@ pub(in crate::diagnosis) fn between_motions(
     };
     let all = parallel::map(threads, friction.len(), of_joint);
     if all.iter().all(Option::is_none) { Vec::new() } else { all }
-}
-
-/// A column of a joint over all rows.
-fn on_rows(on_joint: &[f64], regressors: &Regressors<'_>, joint: usize) -> Vec<f64> {
-    let mut column = vec![0.0; regressors.y.len()];
-    column[regressors.of_joint[joint].clone()].copy_from_slice(on_joint);
-    column
 }
 
 #[cfg(test)]

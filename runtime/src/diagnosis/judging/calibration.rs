@@ -197,7 +197,7 @@ pub(super) fn with_other_motions(
     products: &Products,
     taken: impl Fn(usize) -> bool,
 ) -> Option<Vec<Compared>> {
-    if (0..products.files.len()).filter(|&f| taken(f)).count() < 2 {
+    if !units.are_several(&taken) {
         return None;
     }
     let of_unit = |u: usize| {

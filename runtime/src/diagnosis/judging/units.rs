@@ -81,6 +81,11 @@ impl Units {
         self.units.iter().map(|u| u.file + 1).max().unwrap_or(0)
     }
 
+    /// Whether these are two motions or more.
+    pub fn are_several(&self, taken: impl Fn(usize) -> bool) -> bool {
+        (0..self.files()).filter(|&f| taken(f)).count() > 1
+    }
+
     /// Mean number of units of a motion.
     pub fn of_a_motion(&self) -> f64 {
         let mut files: Vec<usize> = self.units.iter().map(|u| u.file).collect();

@@ -38,6 +38,13 @@ impl Regressors<'_> {
         let range = self.of_joint[joint].clone();
         law.iter().any(|c| c[range.clone()].iter().any(|x| *x != 0.0))
     }
+
+    /// A column of a joint, given as values on its rows, over all rows.
+    pub fn on_all_rows(&self, joint: usize, on_joint: &[f64]) -> Vec<f64> {
+        let mut column = vec![0.0; self.y.len()];
+        column[self.of_joint[joint].clone()].copy_from_slice(on_joint);
+        column
+    }
 }
 
 /// Inner products of `[columns, law, y, companions]` in each unit and each motion.
@@ -121,9 +128,7 @@ impl Background {
         }
         out
     }
-}
 
-impl Background {
     /// Without a law, and with companions of one joint.
     pub fn with_companions(
         &self,

@@ -69,8 +69,9 @@ impl Bench {
     }
 
     /// Columns that are the recording's own viscous and Coulomb friction on a joint.
-    pub fn own_friction_of(&self, joint: usize) -> impl Iterator<Item = usize> + use<> {
-        self.own_friction.clone().skip(3 * joint).take(2)
+    pub fn own_friction_of(&self, joint: usize) -> Range<usize> {
+        let first = self.own_friction.start + 3 * joint;
+        first.min(self.own_friction.end)..(first + 2).min(self.own_friction.end)
     }
 
     /// What a law's own part (`change`) amounts to on the rows of a joint in the recording that is diagnosed, where it
@@ -79,19 +80,18 @@ impl Bench {
         let segments = design.target_segments().into_iter();
         let rows: Vec<usize> = segments.flat_map(|g| design.ranges[j][g].clone()).collect();
         let size = if self.units.change() {
-            let torque: Vec<f64> = (0..design.rows.len()).map(|r| design.torque(r)).collect();
-            self.since_baseline(&rows, j, [&torque, change, left])
+            self.since_baseline(design, &rows, j, [change, left])
         } else {
             where_it_acts(&rows, change, left)
         };
         Size { needed: size.needed.max(f64::MIN_POSITIVE), ..size }
     }
 
-    /// Against what the torques `y` repeat to from day to day, or where this shows that they repeat better, to what is left
+    /// Against what the torques repeat to from day to day, or where this shows that they repeat better, to what is left
     /// that is no noise: what is the same two rows later, whose windows do not overlap.
-    fn since_baseline(&self, rows: &[usize], j: usize, [y, change, left]: [&[f64]; 3]) -> Size {
+    fn since_baseline(&self, design: &Design, rows: &[usize], j: usize, [change, left]: [&[f64]; 2]) -> Size {
         let count = rows.len().max(1) as f64;
-        let rms = |x: &[f64]| (rows.iter().map(|&r| x[r] * x[r]).sum::<f64>() / count).sqrt();
+        let rms = |x: &dyn Fn(usize) -> f64| (rows.iter().map(|&r| x(r) * x(r)).sum::<f64>() / count).sqrt();
         let units = &self.units;
         let of_target = |r: usize| {
             units.units.iter().zip(&units.rows[j]).any(|(unit, rows)| unit.target && rows.contains(&r))
@@ -104,8 +104,9 @@ impl Bench {
             }
         }
         let slow = (products / pairs.max(1) as f64).max(0.0).sqrt();
-        let least = rms(left) / count.sqrt();
-        Size { law: rms(change), needed: (REPEATS * rms(y)).min(slow.max(least)) }
+        let least = rms(&|r| left[r]) / count.sqrt();
+        let torque = rms(&|r| design.torque(r));
+        Size { law: rms(&|r| change[r]), needed: (REPEATS * torque).min(slow.max(least)) }
     }
 
     /// The size of a law on the joint where it stands out most of these.

@@ -75,18 +75,18 @@ impl Search<'_> {
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
         let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
         let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
-        let columns = |j: usize| {
-            let first = bench.own_friction.start + 3 * j;
-            first..first + 2
-        };
         let changed: Vec<Changed> = (0..joints)
             .filter_map(|j| {
-                let own = baseline.is_none().then(|| background(columns(j)));
+                let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
                 let (shared, background) = own.as_ref().or(baseline.as_ref())?;
                 let (evidence, change) = self.friction_evidence(j, shared, background, &residual)?;
                 // Nor surer than the numbers allow that are shown.
-                let confidence =
-                    evidence.confidence(joints).min(of_amplitudes(&regression.fit, design, columns(j), 1.0));
+                let confidence = evidence.confidence(joints).min(of_amplitudes(
+                    &regression.fit,
+                    design,
+                    bench.own_friction_of(j),
+                    1.0,
+                ));
                 let sure = confidence >= settings.least_confidence;
                 let excluded = match change {
                     Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
@@ -128,12 +128,12 @@ impl Search<'_> {
         let white = ratios.fold(0.0, f64::max);
         let inflation = if significance > 0.0 { (white / significance).max(1.0) } else { 1.0 };
         for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
-            let columns: Vec<usize> = self.model.bench(window).own_friction_of(joint).collect();
+            let columns = self.model.bench(window).own_friction_of(joint);
             let regression = match window {
                 SmoothingWindow::Slow => &mut self.model.slow,
                 SmoothingWindow::Fast => &mut self.model.fast,
             };
-            regression.silence(columns.into_iter());
+            regression.silence(columns);
         }
         let rival = |effect| Rival {
             effect,
@@ -164,7 +164,7 @@ impl Search<'_> {
         self.refit_and_update()
     }
 
-    fn own_friction(&self, joint: usize) -> impl Iterator<Item = usize> {
+    fn own_friction(&self, joint: usize) -> Range<usize> {
         self.model.benches[0].own_friction_of(joint)
     }
 
@@ -179,20 +179,13 @@ impl Search<'_> {
     ) -> Option<(Evidence, Change)> {
         let (context, bench) = (&self.model.context, self.model.bench(SmoothingWindow::Slow));
         let design = &self.model.slow.design;
-        let range = design.of_joint(joint);
-        let friction: Vec<Vec<f64>> = bench.friction[joint][..2]
-            .iter()
-            .map(|on_joint| {
-                let mut column = vec![0.0; design.rows.len()];
-                column[range.clone()].copy_from_slice(on_joint);
-                column
-            })
-            .collect();
         let gain = dense_columns(context, design, DRIVE_GAIN, Place::Joint(joint), &[], false);
         let mut free = bench.free.clone();
         free[joint].drain(..2.min(bench.free[joint].len()));
         let between_motions = &bench.friction_between_motions;
         let regressors = Regressors { shared, free: &free, between_motions, ..bench.regressors(design) };
+        let friction: Vec<Vec<f64>> =
+            bench.friction[joint][..2].iter().map(|c| regressors.on_all_rows(joint, c)).collect();
         let judged = |columns| {
             let law = Law { columns, residual, common: false, trend_of: 0 };
             let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
