@@ -39,8 +39,9 @@ pub fn check(
         Verdict::Impossible { joint, error } => {
             let words = format!(
                 "no {} can have made this recording: without negative inertias or friction that drives, the best parameters \
-             leave {} of the torque of joint {} unexplained. It is a recording of another robot, or the sign, order, unit \
-             or offset of a column is wrong",
+             leave {} of the torque of joint {} unexplained. It is a recording of another robot, the sign, order, unit or \
+             offset of a column is wrong, or a spring, a balancer or a cable that the table has not moves the joint: \
+             `dynid diagnose` looks for these",
                 robot.name,
                 percent(error),
                 robot.joint_number(joint)

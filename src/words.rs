@@ -27,10 +27,18 @@ pub fn effect_words(id: &str) -> String {
     EffectKind::name_of(id).to_owned()
 }
 
-/// Effects that cannot be told apart.
-pub fn side_words(cannot_tell: &CannotTell) -> Vec<String> {
+/// Effects that cannot be told apart, each on its joints where these differ: `stribeck on joint 1`.
+pub fn apart_words(cannot_tell: &CannotTell, between: &str) -> String {
     let sides = cannot_tell.sides().into_iter().zip(&cannot_tell.between);
-    sides.map(|(side, id)| side.replacen(id.as_str(), &effect_words(id), 1)).collect()
+    let mut sides: Vec<String> =
+        sides.map(|(side, id)| side.replacen(id.as_str(), &effect_words(id), 1)).collect();
+    if cannot_tell.on.is_empty() {
+        return format!("{} on {}", sides.join(between), joint_words(&cannot_tell.joints));
+    }
+    for (side, joints) in sides.iter_mut().zip(&cannot_tell.on) {
+        side.push_str(&format!(" on {}", joint_words(joints)));
+    }
+    sides.join(between)
 }
 
 /// An effect that is there and too small to be named.
@@ -84,5 +92,31 @@ pub fn part_words(on_test: &OnTest) -> String {
     match on_test.sigma {
         Some(sigma) => format!("{:.2} ± {sigma:.2} of it is there", on_test.part),
         None => format!("{:.2} of it is there", on_test.part),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn apart(between: [&str; 2], on: &[&[usize]]) -> CannotTell {
+        CannotTell {
+            between: between.map(String::from).to_vec(),
+            joints: vec![5, 6],
+            on: on.iter().map(|joints| joints.to_vec()).collect(),
+            experiment: String::new(),
+            variables: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn laws_of_different_joints_are_told_with_their_own() {
+        let same = apart(["stribeck", "backlash"], &[]);
+        assert_eq!(apart_words(&same, " and "), "Stribeck friction and backlash on joints 5 and 6");
+        let differ = apart(["torque_constant_drift"; 2], &[&[5], &[]]);
+        assert_eq!(
+            apart_words(&differ, " or "),
+            "torque constant drift on joint 5 or torque constant drift on the whole robot"
+        );
     }
 }

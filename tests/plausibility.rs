@@ -74,6 +74,34 @@ fn a_part_of_a_real_recording_is_accepted_and_still_refused_under_other_robots()
 }
 
 #[test]
+fn strokes_of_a_single_joint_are_accepted_and_say_nothing_of_the_others() {
+    let Some(folder) = shared("data/ur10e") else { return };
+    let own = std::env::temp_dir().join(format!("dynid-stroke-{}", std::process::id()));
+    std::fs::create_dir_all(&own).unwrap();
+    for (joint, fixed) in [(1, ", fixed: [2, 3, 4, 5, 6]"), (2, ", fixed: [1, 3, 4, 5, 6]"), (2, "")] {
+        let (path, model) = (own.join("recording.yaml"), own.join("model.json"));
+        let manifest = format!(
+            "title: stroke\nrobot: ur10e\nside: joint\nlayout: {{header: false, delimiter: \",\"}}\n\
+             time: {{column: 0, unit: s, from_first_row: true}}\n\
+             position: {{columns: [1, 2, 3, 4, 5, 6], unit: rad}}\n\
+             torque: {{columns: [13, 14, 15, 16, 17, 18], unit: A, gain: [14.87, 13.26, 11.13, 10.62, 11.03, 11.47]}}\n\
+             trajectories:\n  - {{file: {}/ur-20_01_22-joint_{joint}.csv, from: 2, to: 32{fixed}}}\n",
+            folder.display()
+        );
+        std::fs::write(&path, manifest).unwrap();
+        let (status, words) = identify(&path, &["--out", model.to_str().unwrap()]);
+        assert_eq!(status, 0, "joint {joint}: {words}");
+        let model: serde_json::Value =
+            serde_json::from_str(&std::fs::read_to_string(&model).unwrap()).unwrap();
+        for parameter in model["base_parameters"].as_array().unwrap() {
+            // Friction of some ten N.m and a link of some ten kg: nothing that is determined is larger by much.
+            assert!(parameter["value"].as_f64().unwrap().abs() < 200.0, "joint {joint}: {parameter}");
+        }
+    }
+    std::fs::remove_dir_all(&own).unwrap();
+}
+
+#[test]
 fn recordings_that_hide_an_effect_are_accepted() {
     let Some(folder) = shared("challenge") else { return };
     for case in std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()) {

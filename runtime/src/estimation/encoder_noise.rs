@@ -1,7 +1,7 @@
 //! How much of the accelerations that a model is evaluated on is noise of the encoders.
 
 use crate::recording::Trajectory;
-use crate::signal::{Decimator, Preparation, SignalError, UniformGrid, prepare, welch};
+use crate::signal::{Decimator, Preparation, SignalError, UniformGrid, smoothed, welch};
 use realfft::RealFftPlanner;
 
 /// Length of a segment of the spectrum, s.
@@ -83,7 +83,7 @@ impl EncoderNoise {
         };
         let mut samples = 64;
         let motion = loop {
-            let motion = match prepare(&reach(samples), preparation) {
+            let motion = match smoothed(&reach(samples), preparation) {
                 Err(SignalError::TooShort { needed, .. }) => {
                     samples = 4 * needed;
                     continue;
@@ -208,7 +208,8 @@ mod tests {
         let decimator = Decimator::for_rows(RATE, 25.0, None).expect("valid");
         let preparation = Preparation { cutoff: Some(50.0), ..Preparation::default() };
         let expected = noise.in_accelerations(RATE, &preparation, &decimator).expect("filters")[0];
-        let Motion { ddq, edge_samples, .. } = prepare(&joint(0.0, 1e-4), &preparation).expect("long enough");
+        let Motion { ddq, edge_samples, .. } =
+            smoothed(&joint(0.0, 1e-4), &preparation).expect("long enough");
         let mut rows = vec![0.0; 2000];
         let count = decimator.decimate_run(&ddq[0][edge_samples..30_000 - edge_samples], &mut rows);
         let variance = rows[..count].iter().map(|x| x * x).sum::<f64>() / count as f64;

@@ -250,6 +250,21 @@ fn parameters_that_the_motion_does_not_determine_are_named() {
 }
 
 #[test]
+fn a_column_of_rounding_errors_determines_nothing() {
+    let mut dense = made(3, 150, ERRORS, 0.0);
+    let mut rng = Pcg64::seed_from_u64(5);
+    for d in &mut dense {
+        let c = d.columns.iter().position(|&c| c == 3).unwrap();
+        let rounding = d.w.column(c).map(|_| 1e-15 * rng.random_range(-1.0..1.0));
+        d.w.set_column(c, &rounding);
+    }
+    let estimate = estimate(&observation(&NAMES, &dense, 10), &plain());
+    assert_eq!((estimate.parameters[3].value, estimate.parameters[3].sigma), (0.0, None));
+    let named: Vec<String> = estimate.warnings.iter().map(|w| w.to_string()).collect();
+    assert!(named.iter().any(|w| w.starts_with("d is not determined: nothing")), "{named:?}");
+}
+
+#[test]
 fn a_badly_conditioned_direction_is_named() {
     let mut dense = made(3, 150, ERRORS, 0.0);
     let mut rng = Pcg64::seed_from_u64(4);

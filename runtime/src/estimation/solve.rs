@@ -6,6 +6,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Directions whose singular value of the scaled W is below this share of the largest are not determined.
 pub const RANK_TOLERANCE: f64 = 1e-9;
+/// A column of which no more than this share of the largest is there holds the rounding errors of what cancels in it.
+pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Least-squares solution of a factor.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +44,8 @@ impl Factor {
 fn solve(factor: &Factor) -> Solution {
     let k = factor.unknowns();
     let norms = factor.column_norms();
-    let scale: Vec<f64> = norms.iter().map(|&n| if n > 0.0 { 1.0 / n } else { 0.0 }).collect();
+    let least = ROUNDING * norms.iter().copied().fold(0.0, f64::max);
+    let scale: Vec<f64> = norms.iter().map(|&n| if n > least { 1.0 / n } else { 0.0 }).collect();
     let scaled = DMatrix::from_fn(k + 1, k, |i, l| if i <= l { factor.r(i, l) * scale[l] } else { 0.0 });
     let y = DVector::from_fn(k + 1, |i, _| factor.r(i, k));
 

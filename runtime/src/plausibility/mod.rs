@@ -147,12 +147,14 @@ fn better(
     candidates: Vec<Instead>,
     own: &PhysicalFit,
 ) -> Vec<(Instead, f64)> {
+    // Joints that stand still have no error that could be lowered.
+    let judged_by = own.per_equation.iter().filter(|error| error.is_some_and(|e| e > 0.0)).count();
     let mut all: Vec<(f64, Instead, f64)> = candidates
         .into_iter()
         .filter_map(|candidate| {
             let enough = match candidate {
                 Instead::Robot(_) => ROBOT,
-                _ => MISTAKE.powf(1.0 / own.per_equation.len().max(1) as f64),
+                _ => MISTAKE.powf(1.0 / judged_by.max(1) as f64),
             };
             let promising = |free: &[Option<f64>]| ratio(&own.per_equation, free) >= PROMISING * enough;
             let fit = candidate.fit(judged, others, promising)?;

@@ -56,8 +56,7 @@ impl<'a> Predictor<'a> {
 
     /// Torques on a motion at its full rate, as the torque channel would have recorded them: `[j][t]`, N.m or N.
     ///
-    /// Where the times of the recording are wrong, the motion that the model sees is faster than they say. Joints that
-    /// are said to stand still have no speed. Contacts belong to the recording they were seen in and add
+    /// Where the times of the recording are wrong, the motion that the model sees is faster than they say. Contacts belong to the recording they were seen in and add
     /// nothing.
     ///
     /// # Errors
@@ -70,19 +69,7 @@ impl<'a> Predictor<'a> {
         let factor: f64 = self.effects.iter().filter_map(EffectTerm::distortion).map(times_faster).product();
         let corrected = (factor != 1.0).then(|| motion.faster(factor));
         let motion = corrected.as_ref().unwrap_or(motion);
-        let still = |signal: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            let of_joint = |(j, x): (usize, &Vec<f64>)| match motion.fixed.contains(&j) {
-                true => vec![0.0; x.len()],
-                false => x.clone(),
-            };
-            signal.iter().enumerate().map(of_joint).collect()
-        };
-        let mut all = if motion.fixed.is_empty() {
-            torques(model, self.chi, StateSlices::new(&motion.q, &motion.dq, &motion.ddq).states())
-        } else {
-            let (dq, ddq) = (still(&motion.dq), still(&motion.ddq));
-            torques(model, self.chi, StateSlices::new(&motion.q, &dq, &ddq).states())
-        };
+        let mut all = torques(model, self.chi, StateSlices::new(&motion.q, &motion.dq, &motion.ddq).states());
         if !self.effects.is_empty() {
             let added = term_torques(model, self.chi, self.effects, motion)?;
             for (torque, effect) in all.iter_mut().flatten().zip(added.iter().flatten()) {

@@ -25,7 +25,7 @@ mod words;
 pub use alone::alone;
 pub use escape::escape;
 pub use html::Page;
-pub use numbers::{falls_or_rises, percent, significant};
+pub use numbers::{change_of_error, percent, significant};
 pub use plot::{Over, Plot};
 pub use series::{Band, Role, Series, SeriesKind};
 pub use sheet::{Panel, Sheet};

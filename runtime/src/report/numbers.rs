@@ -34,9 +34,14 @@ pub fn percent(ratio: impl Into<Option<f64>>) -> String {
     ratio.into().map_or_else(|| "undefined".to_owned(), words)
 }
 
-/// What an error does from `before` to `after`: a sentence must not say that it falls where it does not.
-pub fn falls_or_rises(before: f64, after: f64) -> &'static str {
-    if after > before { "rises" } else { "falls" }
+/// What an error does from `before` to `after`: a sentence must not say that it falls where it does not, nor that it rises
+/// where nobody sees it.
+pub fn change_of_error(before: f64, after: f64) -> String {
+    let [was, is] = [before, after].map(percent);
+    if was == is {
+        return format!("stays at {is}");
+    }
+    format!("{} from {was} to {is}", if after > before { "rises" } else { "falls" })
 }
 
 #[cfg(test)]
@@ -57,8 +62,9 @@ mod tests {
 
     #[test]
     fn an_error_that_grows_does_not_fall() {
-        assert_eq!(falls_or_rises(0.034, 0.038), "rises");
-        assert_eq!(falls_or_rises(0.06, 0.045), "falls");
+        assert_eq!(change_of_error(0.034, 0.038), "rises from 3.40 % to 3.80 %");
+        assert_eq!(change_of_error(0.06, 0.045), "falls from 6.00 % to 4.50 %");
+        assert_eq!(change_of_error(0.033_31, 0.033_32), "stays at 3.33 %");
     }
 
     #[test]

@@ -33,6 +33,7 @@ pub use decimator::{Decimator, KeptRows};
 pub use difference::{Stencil, central_difference};
 pub use error::SignalError;
 pub use motion::Motion;
+pub(crate) use prepare::smoothed;
 pub use prepare::{Preparation, VelocitySource, prepare, prepare_all};
 pub use resample::UniformGrid;
 pub use speeds::{SpeedFault, contradicting_speeds};

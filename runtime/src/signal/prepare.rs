@@ -66,12 +66,22 @@ const DECAYED: f64 = 1e-4;
 ///
 /// Torques are put on the same grid and not filtered: the parallel decimation filters them together with the
 /// columns of W. The samples at each end that the edge effects of the filter and of the differences
-/// reach are counted in `Motion::edge_samples`.
+/// reach are counted in `Motion::edge_samples`. Joints that stand still are held ([`Motion::hold`]).
 ///
 /// # Errors
 /// Channels of unequal length, stamps that do not increase, values that are not finite, a motion too
 /// short for the filter, a cut-off outside of (0, rate / 2).
 pub fn prepare(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion, SignalError> {
+    let mut motion = smoothed(trajectory, settings)?;
+    motion.hold();
+    Ok(motion)
+}
+
+/// The same with whatever joints do that stand still.
+///
+/// # Errors
+/// As [`prepare`].
+pub(crate) fn smoothed(trajectory: &Trajectory, settings: &Preparation) -> Result<Motion, SignalError> {
     let name = &trajectory.name;
     check(trajectory)?;
     let grid = UniformGrid::of(name, &trajectory.time, settings.rate)?;

@@ -92,6 +92,29 @@ fn a_constant_has_no_derivative_whatever_its_length() {
 }
 
 #[test]
+fn a_joint_that_stands_still_is_held_whatever_its_encoder_says() {
+    let mut t = sine(500.0, 2000, 0.0);
+    let noise = (0..t.time.len()).map(|k| 1.5 + 1e-4 * (k as f64 * 1.7).sin()).collect();
+    for channels in [&mut t.position, &mut t.torque] {
+        let of_another = channels[0].clone();
+        channels.push(of_another);
+    }
+    t.position[1] = noise;
+    t.velocity = None;
+    let held = |t: &Trajectory| {
+        let motion = prepare(t, &Preparation::default()).expect("a valid motion");
+        assert!(motion.dq[0].iter().any(|&v| v > 1.0));
+        let still = motion.dq[1].iter().chain(&motion.ddq[1]).all(|&x| x == 0.0);
+        still && motion.q[1].iter().all(|&q| q == motion.q[1][0])
+    };
+    assert!(held(&t), "it hardly moves");
+    t.position[1].iter_mut().for_each(|q| *q = 1.5 + 100.0 * (*q - 1.5));
+    assert!(!held(&t), "it moves");
+    t.fixed = vec![1];
+    assert!(held(&t), "it is said to stand still");
+}
+
+#[test]
 fn what_cannot_be_prepared_is_told() {
     let settings = Preparation::default();
     let short = sine(500.0, 20, 0.0);

@@ -2,7 +2,7 @@
 
 use dynid_runtime::diagnosis::{Curve, Diagnosis, Finding, OrderSpectrum, TorqueSeries};
 use dynid_runtime::effects::{Abscissa, EffectKind};
-use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
+use dynid_runtime::report::{Band, Page, Plot, Role, SeriesKind, change_of_error, significant};
 
 use crate::words::{confidence_words, effect_words, joint_words, part_words};
 
@@ -56,10 +56,8 @@ fn numbers(page: &mut Page, finding: &Finding) {
         .collect();
     page.table(&["parameter", "value", "sigma", "unit"], &parameters);
     page.paragraph(&format!(
-        "On held-out motion its joints' error {} from {} to {}; {}.",
-        falls_or_rises(finding.held_out_before, finding.held_out_after),
-        percent(finding.held_out_before),
-        percent(finding.held_out_after),
+        "On held-out motion its joints' error {}; {}.",
+        change_of_error(finding.held_out_before, finding.held_out_after),
         confidence_words(finding.confidence)
     ));
     if let Some(on_test) = &finding.on_test {

@@ -1,7 +1,7 @@
 //! The recording by forward simulation on the page of a diagnosis.
 
 use dynid_runtime::diagnosis::Diagnosis;
-use dynid_runtime::report::{Page, Plot, Role, SeriesKind, falls_or_rises, percent, significant};
+use dynid_runtime::report::{Page, Plot, Role, SeriesKind, change_of_error, percent, significant};
 
 use super::extras::Extras;
 use crate::words::joint_number;
@@ -24,11 +24,9 @@ pub(super) fn forward(
     };
     page.paragraph(&format!(
         "The identified robot follows the recorded motion ({} s) in closed loop, once without and once with the \
-         findings. The error of its torques against the recorded ones {} from {} to {}.",
+         findings. The error of its torques against the recorded ones {}.",
         significant(run.duration, 3),
-        falls_or_rises(run.before, run.after),
-        percent(run.before),
-        percent(run.after)
+        change_of_error(run.before, run.after)
     ));
     if !run.left_out.is_empty() {
         page.paragraph(&format!("Not part of the simulation: {}.", run.left_out.join(", ")));

@@ -12,7 +12,7 @@ use crate::pages::parameters::{parameters, relations};
 use crate::pages::provenance::provenance;
 use crate::pages::residuals::residuals;
 use crate::recorded::titled;
-use crate::words::{joint_words, side_words, small_words, standing_words};
+use crate::words::{apart_words, small_words, standing_words};
 
 /// The whole page.
 pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {
@@ -187,9 +187,12 @@ fn cannot_tell(page: &mut Page, diagnosis: &Diagnosis) {
         return;
     }
     page.heading("What this motion cannot tell");
-    page.list(diagnosis.cannot_tell.iter().map(|c| {
-        format!("{} on {}. To tell: {}.", side_words(c).join(" or "), joint_words(&c.joints), c.experiment)
-    }));
+    page.list(
+        diagnosis
+            .cannot_tell
+            .iter()
+            .map(|c| format!("{}. To tell: {}.", apart_words(c, " or "), c.experiment)),
+    );
 }
 
 fn standing(page: &mut Page, diagnosis: &Diagnosis) {

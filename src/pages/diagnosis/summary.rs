@@ -9,7 +9,7 @@ use crate::errors::noise_words;
 use crate::output::table;
 use crate::recorded::{Measured, left_out_words, titled};
 use crate::words::{
-    confidence_words, effect_words, joint_words, part_words, side_words, small_words, standing_words,
+    apart_words, confidence_words, effect_words, joint_words, part_words, small_words, standing_words,
 };
 
 /// The verdict, the errors and the findings for a terminal.
@@ -39,12 +39,7 @@ pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> S
         text.push_str(&found(finding));
     }
     for c in &diagnosis.cannot_tell {
-        text.push_str(&format!(
-            "\n\ncannot tell {} on {} apart: {}",
-            side_words(c).join(" and "),
-            joint_words(&c.joints),
-            c.experiment
-        ));
+        text.push_str(&format!("\n\ncannot tell {} apart: {}", apart_words(c, " and "), c.experiment));
     }
     if !diagnosis.standing.is_empty() {
         text.push_str(&format!("\n\nalso missing in both: {}", standing_words(diagnosis)));

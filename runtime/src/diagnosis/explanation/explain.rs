@@ -18,7 +18,6 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{SHIFTED, TOLD_APART};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
-use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
@@ -54,7 +53,13 @@ pub(in crate::diagnosis) fn explain(
     // 1. What was found, and what it gains on motion that was held out.
     let effects = (0..model.terms.len()).map(|k| of_term(model, k)).collect::<Result<Vec<_>, _>>()?;
     let mut cannot_tell = cannot_tell(model, &effects);
-    cannot_tell.extend(search.ties.iter().map(|tie| tied(robot, tie)));
+    for tie in &search.ties {
+        let [one, other] = [0, 1].map(|k| (tie.effects[k], tie.places[k]));
+        let (pair, turned) = (apart(robot, [one, other]), apart(robot, [other, one]));
+        if !cannot_tell.contains(&pair) && !cannot_tell.contains(&turned) {
+            cannot_tell.push(pair);
+        }
+    }
     let (findings, held_out) = found(search, &ended, (effects, skew), settings)?;
 
     // 2. What it changes, and what it leaves.
@@ -182,19 +187,31 @@ fn cannot_tell(model: &ExtendedModel<'_>, effects: &[Finding]) -> Vec<CannotTell
     let robot = model.context.model.robot();
     for (term, finding) in model.terms.iter().zip(effects) {
         for rival in term.rivals.iter().filter(|r| r.difference_p_value > TOLD_APART) {
-            list.push(CannotTell {
-                between: vec![finding.effect.clone(), rival.effect.id_at(rival.place).into()],
-                joints: finding.joints.clone(),
-                experiment: experiment(robot, (term.effect, term.place), (rival.effect, rival.place)),
-                variables: if rival.shape.is_empty() {
-                    Vec::new()
-                } else {
-                    vec![finding.variables.clone(), free_form::variables(robot, &rival.shape)]
-                },
-            });
+            let of_rival = (rival.effect, rival.place);
+            let mut pair = apart(robot, [(term.effect, term.place), of_rival]);
+            pair.between[0].clone_from(&finding.effect);
+            if !rival.shape.is_empty() {
+                pair.variables = vec![finding.variables.clone(), free_form::variables(robot, &rival.shape)];
+            }
+            list.push(pair);
         }
     }
     list
+}
+
+/// Two laws that cannot be told apart.
+fn apart(robot: &Robot, laws: [(EffectKind, Place); 2]) -> CannotTell {
+    let on = laws.map(|(effect, place)| named_on(robot, effect, place));
+    let mut joints = on.concat();
+    joints.sort_unstable();
+    joints.dedup();
+    CannotTell {
+        between: laws.map(|(effect, place)| effect.id_at(place).to_string()).to_vec(),
+        joints,
+        on: if on[0] == on[1] { Vec::new() } else { on.to_vec() },
+        experiment: experiment(robot, laws[0], laws[1]),
+        variables: Vec::new(),
+    }
 }
 
 /// What would tell two laws apart: an experiment in words, and where both are laws of one joint the command that makes its
@@ -215,20 +232,6 @@ fn experiment(robot: &Robot, law: (EffectKind, Place), rival: (EffectKind, Place
             )
         }
         _ => words.into(),
-    }
-}
-
-/// Two laws on different joints that cannot be told apart.
-fn tied(robot: &Robot, tie: &Tie) -> CannotTell {
-    let mut joints: Vec<usize> =
-        (0..2).flat_map(|k| named_on(robot, tie.effects[k], tie.places[k])).collect();
-    joints.sort_unstable();
-    joints.dedup();
-    CannotTell {
-        between: (0..2).map(|k| tie.effects[k].id_at(tie.places[k]).to_string()).collect(),
-        joints,
-        experiment: experiment(robot, (tie.effects[0], tie.places[0]), (tie.effects[1], tie.places[1])),
-        variables: Vec::new(),
     }
 }
 

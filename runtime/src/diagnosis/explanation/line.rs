@@ -2,6 +2,7 @@
 
 use crate::diagnosis::candidates::order_line::Line;
 use crate::diagnosis::explanation::finding::{named_on, told, unit_term};
+use crate::diagnosis::explanation::quantities::propagate;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::Finding;
 use crate::diagnosis::rules::{LINE_COVERED, SEARCHES};
@@ -36,7 +37,11 @@ fn finding(search: &Search<'_>, joint: usize, found: &JointLines, tried: usize) 
     let sigma: Vec<f64> = lines.iter().flat_map(|l| [l.sigma; 2]).collect();
     let scale = &model.context.scales[joint];
     let Form::Joint(law) = effect.form() else { return None };
-    let parameters = law.parameters(scale, &shape, &amplitude, &sigma);
+    // A wave's phase at both ends of what was travelled tells its order (the Cramer-Rao bound of a sine's frequency).
+    let of_order = |l: &&Line| l.sigma / (l.amplitude() * found.spread).max(1e-300);
+    let shape_sigma: Vec<f64> = lines.iter().map(of_order).collect();
+    let parameters =
+        propagate(|shape| law.parameters(scale, shape, &amplitude, &sigma), &shape, &shape_sigma);
     // Amplitudes of noise pass their median so many times once in 2^(square) orders.
     let doubt = tried as f64 * (-strongest.above * strongest.above).exp2();
     let share: f64 = lines.iter().map(|l| l.share).sum::<f64>().min(1.0);

@@ -155,7 +155,11 @@ fn transmission(
 }
 
 /// Quantities of a shape; the standard deviations of its numbers through a difference.
-fn propagate(of: impl Fn(&[f64]) -> Vec<Parameter>, shape: &[f64], shape_sigma: &[f64]) -> Vec<Parameter> {
+pub(super) fn propagate(
+    of: impl Fn(&[f64]) -> Vec<Parameter>,
+    shape: &[f64],
+    shape_sigma: &[f64],
+) -> Vec<Parameter> {
     let mut list = of(shape);
     for (i, &s) in shape_sigma.iter().enumerate() {
         if s == 0.0 {

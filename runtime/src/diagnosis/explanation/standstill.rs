@@ -89,6 +89,7 @@ fn loads(robot: &Robot, rest: &AtRest) -> Vec<CannotTell> {
     vec![CannotTell {
         between: ["payload", "added_mass", "spring", "base_tilt", "contact"].map(String::from).to_vec(),
         joints,
+        on: Vec::new(),
         experiment: "move each joint slowly back and forth through several poses, so that friction and gravity can be told apart"
             .into(),
         variables: Vec::new(),

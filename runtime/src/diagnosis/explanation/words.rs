@@ -5,7 +5,7 @@ use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rules;
 use crate::effects::{EffectKind, FreeLaw, Parameter, Place, Quantities, UserLaw};
 use crate::model::{JointIndex, JointKind, Robot};
-use crate::report::{capital, falls_or_rises, significant};
+use crate::report::{capital, change_of_error, percent, significant};
 
 impl Finding {
     /// Its quantities by name.
@@ -43,13 +43,11 @@ pub(in crate::diagnosis) fn sentence(robot: &Robot, effect: EffectKind, f: &Find
     }
     let detail = effect.effect().detail(&f.quantities());
     format!(
-        "{place}: {}. {}: {detail}. Held-out error of {} {} from {:.2} % to {:.2} %.",
+        "{place}: {}. {}: {detail}. Held-out error of {} {}.",
         words.name,
         capital(words.what.trim_end_matches('.')),
         if f.joints.is_empty() { "all joints" } else { "its joints" },
-        falls_or_rises(f.held_out_before, f.held_out_after),
-        100.0 * f.held_out_before,
-        100.0 * f.held_out_after
+        change_of_error(f.held_out_before, f.held_out_after)
     )
 }
 
@@ -61,13 +59,11 @@ fn signed(x: f64) -> String {
 /// A law of the user with its constants.
 fn of_law(place: &str, law: UserLaw, f: &Finding) -> String {
     format!(
-        "{place}: your law {}, {}, with {}. Held-out error of its joints {} from {:.2} % to {:.2} %.",
+        "{place}: your law {}, {}, with {}. Held-out error of its joints {}.",
         law.id(),
         law.text(),
         f.quantities().all(),
-        falls_or_rises(f.held_out_before, f.held_out_after),
-        100.0 * f.held_out_before,
-        100.0 * f.held_out_after
+        change_of_error(f.held_out_before, f.held_out_after)
     )
 }
 
@@ -118,12 +114,10 @@ fn free_form(robot: &Robot, place: &str, f: &Finding) -> String {
         .as_ref()
         .map_or_else(String::new, |formula| format!(" A proposal that fits it within its band: {formula}."));
     format!(
-        "{place}: a torque that depends on {}, and on nothing else; {}.{proposal} Held-out error of its joints {} from {:.2} % to {:.2} %.",
+        "{place}: a torque that depends on {}, and on nothing else; {}.{proposal} Held-out error of its joints {}.",
         variables.join(" and "),
         f.term.effect.effect().detail(&f.quantities()),
-        falls_or_rises(f.held_out_before, f.held_out_after),
-        100.0 * f.held_out_before,
-        100.0 * f.held_out_after
+        change_of_error(f.held_out_before, f.held_out_after)
     )
 }
 
@@ -218,11 +212,8 @@ fn of_one_joint(d: &Diagnosis) -> Option<String> {
     let gain = |f: &Finding| f.held_out_after / f.held_out_before;
     let of_one = d.findings.iter().filter(|f| f.joints.len() == 1 && gain(f) < rules::SHOWS_IN_ALL);
     let most = of_one.min_by(|a, b| gain(a).total_cmp(&gain(b)))?;
-    let [before, after] = [most.held_out_before, most.held_out_after].map(|x| 100.0 * x);
-    Some(format!(
-        " of all joints together, and falls from {before:.2} % to {after:.2} % on joint {}",
-        most.joints[0]
-    ))
+    let of_joint = change_of_error(most.held_out_before, most.held_out_after);
+    Some(format!(" of all joints together, and {of_joint} on joint {}", most.joints[0]))
 }
 
 /// The verdict first.
@@ -236,8 +227,8 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             "Nothing is missing that this recording can show".to_owned()
         };
         lines.push(format!(
-            "{head}. The held-out error of the standard model is {:.2} %, and none of {} things tried improves it reliably.",
-            100.0 * d.held_out.before,
+            "{head}. The held-out error of the standard model is {}, and none of {} things tried improves it reliably.",
+            percent(d.held_out.before),
             d.tried
         ));
     } else {
@@ -257,11 +248,9 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             .collect();
         lines.push(format!("The standard model leaves out: {}.", names.join("; ")));
         lines.push(format!(
-            "With it, the error on motion that was held out ({}) {} from {:.2} % to {:.2} %{}.",
+            "With it, the error on motion that was held out ({}) {}{}.",
             d.held_out.how,
-            falls_or_rises(d.held_out.before, d.held_out.after),
-            100.0 * d.held_out.before,
-            100.0 * d.held_out.after,
+            change_of_error(d.held_out.before, d.held_out.after),
             of_one_joint(d).unwrap_or_default()
         ));
     }

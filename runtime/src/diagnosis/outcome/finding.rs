@@ -135,8 +135,11 @@ pub struct Alternative {
 pub struct CannotTell {
     /// Effects.
     pub between: Vec<String>,
-    /// Numbers j of the joints.
+    /// Numbers j of the joints of all.
     pub joints: Vec<usize>,
+    /// Those of each where they differ, none for the whole robot; empty where each is on all of `joints`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub on: Vec<Vec<usize>>,
     /// The motion that would tell.
     pub experiment: String,
     /// Variables of each, where the effects are laws over variables that go together in this motion.

@@ -3,6 +3,7 @@
 
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LEAST_ROWS, UNDETERMINED};
+use crate::estimation::ROUNDING;
 
 /// How much each joint moves.
 pub(in crate::diagnosis) struct Moving {
@@ -61,7 +62,8 @@ fn undetermined(gram: &[f64], p: usize) -> Vec<usize> {
     let norm: Vec<f64> = (0..p).map(|k| gram[k * p + k].max(0.0).sqrt()).collect();
     let scaled =
         |i: usize, k: usize| if norm[i] * norm[k] > 0.0 { gram[i * p + k] / norm[i] / norm[k] } else { 0.0 };
-    let mut left: Vec<f64> = norm.iter().map(|n| f64::from(*n > 0.0)).collect();
+    let least = ROUNDING * norm.iter().copied().fold(0.0, f64::max);
+    let mut left: Vec<f64> = norm.iter().map(|n| f64::from(*n > least)).collect();
     let mut taken = vec![false; p];
     let mut factor: Vec<Vec<f64>> = Vec::new();
     while let Some(pivot) = (0..p)
@@ -105,8 +107,10 @@ mod tests {
     #[test]
     fn what_is_determined_is_kept_whatever_its_unit() {
         let columns: Vec<[f64; 6]> = (0..6)
-            .map(|k| std::array::from_fn(|i| if i == k { 10f64.powi(k as i32 * 3 - 9) } else { 0.0 }))
+            .map(|k| std::array::from_fn(|i| if i == k { 10f64.powi(k as i32 * 2 - 6) } else { 0.0 }))
             .collect();
         assert_eq!(undetermined(&gram(&columns), 6), Vec::<usize>::new());
+        let rounding: [f64; 6] = std::array::from_fn(|i| 1e-16 * (i as f64 - 2.5));
+        assert_eq!(undetermined(&gram(&[columns[0], columns[3], rounding]), 3), [2]);
     }
 }

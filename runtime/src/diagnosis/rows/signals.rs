@@ -78,12 +78,7 @@ impl Signals {
         let rate = if span > 0.0 { stamps as f64 / span } else { 1.0 };
         let settings =
             Preparation { cutoff: Some((rate / RATE_PER_CUTOFF).min(cutoff)), ..Preparation::default() };
-        let mut motion = prepare(trajectory, &settings)?;
-        // What a joint that is declared to stand still seems to do is noise.
-        for &j in &motion.fixed {
-            motion.dq[j].fill(0.0);
-            motion.ddq[j].fill(0.0);
-        }
+        let motion = prepare(trajectory, &settings)?;
         let rate = motion.rate;
         // All signals are limited to the cut-off: more samples a second say nothing more.
         let stride = (rate / SAMPLES_PER_SECOND).floor().max(1.0) as usize;

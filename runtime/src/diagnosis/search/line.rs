@@ -13,6 +13,8 @@ use crate::parallel;
 pub(in crate::diagnosis) struct JointLines {
     pub lines: Vec<Line>,
     pub resolution: f64,
+    /// Standard deviation of the positions at which the joint moves, rad or m.
+    pub spread: f64,
     /// Orders that were tried.
     pub tried: usize,
     /// Rms of the torque, N.m or N.
@@ -68,8 +70,20 @@ pub(in crate::diagnosis) fn all_lines(
         JointLines {
             lines: new,
             resolution,
+            spread: spread(&now, slowest[j]),
             tried: known.len() + spectra[j].order.len(),
             torque: (squares / f64::from(count.max(1))).sqrt(),
         }
     })
+}
+
+/// Standard deviation of the positions at which a joint moves faster than `slowest`.
+fn spread(strokes: &[Stroke<'_>], slowest: f64) -> f64 {
+    let moving = |s: &Stroke<'_>| -> Vec<f64> {
+        s.q.iter().zip(s.dq).filter(|(_, v)| v.abs() > slowest).map(|(q, _)| *q).collect()
+    };
+    let positions: Vec<f64> = strokes.iter().flat_map(moving).collect();
+    let count = positions.len().max(1) as f64;
+    let mean = positions.iter().sum::<f64>() / count;
+    (positions.iter().map(|q| (q - mean).powi(2)).sum::<f64>() / count).sqrt()
 }

@@ -31,6 +31,7 @@ pub(super) fn noise_of_columns(
         let mut sums: Vec<DMatrix<f64>> =
             p.equations.iter().map(|e| DMatrix::zeros(e.unknowns.len(), e.unknowns.len())).collect();
         let mut counts = vec![0usize; sums.len()];
+        let still: Vec<bool> = p.motion.ddq.iter().map(|ddq| ddq.iter().all(|&x| x == 0.0)).collect();
         for row in (step / 2..centres.len()).step_by(step) {
             let used: Vec<bool> = p.selection.iter().map(|s| s.used[row]).collect();
             if !used.contains(&true) {
@@ -40,7 +41,7 @@ pub(super) fn noise_of_columns(
             let q: Vec<f64> = p.motion.q.iter().map(|q| q[at]).collect();
             let dq: Vec<f64> = p.motion.dq.iter().map(|dq| dq[at]).collect();
             slopes.at(&q);
-            for k in (0..n).filter(|k| variance[*k] > 0.0 && !p.motion.fixed.contains(k)) {
+            for k in (0..n).filter(|&k| variance[k] > 0.0 && !still[k]) {
                 slopes.by_acceleration(k);
                 for (equation, sum) in sums.iter_mut().enumerate().filter(|(e, _)| used[*e]) {
                     let slope = match equations {

@@ -63,15 +63,14 @@ pub(super) fn source<'a>(
         return Err(ObserveError::TooManyJoints { found: n });
     }
     check_shape(model.robot(), motion)?;
-    let signals = MotionOfMovingJoints::new(motion, n);
     Ok(match equations {
-        Equations::Torque => Box::new(Torque::new(model, trajectory, signals, extra, n)),
+        Equations::Torque => Box::new(Torque::new(model, trajectory, motion, extra, n)),
         Equations::Power { closed_form } => {
             let inertial = (0..model.robot().base.len())
                 .map(|c| model.robot().standard[model.robot().base[c].standard].kind.is_load())
                 .collect();
             let filtered = (0..=model.robot().base.len()).collect();
-            Box::new(Power { model, signals, closed_form, inertial, filtered, n })
+            Box::new(Power { model, motion, closed_form, inertial, filtered, n })
         }
     })
 }
@@ -99,32 +98,17 @@ pub(super) fn check_shape(robot: &Robot, motion: &Motion) -> Result<(), ObserveE
     Ok(())
 }
 
-/// A motion in which the velocity and acceleration of joints that are said to stand still are zero.
-struct MotionOfMovingJoints<'a> {
-    motion: &'a Motion,
-    fixed: Vec<bool>,
-    zeros: Vec<f64>,
-}
-
 type Slices<'s> = [[&'s [f64]; MAX_JOINTS]; 3];
 
-impl<'a> MotionOfMovingJoints<'a> {
-    fn new(motion: &'a Motion, n: usize) -> MotionOfMovingJoints<'a> {
-        let fixed = (0..n).map(|j| motion.fixed.contains(&j)).collect();
-        MotionOfMovingJoints { motion, fixed, zeros: vec![0.0; STRIDE] }
-    }
-
-    /// Positions, velocities and accelerations of a range of at most [`BLOCK`] samples and one on each side.
-    fn slices(&self, range: &Range<usize>) -> Slices<'_> {
-        let mut slices: Slices<'_> = [[&[]; MAX_JOINTS]; 3];
-        for (j, &fixed) in self.fixed.iter().enumerate() {
-            slices[0][j] = &self.motion.q[j][range.clone()];
-            slices[1][j] = if fixed { &self.zeros[..range.len()] } else { &self.motion.dq[j][range.clone()] };
-            slices[2][j] =
-                if fixed { &self.zeros[..range.len()] } else { &self.motion.ddq[j][range.clone()] };
+/// Positions, velocities and accelerations of a range of samples.
+fn slices<'s>(motion: &'s Motion, range: &Range<usize>) -> Slices<'s> {
+    let mut slices: Slices<'_> = [[&[]; MAX_JOINTS]; 3];
+    for (of_all, signal) in slices.iter_mut().zip([&motion.q, &motion.dq, &motion.ddq]) {
+        for (slice, of_joint) in of_all.iter_mut().zip(signal) {
+            *slice = &of_joint[range.clone()];
         }
-        slices
     }
+    slices
 }
 
 fn states<'s>(slices: &'s Slices<'s>, n: usize) -> States<'s> {
@@ -135,7 +119,7 @@ fn states<'s>(slices: &'s Slices<'s>, n: usize) -> States<'s> {
 struct Torque<'a> {
     model: &'a dyn Model,
     trajectory: usize,
-    signals: MotionOfMovingJoints<'a>,
+    motion: &'a Motion,
     extra: Option<&'a dyn ExtraColumns>,
     filtered: Vec<usize>,
     n: usize,
@@ -145,11 +129,11 @@ impl<'a> Torque<'a> {
     fn new(
         model: &'a dyn Model,
         trajectory: usize,
-        signals: MotionOfMovingJoints<'a>,
+        motion: &'a Motion,
         extra: Option<&'a dyn ExtraColumns>,
         n: usize,
     ) -> Torque<'a> {
-        let mut torque = Torque { model, trajectory, signals, extra, filtered: Vec::new(), n };
+        let mut torque = Torque { model, trajectory, motion, extra, filtered: Vec::new(), n };
         let same_as = &model.pattern().same_as;
         let distinct = (0..same_as.len()).filter(|&e| same_as[e] == e);
         torque.filtered = distinct.chain(same_as.len()..torque.width()).collect();
@@ -178,7 +162,7 @@ impl Source for Torque<'_> {
     }
 
     fn fill(&self, range: Range<usize>, lines: &mut [Line], scratch: &mut Vec<f64>) {
-        let slices = self.signals.slices(&range);
+        let slices = slices(self.motion, &range);
         let width = self.width();
         self.model.idm_lines(states(&slices, self.n), width, lines);
         let mut next = self.model.pattern().columns.len();
@@ -190,14 +174,14 @@ impl Source for Torque<'_> {
                 }
                 scratch.resize(scratch.len().max(count * STRIDE), 0.0);
                 let own = &mut scratch[..count * STRIDE];
-                extra.fill(self.trajectory, self.signals.motion, range.clone(), joint, STRIDE, own);
+                extra.fill(self.trajectory, self.motion, range.clone(), joint, STRIDE, own);
                 for column in own.chunks_exact(STRIDE) {
                     lay(&column[..range.len()], next, width, lines);
                     next += 1;
                 }
             }
         }
-        for torque in &self.signals.motion.torque {
+        for torque in &self.motion.torque {
             lay(&torque[range.clone()], next, width, lines);
             next += 1;
         }
@@ -228,7 +212,7 @@ impl Source for Torque<'_> {
 /// (11): the columns of dh, then the power P = dqT tau (12).
 struct Power<'a> {
     model: &'a dyn Model,
-    signals: MotionOfMovingJoints<'a>,
+    motion: &'a Motion,
     closed_form: bool,
     /// Columns that have an energy; the others are friction.
     inertial: Vec<bool>,
@@ -247,7 +231,7 @@ impl Source for Power<'_> {
 
     fn fill(&self, range: Range<usize>, lines: &mut [Line], scratch: &mut Vec<f64>) {
         let (nb, width) = (self.inertial.len(), self.width());
-        let slices = self.signals.slices(&range);
+        let slices = slices(self.motion, &range);
         // The columns and the power; behind them the energies of one sample more on each side.
         scratch.resize((width + nb) * STRIDE, 0.0);
         let (columns, h) = scratch.split_at_mut(width * STRIDE);
@@ -257,7 +241,7 @@ impl Source for Power<'_> {
             self.differentiate(&range, dh, h);
         }
         for (t, p) in power[..range.len()].iter_mut().enumerate() {
-            *p = (0..self.n).map(|j| slices[1][j][t] * self.signals.motion.torque[j][range.start + t]).sum();
+            *p = (0..self.n).map(|j| slices[1][j][t] * self.motion.torque[j][range.start + t]).sum();
         }
         for (place, column) in columns.chunks_exact(STRIDE).enumerate() {
             lay(&column[..range.len()], place, width, lines);
@@ -273,11 +257,11 @@ impl Source for Power<'_> {
 impl Power<'_> {
     /// Replaces the inertial columns by central differences of h(q, dq), as in the paper.
     fn differentiate(&self, range: &Range<usize>, dh: &mut [f64], h: &mut [f64]) {
-        let samples = self.signals.motion.q[0].len();
+        let samples = self.motion.q[0].len();
         let wide = range.start.saturating_sub(1)..(range.end + 1).min(samples);
-        let slices = self.signals.slices(&wide);
+        let slices = slices(self.motion, &wide);
         self.model.energy_block(states(&slices, self.n), STRIDE, h);
-        let rate = self.signals.motion.rate;
+        let rate = self.motion.rate;
         let columns = h.chunks_exact(STRIDE).zip(dh.chunks_exact_mut(STRIDE)).zip(&self.inertial);
         for ((h, dh), _) in columns.filter(|&(_, &inertial)| inertial) {
             for (t, value) in dh[..range.len()].iter_mut().enumerate() {

@@ -156,6 +156,7 @@ fn the_power_model_is_the_same_in_closed_form_and_from_differences_of_the_energy
 fn a_fixed_joint_has_no_equation_and_no_speed() {
     let mut motion = motion(4.0, 0.3);
     motion.fixed = vec![0];
+    motion.hold();
     let observation = run(&[motion], Equations::Torque, &settings());
     assert_eq!(observation.left_out[0].used, 0);
     assert!(observation.left_out[0].fixed > 0);
