@@ -136,7 +136,7 @@ fn prior(robot: &Robot, nominal: Option<&[f64]>, template: Option<&Template<'_>>
             standard[k] = bodies[p.frame].map_or(0.0, |body| body[place]) + attached[p.frame][place];
         }
     }
-    (Prior { bodies, attached, rotors }, standard)
+    (Prior { bodies, attached, rotors, ellipsoids: vec![None; frames] }, standard)
 }
 
 /// A body as a prior: with a density, where the numbers have none; a ball where there are no numbers.

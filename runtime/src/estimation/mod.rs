@@ -81,7 +81,8 @@ pub use payload::{
     payload_of,
 };
 pub use physical::{
-    NearPrior, NearPriorError, NearestBody, PhysicalFit, Prior, near_prior, nearest_body, physical_fit,
+    EllipsoidBound, NearPrior, NearPriorError, NearestBody, PhysicalFit, Prior, ellipsoid_margin, near_prior,
+    nearest_body, physical_fit, uniform_body,
 };
 pub use piecewise::Piecewise;
 pub use recorded::{

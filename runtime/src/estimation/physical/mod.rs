@@ -5,8 +5,10 @@
 //! such parameters. The best physically possible fit therefore tells whether the recording can be this robot's.
 
 mod body;
+mod ellipsoid;
 mod interior_point;
 mod near_prior;
+mod newton_step;
 mod prior_problem;
 mod problem;
 mod pseudo_inertia;
@@ -18,7 +20,8 @@ use crate::model::Robot;
 use problem::Problem;
 
 pub use body::{NearestBody, nearest_body};
-pub use near_prior::{NearPrior, NearPriorError, Prior, near_prior};
+pub use ellipsoid::{ellipsoid_margin, uniform_body};
+pub use near_prior::{EllipsoidBound, NearPrior, NearPriorError, Prior, near_prior};
 
 /// The best fit whose parameters belong to real bodies and whose friction dissipates.
 #[derive(Debug, Clone, PartialEq)]
