@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 
 use crate::enclosing::{directions, enclosing};
 use crate::geometry::{Collision, Shape};
-use crate::pose::Pose;
 use crate::template::Template;
 use dynid_description::Ellipsoid;
 
@@ -101,6 +100,7 @@ fn points_of(collision: &Collision, meshes: &Meshes<'_>) -> Result<Vec<Vector3<f
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
     use super::*;
+    use crate::pose::Pose;
     use nalgebra::Matrix3;
     use rand::{RngExt, SeedableRng};
 

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::{Coupling, JointIndex, ParameterKind, Robot, StandardParameter};
+use dynid_runtime::model_file::Bodies;
 use dynid_runtime::report::significant;
 use serde::Serialize;
 
 use super::Target;
 use super::bodies::Fitted;
+use crate::body_report::report;
 use crate::failure::Failure;
 use crate::output::{print, write_json};
 
@@ -66,6 +68,9 @@ struct Beside<'a> {
     /// bodies can have.
     #[serde(skip_serializing_if = "Option::is_none")]
     distance: Option<[f64; 2]>,
+    /// What holds the bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bodies: Option<Bodies>,
     standard_parameters: Vec<Written<'a>>,
     base_parameters: Vec<Base<'a>>,
 }
@@ -98,6 +103,7 @@ pub(super) fn tell(fitted: &Fitted, to: Target, what: &str, out: &Path) -> Resul
             model: what,
             not_in_the_format: left_out,
             distance: near.map(|(_, bodies)| [bodies.near.distance, bodies.near.least]),
+            bodies: near.map(|(_, bodies)| report(bodies, robot, None, None)),
             standard_parameters: (0..robot.standard.len())
                 .map(|k| Written {
                     name: &robot.standard[k].name,

@@ -12,6 +12,7 @@ mod newton_step;
 mod prior_problem;
 mod problem;
 mod pseudo_inertia;
+mod release;
 
 use super::observe::Observation;
 use super::weights::stack;
@@ -22,6 +23,7 @@ use problem::Problem;
 pub use body::{NearestBody, nearest_body};
 pub use ellipsoid::{ellipsoid_margin, uniform_body};
 pub use near_prior::{EllipsoidBound, NearPrior, NearPriorError, Prior, near_prior};
+pub use release::{Constraint, Released, released};
 
 /// The best fit whose parameters belong to real bodies and whose friction dissipates.
 #[derive(Debug, Clone, PartialEq)]

@@ -69,6 +69,8 @@ pub struct NearPrior {
     pub distance: f64,
     /// The least that bodies can have of it: near 0 where the identified values are possible.
     pub least: f64,
+    /// Base parameters of the bodies that have it.
+    pub least_chi: Vec<f64>,
     /// Number of base parameters that the data determine.
     pub determined: usize,
     /// Weight of the prior that was chosen.
@@ -121,22 +123,10 @@ pub fn near_prior(
 ) -> Result<NearPrior, NearPriorError> {
     check(robot, chi, covariance, prior)?;
     let search = Search::new(robot, chi, covariance, prior)?;
-    let mut path = vec![(FIRST, search.minimum(FIRST, search.start.clone())?)];
-    while let Some((gamma, x)) = path.last()
-        && *gamma > LAST
-    {
-        let next = gamma * NEXT;
-        // Where rounding takes over, the way is at its end.
-        let Ok(found) = search.minimum(next, x.clone()) else { break };
-        let [before, after] = [x, &found].map(|x| search.distance(x));
-        let settled = next < 1.0 && before - after < SETTLED * (1.0 + after);
-        path.push((next, found));
-        if settled {
-            break;
-        }
-    }
+    let mut path = path(&search)?;
     let distances: Vec<f64> = path.iter().map(|(_, x)| search.distance(x)).collect();
     let least = distances.last().copied().unwrap_or_default();
+    let least_chi = path.last().map_or_else(Vec::new, |(_, x)| robot.base_from_standard(x.as_slice()));
     let allowed = least + search.determined as f64;
     let first = distances.iter().position(|d| *d <= allowed).unwrap_or(path.len() - 1);
     let (mut gamma, mut x) = path.swap_remove(first);
@@ -153,11 +143,36 @@ pub fn near_prior(
             }
         }
     }
-    outcome(&search, robot, prior, (gamma, &x), least)
+    let found = outcome(&search, robot, prior, gamma, &x)?;
+    Ok(NearPrior { least, least_chi, ..found })
+}
+
+/// Minima with less and less weight of the prior, until the distance has settled: the last one is the least that there is.
+pub(super) fn path(search: &Search) -> Result<Vec<(f64, DVector<f64>)>, NearPriorError> {
+    let mut path = vec![(FIRST, search.minimum(FIRST, search.start.clone())?)];
+    while let Some((gamma, x)) = path.last()
+        && *gamma > LAST
+    {
+        let next = gamma * NEXT;
+        // Where rounding takes over, the way is at its end.
+        let Ok(found) = search.minimum(next, x.clone()) else { break };
+        let [before, after] = [x, &found].map(|x| search.distance(x));
+        let settled = next < 1.0 && before - after < SETTLED * (1.0 + after);
+        path.push((next, found));
+        if settled {
+            break;
+        }
+    }
+    Ok(path)
 }
 
 /// Whether the arguments are of one robot, and its known parameters of bodies as a whole.
-fn check(robot: &Robot, chi: &[f64], covariance: &DMatrix<f64>, prior: &Prior) -> Result<(), NearPriorError> {
+pub(super) fn check(
+    robot: &Robot,
+    chi: &[f64],
+    covariance: &DMatrix<f64>,
+    prior: &Prior,
+) -> Result<(), NearPriorError> {
     let n = robot.base.len();
     let shapes = chi.len() == n
         && covariance.shape() == (n, n)
@@ -182,13 +197,13 @@ fn check(robot: &Robot, chi: &[f64], covariance: &DMatrix<f64>, prior: &Prior) -
     Ok(())
 }
 
-/// The parameters of a minimum, and what decided them.
+/// The parameters of a minimum, and what decided them, but for the least distance.
 fn outcome(
     search: &Search,
     robot: &Robot,
     prior: &Prior,
-    (gamma, x): (f64, &DVector<f64>),
-    least: f64,
+    gamma: f64,
+    x: &DVector<f64>,
 ) -> Result<NearPrior, NearPriorError> {
     let (step, _) = search.newton(gamma, x).ok_or(NearPriorError::NotConverged)?;
     let mut divergence = vec![0.0; robot.frames.len()];
@@ -214,7 +229,8 @@ fn outcome(
         from_data: from_data.unwrap_or_else(|| vec![0.0; x.len()]),
         standard: x.as_slice().to_vec(),
         distance: search.distance(x),
-        least,
+        least: 0.0,
+        least_chi: Vec::new(),
         determined: search.determined,
         gamma,
         divergence,

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::estimation::physical::pseudo_inertia::pseudo_inertia;
+use crate::estimation::physical::{Constraint, released};
 use crate::model::{Drive, Frame, JointKind, Limits};
 
 /// An upright arm of two joints with a motor each, its standard parameters as base parameters grouped by `groups`.
@@ -109,6 +110,11 @@ fn values_that_no_body_has_are_told_by_their_distance() {
     let near = near_prior(&robot, &chi, &sigmas(&chi, 0.01), &prior()).unwrap();
     assert!(near.least > 10.0 * near.determined as f64, "{near:?}");
     assert!(is_body(&near, 0) && is_body(&near, 1));
+    // Without what holds the second body nothing is in the way; without what holds another part all of it is.
+    let released = released(&robot, &chi, &sigmas(&chi, 0.01), &prior()).unwrap();
+    assert_eq!(released.len(), 4);
+    assert!(released[0].what == Constraint::Body(1) && released[0].least < 0.01 * near.least, "{released:?}");
+    assert!(released[1..].iter().all(|r| r.least > 0.5 * near.least), "{released:?}");
 }
 
 #[test]

@@ -9,6 +9,7 @@ use super::near_prior::{NearPriorError, Prior};
 use super::newton_step::Step;
 use super::problem::{Combination, parameter, rotors};
 use super::pseudo_inertia::{pseudo_inertia, unit_inertia};
+use super::release::Constraint;
 use crate::model::{ParameterKind, Robot};
 
 /// Uncertainty of a base parameter, relative to its size, below which it is as good as exact: what is written with fewer
@@ -37,6 +38,8 @@ pub(super) struct Search {
     fixed: Vec<usize>,
     /// Ellipsoids that bodies lie in: tr(P Q) in units of the prior's mass as a function of x, without what is attached.
     ellipsoids: Vec<Combination>,
+    /// What a released body or rotor is held by instead, weakly: parameter, where it is, scale.
+    loose: Vec<(usize, f64, f64)>,
     pub(super) start: DVector<f64>,
     pub(super) determined: usize,
 }
@@ -70,6 +73,7 @@ impl Search {
             bodies: Vec::new(),
             ellipsoids: Vec::new(),
             rotors: Vec::new(),
+            loose: Vec::new(),
             fixed: Vec::new(),
             start: DVector::zeros(standard),
             determined: 0,
@@ -190,6 +194,34 @@ impl Search {
         }
     }
 
+    /// Takes away what keeps a body one, or a rotor's inertia positive. `false` where there is no such.
+    pub(super) fn release(&mut self, what: Constraint) -> bool {
+        match what {
+            Constraint::Body(frame) => {
+                let Some(at) = self.bodies.iter().position(|body| body.frame == frame) else { return false };
+                let body = self.bodies.remove(at);
+                if let Some(place) = body.ellipsoid {
+                    self.ellipsoids.remove(place);
+                    let later = self.bodies.iter_mut().filter_map(|body| body.ellipsoid.as_mut());
+                    later.filter(|other| **other > place).for_each(|other| *other -= 1);
+                }
+                // Numbers of one unit have one scale.
+                for part in [&body.link[..6], &body.link[6..9], &body.link[9..]] {
+                    let largest = part.iter().map(|&k| self.start[k].abs()).fold(EXACT, f64::max);
+                    self.loose.extend(part.iter().map(|&k| (k, self.start[k], largest)));
+                }
+            }
+            Constraint::Rotor(motor) => {
+                if motor >= self.rotors.len() {
+                    return false;
+                }
+                let (combination, ..) = self.rotors.remove(motor);
+                self.loose.extend(combination.iter().map(|&(k, _)| (k, self.start[k], UNKNOWN)));
+            }
+        }
+        true
+    }
+
     /// tr(P Q) of each ellipsoid's body in units of its prior's mass. What rounding takes below zero is at the surface.
     fn margins(&self, x: &DVector<f64>) -> DVector<f64> {
         let bounded = self.bodies.iter().filter_map(|body| Some((body.ellipsoid?, body.beyond)));
@@ -231,6 +263,7 @@ impl Search {
             }
             sum += weight * (value / scale - (value / scale).ln() - 1.0);
         }
+        sum += self.loose.iter().map(|&(k, at, scale)| 0.5 * ((x[k] - at) / scale).powi(2)).sum::<f64>();
         sum.is_finite().then_some(sum)
     }
 
@@ -258,6 +291,10 @@ impl Search {
                     hessian[(i, j)] += weight * a * b / (value * value);
                 }
             }
+        }
+        for &(k, at, scale) in &self.loose {
+            gradient[k] += (x[k] - at) / (scale * scale);
+            hessian[(k, k)] += 1.0 / (scale * scale);
         }
         self.fixed.iter().for_each(|&k| hessian[(k, k)] = 1.0);
         Some((gradient, hessian))
