@@ -51,7 +51,6 @@ impl NearBodies {
         let chi = identified.chi(robot).map_err(|_| NearPriorError::Shape)?;
         let links = template
             .map_or_else(Vec::new, |(template, path)| template.bounds(&|mesh| meshes::vertices(path, mesh)));
-        // Where no link has geometry there is nothing to say of it.
         let has_some = links.iter().any(|link| link.ellipsoid.is_ok());
         let mut ellipsoids = vec![None; robot.frames.len()];
         links.iter().for_each(|link| ellipsoids[link.frame] = link.ellipsoid.as_ref().ok().copied());
@@ -60,15 +59,16 @@ impl NearBodies {
         let near = near_prior(robot, &chi, &covariance, &prior)?;
         let unbounded = has_some.then(|| {
             let free = Prior { ellipsoids: vec![None; robot.frames.len()], ..prior.clone() };
-            near_prior(robot, &chi, &covariance, &free)
+            near_prior(robot, &chi, &covariance, &free).ok()
         });
         // As many as this are within the uncertainty of one parameter.
         let released = match near.least > 1.0 {
             true => released(robot, &chi, &covariance, &prior)?,
             false => Vec::new(),
         };
-        let links = if has_some { links } else { Vec::new() };
-        Ok(Self { near, prior: values, links, unbounded: unbounded.transpose()?, released })
+        // Where no link has geometry there is nothing to say of it.
+        let links = if template.is_some_and(|(t, _)| t.has_geometry()) { links } else { Vec::new() };
+        Ok(Self { near, prior: values, links, unbounded: unbounded.flatten(), released })
     }
 
     /// What the data and what the prior decided, and how near the base parameters are.

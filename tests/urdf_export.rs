@@ -221,7 +221,9 @@ fn bodies_stay_within_the_geometry_of_the_prior_and_what_has_none_is_named() {
     let [with, without] =
         [&json["bodies"]["least"], &json["bodies"]["without_ellipsoids"][1]].map(|x| x.as_f64().unwrap());
     assert!(with > 100.0 && without < 10.0, "{with} {without}");
-    assert_eq!(json["bodies"]["impossible"][0]["what"], "link 2");
+    let costs = json["bodies"]["impossible"].as_array().unwrap();
+    let arm = costs.iter().find(|one| one["what"] == "link 2").unwrap();
+    assert!(arm["least"].as_f64().unwrap() < 0.1 * with, "{costs:?}");
 }
 
 #[test]

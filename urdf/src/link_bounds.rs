@@ -11,6 +11,8 @@ use dynid_description::Ellipsoid;
 const CORNERS: usize = 32;
 /// Circles of the polyhedron that stands for a ball.
 const TILTS: usize = 16;
+/// Largest coordinate of a mesh, m: also of one in millimetres without a scale.
+const FARTHEST: f64 = 1e4;
 
 /// What is known of where a link's mass can be.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +40,12 @@ impl Template<'_> {
             LinkBound { frame: known.frame, link: known.link, ellipsoid }
         };
         self.carriers().map(bound).collect()
+    }
+
+    /// Whether any link that moves has a `<collision>`.
+    pub fn has_geometry(&self) -> bool {
+        let links = self.tree.bodies.iter().flat_map(|body| &body.links);
+        links.into_iter().any(|(link, _)| !self.urdf.links[*link].collisions.is_empty())
     }
 
     /// Points whose convex hull holds the geometry that a joint moves, in the frame of the table. `target` is the link whose
@@ -91,7 +99,14 @@ fn points_of(collision: &Collision, meshes: &Meshes<'_>) -> Result<Vec<Vector3<f
         Shape::Mesh { file, scale } => {
             let vertices =
                 meshes(file).map_err(|why| format!("the mesh {}: {why}", crate::mistake::shown(file)))?;
-            Ok(vertices.iter().map(|v| Vector3::from_fn(|i, _| v[i] * scale[i])).collect())
+            let points: Vec<Vector3<f64>> =
+                vertices.iter().map(|v| Vector3::from_fn(|i, _| v[i] * scale[i])).collect();
+            match points.iter().all(|p| p.amax() <= FARTHEST) {
+                true => Ok(points),
+                false => {
+                    Err(format!("the mesh {}: it is larger than any robot", crate::mistake::shown(file)))
+                }
+            }
         }
     }
 }

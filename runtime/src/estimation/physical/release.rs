@@ -46,7 +46,8 @@ pub fn released(
         if !search.release(what) {
             continue;
         }
-        let path = path(&search)?;
+        // What cannot be found says nothing of this one.
+        let Ok(path) = path(&search) else { continue };
         let Some((_, x)) = path.last() else { continue };
         all.push(Released { what, least: search.distance(x), chi: robot.base_from_standard(x.as_slice()) });
     }
