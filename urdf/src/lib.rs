@@ -23,6 +23,7 @@
 
 mod angles;
 mod attributes;
+mod between;
 mod body;
 mod by_joint;
 mod coaxial;
@@ -47,6 +48,7 @@ mod text;
 mod tree;
 mod write_urdf;
 
+pub use between::{PointSpring, stiffness_and_rest};
 pub use body::Body;
 pub use document::{Urdf, read};
 pub use import::{ImportOptions, Imported, import};

@@ -193,6 +193,12 @@ impl<'a> Template<'a> {
         let mut skeleton = self.skeleton.clone();
         skeleton.gravity = whole.gravity;
         skeleton.tendons = table.tendons;
+        skeleton.between = table.between;
+        for (segment, point) in skeleton.between.iter_mut().flat_map(|spring| &mut spring.ends) {
+            if let Some(pose) = segment.and_then(|k| self.in_link.get(k)) {
+                *point = pose.rotation * *point + pose.translation;
+            }
+        }
         for ((own, new), pose) in skeleton.segments.iter_mut().zip(table.segments).zip(&self.in_link) {
             own.body = new.body.seen_from(pose);
             (own.damping, own.friction, own.armature) = (new.damping, new.friction, new.armature);

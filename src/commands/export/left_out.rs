@@ -6,6 +6,7 @@ use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::{Coupling, JointIndex, ParameterKind, Robot, StandardParameter};
 use dynid_runtime::model_file::Bodies;
 use dynid_runtime::report::significant;
+use dynid_urdf::stiffness_and_rest;
 use serde::Serialize;
 
 use super::Target;
@@ -140,14 +141,7 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
     for (k, p) in robot.standard.iter().enumerate() {
         let value = fitted.standard[k];
         let formula = match p.coupling.and_then(|c| robot.couplings.get(c)) {
-            // A fixed tendon, where it gives no power.
-            Some(coupling)
-                if to == Target::Mjcf
-                    && coupling.law.between().is_none()
-                    && (value >= 0.0 || p.kind == ParameterKind::KR) =>
-            {
-                None
-            }
+            Some(coupling) if to == Target::Mjcf && is_tendon(fitted, p, coupling, value) => None,
             Some(coupling) => of_coupling(robot, p, coupling, value),
             None => formula(robot, p.kind, p.frame, value, to),
         };
@@ -199,6 +193,17 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
         });
     }
     list
+}
+
+/// Whether MJCF has a parameter of a coupling in a tendon: in a fixed one, where it gives no power, or between points in a
+/// spatial one, where it is a spring with a length at rest.
+fn is_tendon(fitted: &Fitted, p: &StandardParameter, coupling: &Coupling, value: f64) -> bool {
+    match coupling.law.between() {
+        None => value >= 0.0 || p.kind == ParameterKind::KR,
+        Some(_) => {
+            p.coupling.is_some_and(|k| stiffness_and_rest(&fitted.robot, &fitted.standard, k).is_some())
+        }
+    }
 }
 
 /// The formula of a parameter of friction between links or of a spring; `None` where there is nothing.
