@@ -87,7 +87,7 @@ fn points_of(collision: &Collision, meshes: &Meshes<'_>) -> Result<Vec<Vector3<f
             let outer = radius / (PI / CORNERS as f64).cos();
             let corner = |k: usize| {
                 let (sin, cos) = (2.0 * PI * (k / 2) as f64 / CORNERS as f64).sin_cos();
-                Vector3::new(outer * cos, outer * sin, if k % 2 == 0 { 0.5 } else { -0.5 } * length)
+                Vector3::new(outer * cos, outer * sin, if k.is_multiple_of(2) { 0.5 } else { -0.5 } * length)
             };
             Ok((0..2 * CORNERS).map(corner).collect())
         }

@@ -1,9 +1,9 @@
 //! Newton's step where some linear functions of the unknowns may not fall below zero.
 //!
-//! min ½ dᵀ H d + gᵀ d over d with A d + s >= 0, s the functions where they are. Few functions and no unknown in two of them: the dual, min ½ λᵀ (A H⁻¹ Aᵀ) λ
-//! + (s - A H⁻¹ g)ᵀ λ over λ >= 0, is solved exactly by an active set (Lawson and Hanson 1974, chapter 23, in the form of
-//! Bro and de Jong 1997). Where nothing holds the step back it is Newton's own, so that bounds that are far away change
-//! nothing.
+//! min ½ dᵀ H d + gᵀ d over d with A d + s >= 0, s the functions where they are. They are few, and no unknown is in two of
+//! them: the dual, min ½ λᵀ (A H⁻¹ Aᵀ) λ + (s - A H⁻¹ g)ᵀ λ over λ >= 0, is solved exactly by an active set (Lawson and Hanson
+//! 1974, chapter 23, in the form of Bro and de Jong 1997). Where nothing holds the step back it is Newton's own, so that bounds
+//! that are far away change nothing.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
