@@ -22,8 +22,9 @@ pub(crate) fn enclosing(points: &[Vector3<f64>]) -> Option<Ellipsoid> {
         return None;
     }
     let middle = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
-    let thickness =
-        (0..6).map(|k| middle + Vector3::ith(k / 2, THINNEST * if usize::is_multiple_of(k, 2) { 1.0 } else { -1.0 }));
+    let thickness = (0..6).map(|k| {
+        middle + Vector3::ith(k / 2, THINNEST * if usize::is_multiple_of(k, 2) { 1.0 } else { -1.0 })
+    });
     let thickness: Vec<Vector3<f64>> = thickness.collect();
     // Where the points are seen as a ball, directions all around miss none that matter.
     let mut seen = Matrix3::identity();
