@@ -5,11 +5,13 @@
 #![deny(missing_docs)]
 
 pub mod arguments;
+pub mod body_report;
 pub mod commands;
 pub mod compared;
 pub mod errors;
 pub mod estimated;
 pub mod failure;
+pub mod meshes;
 pub mod models;
 pub mod motions;
 pub mod near_bodies;

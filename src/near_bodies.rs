@@ -1,12 +1,17 @@
 //! Standard parameters that bodies can have: nearest to a prior among those that have the identified base parameters.
 
-use dynid_runtime::estimation::{NearPrior, NearPriorError, Prior, near_prior};
-use dynid_runtime::model::{ParameterKind, Robot};
+use std::path::Path;
+
+use dynid_runtime::estimation::{
+    NearPrior, NearPriorError, Prior, Released, ellipsoid_margin, near_prior, released, uniform_body,
+};
+use dynid_runtime::model::{Ellipsoid, ParameterKind, Robot};
 use dynid_runtime::model_file::Identified;
 use dynid_runtime::report::significant;
-use dynid_urdf::{Body, Pose, Template, value};
+use dynid_urdf::{Body, LinkBound, Pose, Template, value};
 use nalgebra::{Matrix3, SymmetricEigen};
 
+use crate::meshes;
 use crate::output::{table, warn};
 
 /// What is taken where nothing is known of a body: a ball at the frame's origin with this radius of gyration, m, its mass
@@ -22,11 +27,18 @@ pub struct NearBodies {
     pub near: NearPrior,
     /// Standard parameters of the prior.
     pub prior: Vec<f64>,
+    /// Each moving body's ellipsoid, or why it has none; empty where the prior has no geometry.
+    pub links: Vec<LinkBound>,
+    /// The same bodies without ellipsoids, where there are some.
+    pub unbounded: Option<NearPrior>,
+    /// How near the parameters would be without what holds one body or rotor; empty where hardly anything holds them.
+    pub released: Vec<Released>,
 }
 
 impl NearBodies {
-    /// Bodies with the base parameters `chi` of a model within their uncertainty, nearest to a template's, or to `nominal`
-    /// standard parameters where there is none.
+    /// Bodies with the base parameters `chi` of a model within their uncertainty, nearest to a template's, and within its
+    /// geometry, or nearest to `nominal` standard parameters where there is none. Meshes are looked for from the template's path
+    /// on.
     ///
     /// # Errors
     /// As of [`near_prior`].
@@ -34,12 +46,29 @@ impl NearBodies {
         identified: &Identified,
         robot: &Robot,
         nominal: Option<&[f64]>,
-        template: Option<&Template<'_>>,
+        template: Option<(&Template<'_>, &Path)>,
     ) -> Result<Self, NearPriorError> {
         let chi = identified.chi(robot).map_err(|_| NearPriorError::Shape)?;
-        let (prior, values) = prior(robot, nominal, template);
-        let near = near_prior(robot, &chi, &identified.base_covariance(robot), &prior)?;
-        Ok(Self { near, prior: values })
+        let links = template
+            .map_or_else(Vec::new, |(template, path)| template.bounds(&|mesh| meshes::vertices(path, mesh)));
+        let has_some = links.iter().any(|link| link.ellipsoid.is_ok());
+        let mut ellipsoids = vec![None; robot.frames.len()];
+        links.iter().for_each(|link| ellipsoids[link.frame] = link.ellipsoid.as_ref().ok().copied());
+        let (prior, values) = prior(robot, nominal, template.map(|(template, _)| template), ellipsoids);
+        let covariance = identified.base_covariance(robot);
+        let near = near_prior(robot, &chi, &covariance, &prior)?;
+        let unbounded = has_some.then(|| {
+            let free = Prior { ellipsoids: vec![None; robot.frames.len()], ..prior.clone() };
+            near_prior(robot, &chi, &covariance, &free).ok()
+        });
+        // As many as this are within the uncertainty of one parameter.
+        let released = match near.least > 1.0 {
+            true => released(robot, &chi, &covariance, &prior)?,
+            false => Vec::new(),
+        };
+        // Where no link has geometry there is nothing to say of it.
+        let links = if template.is_some_and(|(t, _)| t.has_geometry()) { links } else { Vec::new() };
+        Ok(Self { near, prior: values, links, unbounded: unbounded.flatten(), released })
     }
 
     /// What the data and what the prior decided, and how near the base parameters are.
@@ -95,7 +124,12 @@ impl NearBodies {
 }
 
 /// The prior of a robot's bodies, and its standard parameters: the template's, else the nominal ones.
-fn prior(robot: &Robot, nominal: Option<&[f64]>, template: Option<&Template<'_>>) -> (Prior, Vec<f64>) {
+fn prior(
+    robot: &Robot,
+    nominal: Option<&[f64]>,
+    template: Option<&Template<'_>>,
+    mut ellipsoids: Vec<Option<Ellipsoid>>,
+) -> (Prior, Vec<f64>) {
     let frames = robot.frames.len();
     let nominal = nominal.map_or_else(|| vec![0.0; robot.standard.len()], <[f64]>::to_vec);
     let frame_body = |frame: usize| {
@@ -124,7 +158,7 @@ fn prior(robot: &Robot, nominal: Option<&[f64]>, template: Option<&Template<'_>>
                 .iter()
                 .any(|&k| robot.standard[k].frame == f && robot.standard[k].kind == ParameterKind::M);
             (!massless && (moves[f].is_some() || body.mass > 0.0))
-                .then(|| possible(body, mean, name).parameters())
+                .then(|| possible(body, mean, name, ellipsoids[f].as_ref()).parameters())
         })
         .collect();
     let ia = |f: usize| value(robot, &nominal, f, ParameterKind::Ia);
@@ -136,16 +170,28 @@ fn prior(robot: &Robot, nominal: Option<&[f64]>, template: Option<&Template<'_>>
             standard[k] = bodies[p.frame].map_or(0.0, |body| body[place]) + attached[p.frame][place];
         }
     }
-    (Prior { bodies, attached, rotors }, standard)
+    ellipsoids.iter_mut().zip(&bodies).filter(|(_, body)| body.is_none()).for_each(|(e, _)| *e = None);
+    (Prior { bodies, attached, rotors, ellipsoids }, standard)
 }
 
-/// A body as a prior: with a density, where the numbers have none; a ball where there are no numbers.
-fn possible(body: &Body, mean_mass: f64, name: &str) -> Body {
+/// A body as a prior: with a density, where the numbers have none; a ball, or what fills its geometry, where there are no
+/// numbers.
+fn possible(body: &Body, mean_mass: f64, name: &str, within: Option<&Ellipsoid>) -> Body {
     let Some((mass, centre, moments)) = body.centred() else {
+        if let Some(full) = within.and_then(|within| uniform_body(within, mean_mass)) {
+            let mass = significant(mean_mass, 3);
+            warn(&format!("{name} has no inertial: {mass} kg that fill its geometry evenly stand for it"));
+            return Body::from_parameters(&full);
+        }
         warn(&format!("{name} has no inertial: a ball of {} kg stands for it", significant(mean_mass, 3)));
         let moment = 0.4 * mean_mass * BALL_GYRATION * BALL_GYRATION;
         return Body::at_centre(mean_mass, [moment, 0.0, 0.0, moment, 0.0, moment]);
     };
+    if within.is_some_and(|within| ellipsoid_margin(within, &body.parameters()).is_some_and(|m| m <= 0.0)) {
+        warn(&format!(
+            "{name}: its inertial is not that of a body within its <collision>; the result is within all the same"
+        ));
+    }
     let spread = (Matrix3::from_diagonal_element(0.5 * moments.trace()) - moments) / mass;
     let mut eigen = SymmetricEigen::new((spread + spread.transpose()) * 0.5);
     let least = (THINNEST * THINNEST).max(FLATTEST * FLATTEST * eigen.eigenvalues.max());

@@ -213,9 +213,13 @@ fn a_balancer_between_points_goes_from_a_simulation_to_a_model_and_into_code() {
     for to in ["c", "rust"] {
         ok(&["export", "m.json", "--to", to, "--out", to]);
     }
-    for (to, file) in [("urdf", "arm.urdf"), ("mjcf", "arm.xml")] {
+    let export = |to: &str, file: &str| {
         ok(&["export", "./tendons.yaml", "--to", to, "--out", file]);
-        let beside = std::fs::read_to_string(folder.path(&format!("{file}.json"))).unwrap();
-        assert!(beside.contains("K*s on s = distance of") && beside.contains("ds/dq"), "{beside}");
-    }
+        let text = |name: &str| std::fs::read_to_string(folder.path(name)).unwrap();
+        (text(file), text(&format!("{file}.json")))
+    };
+    let (_, beside) = export("urdf", "arm.urdf");
+    assert!(beside.contains("K*s on s = distance of") && beside.contains("ds/dq"), "{beside}");
+    let (mjcf, beside) = export("mjcf", "arm.xml");
+    assert!(mjcf.contains("<spatial name=") && !beside.contains("distance of"), "{mjcf}\n{beside}");
 }

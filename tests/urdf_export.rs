@@ -168,6 +168,64 @@ fn the_urdf_has_the_torques_of_its_parameters_and_every_body_has_a_density() {
     assert!(skeleton.segments.iter().all(|segment| segment.body.is_possible()));
 }
 
+/// The template with geometry: a column that is far within its own, an upper arm whose box is drawn beside it, a mesh, and
+/// meshes and links without.
+fn with_geometry() -> String {
+    let parts = [
+        ("column", "<cylinder radius=\"0.4\" length=\"0.8\"/>", "0 0 0.1"),
+        ("upper", "<box size=\"0.2 0.3 0.5\"/>", "0.3 0.03 0.21"),
+        ("fore", "<mesh filename=\"fore.stl\" scale=\"0.001 0.001 0.001\"/>", "0 0 0"),
+        ("slide", "<mesh filename=\"package://arm/slide.dae\"/>", "0 0 0"),
+    ];
+    parts.iter().fold(TEMPLATE.to_owned(), |text, (link, geometry, xyz)| {
+        let open = format!("<link name=\"{link}\">");
+        let own = format!("<collision><origin xyz=\"{xyz}\"/><geometry>{geometry}</geometry></collision>");
+        text.replace(&open, &format!("{open}{own}"))
+    })
+}
+
+/// An ASCII STL with these corners, mm.
+fn stl() -> String {
+    let corners = [-300.0, 500.0].map(|x| [-300.0, 300.0].map(|y| [-300.0, 300.0].map(|z| [x, y, z])));
+    let facets = corners.iter().flatten().flatten().map(|[x, y, z]| {
+        let vertex = format!("vertex {x} {y} {z}\n").repeat(3);
+        format!("facet normal 0 0 1\nouter loop\n{vertex}endloop\nendfacet\n")
+    });
+    format!("solid fore\n{}endsolid fore\n", facets.collect::<String>())
+}
+
+#[test]
+fn bodies_stay_within_the_geometry_of_the_prior_and_what_has_none_is_named() {
+    FOLDER.write("bounded.urdf", &with_geometry()).write("fore.stl", &stl());
+    let words =
+        "identify recording.yaml --physical --prior bounded.urdf --json bounded.json --report bounded.html";
+    let output = FOLDER.run(&words.split(' ').collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", error_of(&output));
+    let (said, warned) = (words_of(&output), error_of(&output));
+    assert!(said.contains("held back by it") && said.contains("it has no <collision>"), "{said}");
+    assert!(
+        warned.contains("'upper'") && warned.contains("not that of a body within its <collision>"),
+        "{warned}"
+    );
+    assert!(text("bounded.html").contains("held back by it"));
+    let json: serde_json::Value = serde_json::from_str(&text("bounded.json")).unwrap();
+    let links = json["bodies"]["ellipsoids"].as_array().unwrap();
+    let of = |name: &str| links.iter().find(|link| link["link"] == name).unwrap();
+    assert!(of("upper")["active"] == true && of("upper")["margin_of_prior"].as_f64().unwrap() < 0.0);
+    assert!(of("upper")["margin"].as_f64().unwrap().abs() < 1e-9);
+    for link in ["column", "fore"] {
+        assert!(of(link)["active"] == false && of(link)["margin"].as_f64().unwrap() > 0.5, "{json}");
+    }
+    assert!(of("slide")["none_because"].as_str().unwrap().contains("slide.dae"));
+    // A robot whose arm is where its geometry is not costs something, and the arm is named.
+    let [with, without] =
+        [&json["bodies"]["least"], &json["bodies"]["without_ellipsoids"][1]].map(|x| x.as_f64().unwrap());
+    assert!(with > 100.0 && without < 10.0, "{with} {without}");
+    let costs = json["bodies"]["impossible"].as_array().unwrap();
+    let arm = costs.iter().find(|one| one["what"] == "link 2").unwrap();
+    assert!(arm["least"].as_f64().unwrap() < 0.1 * with, "{costs:?}");
+}
+
 #[test]
 fn the_bodies_have_the_identified_base_parameters_within_their_uncertainty() {
     let beside: serde_json::Value = serde_json::from_str(&text("better.urdf.json")).unwrap();

@@ -1,13 +1,14 @@
 //! The report of `identify`: the parameters, and the torques measured and predicted.
 
 use dynid_runtime::model::Robot;
-use dynid_runtime::model_file::{Identified, NamedParameter};
+use dynid_runtime::model_file::{Bodies, Identified, NamedParameter};
 use dynid_runtime::report::{Page, percent, significant};
 
 use super::parameters::{Prior, parameters, relations};
 use super::provenance::provenance;
 use super::residuals::residuals;
 use super::torques::torques;
+use crate::body_report;
 use crate::compared::Compared;
 use crate::provenance::Provenance;
 use crate::recorded::{Recorded, left_out_words};
@@ -45,6 +46,9 @@ pub fn page(recorded: &Recorded, told: Told<'_>) -> String {
     );
     page.details("What is regrouped into each base parameter", |page| relations(page, robot));
     more_of_parameters(&mut page, identified);
+    if let Some(bodies) = &identified.bodies {
+        self::bodies(&mut page, bodies);
+    }
     page.heading("Torques, measured and predicted");
     torques(&mut page, told.compared);
     if !told.whole {
@@ -66,6 +70,36 @@ pub fn page(recorded: &Recorded, told: Told<'_>) -> String {
     });
     provenance(&mut page, told.from);
     page.to_html()
+}
+
+/// How the parameters were made those of bodies.
+fn bodies(page: &mut Page, bodies: &Bodies) {
+    page.subheading("Bodies");
+    let errors = bodies.relative_errors.map_or_else(String::new, |[free, least]| {
+        format!(
+            " The torques' error was {} as identified; it is {} with the bodies nearest to the data, whatever the prior.",
+            percent(free),
+            percent(least)
+        )
+    });
+    page.paragraph(&format!(
+        "The values are those of the bodies nearest to the prior: their squared distance from the identified ones, in units of \
+         the uncertainty of {} base parameters, is {}; the least that bodies can have is {}.{errors}",
+        bodies.determined,
+        significant(bodies.distance, 3),
+        significant(bodies.least, 3)
+    ));
+    if !bodies.ellipsoids.is_empty() {
+        page.table(&body_report::ELLIPSOIDS, &body_report::ellipsoid_rows(bodies));
+        page.note(
+            "Each body is kept within an ellipsoid around its geometry. Margin 1: a point at its centre; 0.4: it is evenly \
+             filled; 0: all mass at its surface.",
+        );
+    }
+    if !bodies.impossible.is_empty() {
+        page.table(&body_report::IMPOSSIBLE, &body_report::impossible_rows(bodies));
+        page.note("What cannot be as it was identified, and how near all others could be if it alone need not be a body.");
+    }
 }
 
 /// Beside another method's values, and which are essential.

@@ -1,5 +1,6 @@
 //! A skeleton with one segment for each joint, as a URDF has them.
 
+use crate::between::PointSpring;
 use crate::body::Body;
 use crate::pose::Pose;
 use crate::skeleton::{Mimic, Segment, Skeleton, Tendon};
@@ -8,6 +9,7 @@ use crate::skeleton::{Mimic, Segment, Skeleton, Tendon};
 pub(crate) struct ByJoint {
     pub segments: Vec<Segment>,
     pub tendons: Vec<Tendon>,
+    pub between: Vec<PointSpring>,
     /// For each of `segments` that of the skeleton whose body it carries; none for links between joints about one axis.
     pub carries: Vec<Option<usize>>,
     /// For each its place among the joints that have a variable.
@@ -36,8 +38,13 @@ impl Skeleton {
     /// The same with one segment for each joint: where further joints stand about an axis, links without a body between them.
     /// Depth first, those on one carrier in their order, as a URDF is read.
     pub(crate) fn by_joint(&self) -> ByJoint {
-        let mut all =
-            ByJoint { segments: Vec::new(), tendons: Vec::new(), carries: Vec::new(), joints: Vec::new() };
+        let mut all = ByJoint {
+            segments: Vec::new(),
+            tendons: Vec::new(),
+            between: Vec::new(),
+            carries: Vec::new(),
+            joints: Vec::new(),
+        };
         let on = |parent: Option<usize>| {
             (0..self.segments.len()).rev().filter(move |&k| self.segments[k].parent == parent)
         };
@@ -64,6 +71,10 @@ impl Skeleton {
         }
         all.segments.iter_mut().flat_map(|s| &mut s.mimic).for_each(|m| m.segment = places[m.segment][0]);
         all.tendons.clone_from(&self.tendons);
+        all.between.clone_from(&self.between);
+        // What is on a body is on the link that carries it.
+        let ends = all.between.iter_mut().flat_map(|spring| &mut spring.ends);
+        ends.filter_map(|end| end.0.as_mut()).for_each(|segment| *segment = places[*segment][1]);
         all.tendons.iter_mut().flat_map(|t| &mut t.terms).for_each(|term| term.0 = places[term.0][0]);
         all
     }

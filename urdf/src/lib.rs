@@ -23,15 +23,20 @@
 
 mod angles;
 mod attributes;
+mod between;
 mod body;
 mod by_joint;
 mod coaxial;
 mod connections;
 mod document;
+mod enclosing;
 mod frames;
+mod geometry;
 mod import;
 mod joint;
 mod link;
+mod link_bounds;
+mod mesh;
 mod mistake;
 mod mjcf;
 mod origin;
@@ -43,9 +48,12 @@ mod text;
 mod tree;
 mod write_urdf;
 
+pub use between::{PointSpring, stiffness_and_rest};
 pub use body::Body;
 pub use document::{Urdf, read};
 pub use import::{ImportOptions, Imported, import};
+pub use link_bounds::LinkBound;
+pub use mesh::mesh_vertices;
 pub use mistake::{Mistake, Place};
 pub use mjcf::write_mjcf;
 pub use pose::Pose;

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use roxmltree::Node;
 
-use crate::attributes::{Reader, first};
+use crate::attributes::{Reader, elements, first};
 use crate::body::Body;
+use crate::geometry::{Collision, read_collision};
 use crate::mistake::{Place, shown};
 use crate::origin::{Rounding, read_origin};
 
@@ -16,6 +17,8 @@ pub(crate) struct Link {
     /// Its bytes in the file.
     pub range: Range<usize>,
     pub inertial: Option<Inertial>,
+    /// Its geometry, in its own frame.
+    pub collisions: Vec<Collision>,
     /// Joints that it is the parent of, in the order of the file.
     pub children: Vec<usize>,
     /// The joint that it is the child of.
@@ -34,7 +37,8 @@ pub(crate) fn read_link(reader: &mut Reader<'_>, node: Node<'_, '_>, angles: &mu
     let name = reader.required(node, "name")?.to_owned();
     let place = reader.place_of(node);
     let inertial = first(node, "inertial").and_then(|node| read_inertial(reader, node, &name, angles));
-    Some(Link { name, place, range: node.range(), inertial, children: Vec::new(), joint: None })
+    let collisions = elements(node, "collision").map(read_collision).collect();
+    Some(Link { name, place, range: node.range(), inertial, collisions, children: Vec::new(), joint: None })
 }
 
 fn read_inertial(

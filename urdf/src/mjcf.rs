@@ -10,7 +10,7 @@ use dynid_description::JointKind;
 /// The MJCF of a robot: bodies with `fullinertia`, joints with `armature`, `damping` and `frictionloss`. Gravity is that of
 /// the table, in the frame of the base, which is the world's. What moves with another joint is an `equality` of joints, with
 /// several one of a fixed tendon; where a joint with a variable of its own moves with others too, one more stands in its body,
-/// which follows those. Friction between links and springs are fixed tendons.
+/// which follows those. Friction between links and springs are fixed tendons, springs between points spatial ones.
 pub fn write_mjcf(skeleton: &Skeleton) -> String {
     let mut text = String::new();
     let g = skeleton.gravity;
@@ -19,6 +19,7 @@ pub fn write_mjcf(skeleton: &Skeleton) -> String {
     text.push_str("  <compiler angle=\"radian\" autolimits=\"true\" inertiafromgeom=\"false\"/>\n");
     let _ = writeln!(text, "  <option gravity=\"{} {} {}\"/>", plain(g.x), plain(g.y), plain(g.z));
     text.push_str("  <worldbody>\n");
+    sites(&mut text, skeleton, None, 2);
     for k in (0..skeleton.segments.len()).filter(|&k| skeleton.segments[k].parent.is_none()) {
         body(&mut text, skeleton, k, 2);
     }
@@ -58,6 +59,7 @@ fn body(text: &mut String, skeleton: &Skeleton, k: usize, depth: usize) {
             plain(mass)
         );
     }
+    sites(text, skeleton, Some(k), depth + 1);
     for child in (0..skeleton.segments.len()).filter(|&child| skeleton.segments[child].parent == Some(k)) {
         body(text, skeleton, child, depth + 1);
     }
@@ -71,6 +73,18 @@ fn dependent(segment: &Segment) -> Option<(String, Vec<Mimic>)> {
         Some(first) => Some((segment.joint.clone(), [&[first], segment.further.as_slice()].concat())),
         None if segment.further.is_empty() => None,
         None => Some((format!("{}_further", segment.joint), segment.further.clone())),
+    }
+}
+
+/// The points of springs on a segment, or on the base.
+fn sites(text: &mut String, skeleton: &Skeleton, segment: Option<usize>, depth: usize) {
+    let indent = "  ".repeat(depth);
+    for spring in &skeleton.between {
+        for (end, (_, p)) in spring.ends.iter().enumerate().filter(|(_, (on, _))| *on == segment) {
+            let [x, y, z] = [p.x, p.y, p.z].map(plain);
+            let name = escaped(&spring.name);
+            let _ = writeln!(text, "{indent}<site name=\"{name}_{end}\" pos=\"{x} {y} {z}\"/>");
+        }
     }
 }
 
@@ -128,6 +142,15 @@ fn tendons(text: &mut String, skeleton: &Skeleton) {
         );
         tendon.terms.iter().for_each(|&(segment, coefficient)| add(&mut lines, named(segment), coefficient));
         lines.push_str("    </fixed>\n");
+    }
+    for spring in &skeleton.between {
+        let name = escaped(&spring.name);
+        let (stiffness, rest) = (plain(spring.stiffness), plain(spring.rest));
+        let _ = writeln!(
+            lines,
+            "    <spatial name=\"{name}\" stiffness=\"{stiffness}\" springlength=\"{rest}\">\n      <site site=\"{name}_0\"/>\n      \
+             <site site=\"{name}_1\"/>\n    </spatial>"
+        );
     }
     if !lines.is_empty() {
         let _ = writeln!(text, "  <tendon>\n{lines}  </tendon>");

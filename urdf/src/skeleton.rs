@@ -4,6 +4,7 @@ use std::fmt;
 
 use nalgebra::{Rotation3, Vector3};
 
+use crate::between::{PointSpring, point_springs};
 use crate::body::Body;
 use crate::document::Urdf;
 use crate::joint::JointType;
@@ -25,6 +26,8 @@ pub struct Skeleton {
     pub segments: Vec<Segment>,
     /// Friction between links and springs.
     pub tendons: Vec<Tendon>,
+    /// Springs between points.
+    pub between: Vec<PointSpring>,
 }
 
 /// What moves with another joint: q = multiplier * q of that joint.
@@ -226,7 +229,15 @@ impl Skeleton {
         }
         let gravity = Vector3::from(robot.gravity);
         let tendons = tendons(robot, standard, &segment_of);
-        Skeleton { name: robot.name.to_string(), gravity, base: "base".to_owned(), segments, tendons }
+        let between = point_springs(robot, standard, &carried);
+        Skeleton {
+            name: robot.name.to_string(),
+            gravity,
+            base: "base".to_owned(),
+            segments,
+            tendons,
+            between,
+        }
     }
 
     /// The part of a URDF that a tree is, with its own names and frames. A joint that mimics another with an offset is where it
@@ -268,6 +279,7 @@ impl Skeleton {
             base: urdf.links[tree.base].name.clone(),
             segments: tree.bodies.iter().map(segment).collect(),
             tendons: Vec::new(),
+            between: Vec::new(),
         }
     }
 

@@ -17,18 +17,18 @@ use dynid_description::{JointKind, Robot};
 /// A URDF beside the table of the same robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Template<'a> {
-    urdf: &'a Urdf,
-    tree: Tree,
+    pub(crate) urdf: &'a Urdf,
+    pub(crate) tree: Tree,
     skeleton: Skeleton,
     /// Pose of each joint's frame of the table in that of the template's link.
-    in_link: Vec<Pose>,
+    pub(crate) in_link: Vec<Pose>,
     /// For each joint of the template the body of the table that its link carries, 0-based among those that move; none where
     /// the link stands between joints about one axis.
     carries: Vec<Option<usize>>,
     /// For each joint of the template its place among those of the table that have a variable.
     joints: Vec<Option<usize>>,
     /// Frame of the table of each of these bodies.
-    frames: Vec<usize>,
+    pub(crate) frames: Vec<usize>,
 }
 
 /// What is known of one moving body from a template, seen from the frame of the table.
@@ -83,7 +83,7 @@ impl<'a> Template<'a> {
     }
 
     /// Joints whose links carry bodies of the table, with these.
-    fn carriers(&self) -> impl Iterator<Item = (usize, usize)> {
+    pub(crate) fn carriers(&self) -> impl Iterator<Item = (usize, usize)> {
         self.carries.iter().enumerate().filter_map(|(k, body)| Some((k, (*body)?)))
     }
 
@@ -101,7 +101,7 @@ impl<'a> Template<'a> {
         best
     }
 
-    fn body(&self, k: usize, frame: usize) -> TemplateBody {
+    pub(crate) fn body(&self, k: usize, frame: usize) -> TemplateBody {
         let (target, _) = self.heaviest(k);
         let to_table = self.in_link[k].inverse();
         let seen = |(link, pose): &(usize, Pose)| self.urdf.body_of(*link, &to_table.then(pose));
@@ -193,6 +193,12 @@ impl<'a> Template<'a> {
         let mut skeleton = self.skeleton.clone();
         skeleton.gravity = whole.gravity;
         skeleton.tendons = table.tendons;
+        skeleton.between = table.between;
+        for (segment, point) in skeleton.between.iter_mut().flat_map(|spring| &mut spring.ends) {
+            if let Some(pose) = segment.and_then(|k| self.in_link.get(k)) {
+                *point = pose.rotation * *point + pose.translation;
+            }
+        }
         for ((own, new), pose) in skeleton.segments.iter_mut().zip(table.segments).zip(&self.in_link) {
             own.body = new.body.seen_from(pose);
             (own.damping, own.friction, own.armature) = (new.damping, new.friction, new.armature);

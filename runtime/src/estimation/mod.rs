@@ -81,7 +81,8 @@ pub use payload::{
     payload_of,
 };
 pub use physical::{
-    NearPrior, NearPriorError, NearestBody, PhysicalFit, Prior, near_prior, nearest_body, physical_fit,
+    Constraint, EllipsoidBound, NearPrior, NearPriorError, NearestBody, PhysicalFit, Prior, Released,
+    ellipsoid_margin, near_prior, nearest_body, physical_fit, released, uniform_body,
 };
 pub use piecewise::Piecewise;
 pub use recorded::{

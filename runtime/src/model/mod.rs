@@ -42,8 +42,9 @@ pub use block::{
 pub use dual::Dual;
 pub use dynamics::{Model, Operations, Pattern};
 pub use dynid_description::{
-    BaseParameter, Between, Coupling, CouplingLaw, DependentFrame, Drive, Frame, JointIndex, JointKind,
-    JointNumber, Limits, Motion, Nominal, ParameterKind, Robot, StandardParameter, standard_parameters,
+    BaseParameter, Between, Coupling, CouplingLaw, DependentFrame, Drive, Ellipsoid, Frame, JointIndex,
+    JointKind, JointNumber, Limits, Motion, Nominal, ParameterKind, Robot, StandardParameter,
+    standard_parameters,
 };
 pub use energy::{energies, energy_at};
 pub use lanes::{LANES, Lanes};

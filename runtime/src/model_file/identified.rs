@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::bodies::Bodies;
 use super::covariance::Covariance;
 use super::fingerprint::fingerprint;
 use super::rows::{EquationRows, EvaluatedRows};
@@ -57,6 +58,9 @@ pub struct Identified {
     /// What the states were simulated with, where the method simulates them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulated: Option<SimulatedStates>,
+    /// How the parameters were made those of bodies, where they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bodies: Option<Bodies>,
     /// What to know before believing it.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -205,6 +209,7 @@ impl Identified {
             equations: rows.equations,
             band: rows.band,
             simulated: None,
+            bodies: None,
             warnings: Vec::new(),
             effects: Vec::new(),
             delay: 0.0,
@@ -229,6 +234,7 @@ impl Identified {
             band: rows.band,
             noise: rows.noise,
             simulated: None,
+            bodies: None,
             covariance: None,
             between_motions: Vec::new(),
             ..self.clone()

@@ -19,6 +19,7 @@
 //! A file without `schema_version` is one from before there were any: it has no table, and is read with the robot that
 //! its `robot` names.
 
+mod bodies;
 mod check;
 mod covariance;
 mod error;
@@ -28,6 +29,7 @@ mod robot_yaml;
 mod rows;
 mod table;
 
+pub use bodies::{Bodies, Impossible, LinkEllipsoid};
 pub use check::{check, read};
 pub use covariance::Covariance;
 pub use error::FileError;

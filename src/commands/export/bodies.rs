@@ -8,6 +8,7 @@ use dynid_runtime::model_file::Identified;
 use dynid_urdf::{Skeleton, Template, Urdf};
 
 use super::Arguments;
+use crate::body_report;
 use crate::failure::Failure;
 use crate::near_bodies::NearBodies;
 use crate::robots::resolve;
@@ -68,10 +69,12 @@ impl Fitted {
         let identified = read_model(path)?;
         let robot = own_dynamics(&identified, path)?.model().robot().clone();
         let template = template.map(|file| file.of(&robot, arguments)).transpose()?;
+        let path_of_template = arguments.template.as_deref().unwrap_or(Path::new(""));
+        let template = template.as_ref().map(|template| (template, path_of_template));
         let nominal =
             identified.table.as_ref().and_then(|table| table.nominal.as_ref()).or(robot.nominal.as_ref());
         let nominal = nominal.map(|n| n.standard.as_ref());
-        let bodies = NearBodies::new(&identified, &robot, nominal, template.as_ref())
+        let bodies = NearBodies::new(&identified, &robot, nominal, template)
             .map_err(|error| Failure::Data(format!("{}: {error}", path.display())))?;
         let standard = bodies.near.standard.clone();
         Ok(Self { standard, prior: bodies.prior.clone(), robot, identified: Some((identified, bodies)) })
@@ -80,7 +83,11 @@ impl Fitted {
     /// What the data and what the prior decided, and how near the base parameters are.
     pub fn words(&self) -> String {
         match &self.identified {
-            Some((identified, bodies)) => bodies.words(identified, &self.robot),
+            Some((identified, bodies)) => {
+                let words = bodies.words(identified, &self.robot);
+                let more = body_report::words(&body_report::report(bodies, &self.robot, None, None));
+                if more.is_empty() { words } else { format!("{words}\n\n{more}") }
+            }
             None => "the robot's nominal parameters, as they are".to_owned(),
         }
     }

@@ -4,11 +4,14 @@ use std::path::{Path, PathBuf};
 
 use dynid_runtime::effects::EffectTerm;
 use dynid_runtime::model::{Coupling, JointIndex, ParameterKind, Robot, StandardParameter};
+use dynid_runtime::model_file::Bodies;
 use dynid_runtime::report::significant;
+use dynid_urdf::stiffness_and_rest;
 use serde::Serialize;
 
 use super::Target;
 use super::bodies::Fitted;
+use crate::body_report::report;
 use crate::failure::Failure;
 use crate::output::{print, write_json};
 
@@ -66,6 +69,9 @@ struct Beside<'a> {
     /// bodies can have.
     #[serde(skip_serializing_if = "Option::is_none")]
     distance: Option<[f64; 2]>,
+    /// What holds the bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bodies: Option<Bodies>,
     standard_parameters: Vec<Written<'a>>,
     base_parameters: Vec<Base<'a>>,
 }
@@ -98,6 +104,7 @@ pub(super) fn tell(fitted: &Fitted, to: Target, what: &str, out: &Path) -> Resul
             model: what,
             not_in_the_format: left_out,
             distance: near.map(|(_, bodies)| [bodies.near.distance, bodies.near.least]),
+            bodies: near.map(|(_, bodies)| report(bodies, robot, None, None)),
             standard_parameters: (0..robot.standard.len())
                 .map(|k| Written {
                     name: &robot.standard[k].name,
@@ -134,14 +141,7 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
     for (k, p) in robot.standard.iter().enumerate() {
         let value = fitted.standard[k];
         let formula = match p.coupling.and_then(|c| robot.couplings.get(c)) {
-            // A fixed tendon, where it gives no power.
-            Some(coupling)
-                if to == Target::Mjcf
-                    && coupling.law.between().is_none()
-                    && (value >= 0.0 || p.kind == ParameterKind::KR) =>
-            {
-                None
-            }
+            Some(coupling) if to == Target::Mjcf && is_tendon(fitted, p, coupling, value) => None,
             Some(coupling) => of_coupling(robot, p, coupling, value),
             None => formula(robot, p.kind, p.frame, value, to),
         };
@@ -193,6 +193,17 @@ fn left_out(fitted: &Fitted, to: Target) -> Vec<LeftOut> {
         });
     }
     list
+}
+
+/// Whether MJCF has a parameter of a coupling in a tendon: in a fixed one, where it gives no power, or between points in a
+/// spatial one, where it is a spring with a length at rest.
+fn is_tendon(fitted: &Fitted, p: &StandardParameter, coupling: &Coupling, value: f64) -> bool {
+    match coupling.law.between() {
+        None => value >= 0.0 || p.kind == ParameterKind::KR,
+        Some(_) => {
+            p.coupling.is_some_and(|k| stiffness_and_rest(&fitted.robot, &fitted.standard, k).is_some())
+        }
+    }
 }
 
 /// The formula of a parameter of friction between links or of a spring; `None` where there is nothing.

@@ -9,6 +9,7 @@ use dynid_runtime::prediction::observed_errors;
 use dynid_runtime::report::percent;
 use dynid_urdf::ImportOptions;
 
+use crate::body_report::{report, words};
 use crate::failure::Failure;
 use crate::near_bodies::NearBodies;
 use crate::robots::resolve;
@@ -31,19 +32,24 @@ pub(super) fn make_physical(
             let options = ImportOptions::default();
             let urdf = urdf_files::parsed(path, &urdf_files::bytes(path)?, options.snap)?;
             let template = urdf_files::template(path, &urdf, robot, &options)?;
-            NearBodies::new(identified, robot, nominal(robot).as_deref(), Some(&template))
+            NearBodies::new(identified, robot, nominal(robot).as_deref(), Some((&template, path)))
         }
         Some(path) => NearBodies::new(identified, robot, Some(&nominal_of(path, robot)?), None),
         None => NearBodies::new(identified, robot, nominal(robot).as_deref(), None),
     };
     let bodies = bodies.map_err(|error| Failure::Data(error.to_string()))?;
-    let words = bodies.words(identified, robot);
+    let told = report(&bodies, robot, Some(torques), identified.relative_error);
+    let mut text = bodies.words(identified, robot);
     let errors = observed_errors(torques, &bodies.near.chi);
-    let words = format!(
-        "{words}\nrelative error of the torques {} -> {} with bodies",
+    let least = told.relative_errors.and_then(|[_, least]| least);
+    text.push_str(&format!(
+        "\nrelative error of the torques {} -> {} with bodies; {} with those nearest to the data, whatever the prior\n\n{}",
         percent(identified.relative_error),
-        percent(errors.relative_error)
-    );
+        percent(errors.relative_error),
+        percent(least),
+        words(&told)
+    ));
+    identified.bodies = Some(told);
     identified.relative_error = errors.relative_error;
     identified.per_joint = errors.per_joint;
     for (parameter, base) in identified.base_parameters.iter_mut().zip(&bodies.near.chi) {
@@ -61,7 +67,7 @@ pub(super) fn make_physical(
         values.standard = bodies.near.standard.into();
         table.nominal = Some(values);
     }
-    Ok(words)
+    Ok(text.trim_end().to_owned())
 }
 
 /// The standard parameters of a prior, where it has those of the robot's own frames; `None` for a URDF, whose bodies are

@@ -5,11 +5,14 @@
 //! such parameters. The best physically possible fit therefore tells whether the recording can be this robot's.
 
 mod body;
+mod ellipsoid;
 mod interior_point;
 mod near_prior;
+mod newton_step;
 mod prior_problem;
 mod problem;
 mod pseudo_inertia;
+mod release;
 
 use super::observe::Observation;
 use super::weights::stack;
@@ -18,7 +21,9 @@ use crate::model::Robot;
 use problem::Problem;
 
 pub use body::{NearestBody, nearest_body};
-pub use near_prior::{NearPrior, NearPriorError, Prior, near_prior};
+pub use ellipsoid::{ellipsoid_margin, uniform_body};
+pub use near_prior::{EllipsoidBound, NearPrior, NearPriorError, Prior, near_prior};
+pub use release::{Constraint, Released, released};
 
 /// The best fit whose parameters belong to real bodies and whose friction dissipates.
 #[derive(Debug, Clone, PartialEq)]

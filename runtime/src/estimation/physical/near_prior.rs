@@ -10,12 +10,16 @@
 //! with backtracking finds it for any γ. γ is the largest with which the base parameters stay as near as their uncertainty
 //! allows: (K x - chi)ᵀ Λ (K x - chi) at most the number of them beyond the least that bodies can have (Morozov's
 //! discrepancy principle). A prior that agrees with the data is not left; what the data leave open is the prior's.
+//!
+//! Where an ellipsoid is known that holds a link, its body stays within: tr(P Q) >= 0 (Wensing, Kim and Slotine 2018), linear in
+//! x. R keeps P positive definite, so that these are the only constraints; Newton's method obeys them exactly, and bounds that
+//! hold nothing back change nothing.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::interior_point::factored;
+use super::ellipsoid::ellipsoid_margin;
 use super::prior_problem::Search;
-use crate::model::{ParameterKind, Robot};
+use crate::model::{Ellipsoid, ParameterKind, Robot};
 
 /// The first weight of the prior, with which the data hardly count, and the factor from one to the next.
 const FIRST: f64 = 1e12;
@@ -37,6 +41,19 @@ pub struct Prior {
     pub attached: Vec<[f64; 10]>,
     /// Rotor inertia of each joint, where it is known.
     pub rotors: Vec<Option<f64>>,
+    /// What each frame's body lies in, without what is attached; `None` where nothing is known.
+    pub ellipsoids: Vec<Option<Ellipsoid>>,
+}
+
+/// What holds a body within its ellipsoid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EllipsoidBound {
+    /// tr(P Q) over the mass, 0 to 1: 0 where the ellipsoid holds the body back.
+    pub margin: f64,
+    /// The same of the prior; negative where the prior itself is not within.
+    pub of_prior: f64,
+    /// Whether the result would leave it.
+    pub is_active: bool,
 }
 
 /// Standard parameters that bodies can have.
@@ -52,12 +69,16 @@ pub struct NearPrior {
     pub distance: f64,
     /// The least that bodies can have of it: near 0 where the identified values are possible.
     pub least: f64,
+    /// Base parameters of the bodies that have it.
+    pub least_chi: Vec<f64>,
     /// Number of base parameters that the data determine.
     pub determined: usize,
     /// Weight of the prior that was chosen.
     pub gamma: f64,
     /// Divergence of each frame's body from its prior; 0 where there is none.
     pub divergence: Vec<f64>,
+    /// Each frame's ellipsoid; `None` where it has none.
+    pub bounds: Vec<Option<EllipsoidBound>>,
 }
 
 /// Why there is no solution.
@@ -70,6 +91,9 @@ pub enum NearPriorError {
     /// A prior body with a density that is negative or vanishes.
     #[error("the prior of frame {} is no body", .0 + 1)]
     Prior(usize),
+    /// An ellipsoid whose shape is not positive definite.
+    #[error("the ellipsoid of frame {} has no volume", .0 + 1)]
+    Ellipsoid(usize),
     /// A link or rotor of which parameters are known to be 0, but not all ten of a link.
     #[error(
         "frame {}: some of its parameters are known to be 0, which no body and no rotor has: all ten of a link are (massless), or none",
@@ -99,6 +123,32 @@ pub fn near_prior(
 ) -> Result<NearPrior, NearPriorError> {
     check(robot, chi, covariance, prior)?;
     let search = Search::new(robot, chi, covariance, prior)?;
+    let mut path = path(&search)?;
+    let distances: Vec<f64> = path.iter().map(|(_, x)| search.distance(x)).collect();
+    let least = distances.last().copied().unwrap_or_default();
+    let least_chi = path.last().map_or_else(Vec::new, |(_, x)| robot.base_from_standard(x.as_slice()));
+    let allowed = least + search.determined as f64;
+    let first = distances.iter().position(|d| *d <= allowed).unwrap_or(path.len() - 1);
+    let (mut gamma, mut x) = path.swap_remove(first);
+    if let Some(before) = first.checked_sub(1) {
+        // From bodies nearer to the prior, which are farther from the rim of what is possible.
+        let (mut above, mut start) = path.swap_remove(before);
+        for _ in 0..BISECTIONS {
+            let middle = (gamma * above).sqrt();
+            let found = search.minimum(middle, start.clone())?;
+            if search.distance(&found) <= allowed {
+                (gamma, x) = (middle, found);
+            } else {
+                (above, start) = (middle, found);
+            }
+        }
+    }
+    let found = outcome(&search, robot, prior, gamma, &x)?;
+    Ok(NearPrior { least, least_chi, ..found })
+}
+
+/// Minima with less and less weight of the prior, until the distance has settled: the last one is the least that there is.
+pub(super) fn path(search: &Search) -> Result<Vec<(f64, DVector<f64>)>, NearPriorError> {
     let mut path = vec![(FIRST, search.minimum(FIRST, search.start.clone())?)];
     while let Some((gamma, x)) = path.last()
         && *gamma > LAST
@@ -113,33 +163,22 @@ pub fn near_prior(
             break;
         }
     }
-    let distances: Vec<f64> = path.iter().map(|(_, x)| search.distance(x)).collect();
-    let least = distances.last().copied().unwrap_or_default();
-    let allowed = least + search.determined as f64;
-    let first = distances.iter().position(|d| *d <= allowed).unwrap_or(path.len() - 1);
-    let (mut gamma, mut x) = path.swap_remove(first);
-    if first > 0 {
-        let mut above = gamma / NEXT;
-        for _ in 0..BISECTIONS {
-            let middle = (gamma * above).sqrt();
-            let found = search.minimum(middle, x.clone())?;
-            if search.distance(&found) <= allowed {
-                (gamma, x) = (middle, found);
-            } else {
-                above = middle;
-            }
-        }
-    }
-    Ok(outcome(&search, robot, gamma, &x, least))
+    Ok(path)
 }
 
 /// Whether the arguments are of one robot, and its known parameters of bodies as a whole.
-fn check(robot: &Robot, chi: &[f64], covariance: &DMatrix<f64>, prior: &Prior) -> Result<(), NearPriorError> {
+pub(super) fn check(
+    robot: &Robot,
+    chi: &[f64],
+    covariance: &DMatrix<f64>,
+    prior: &Prior,
+) -> Result<(), NearPriorError> {
     let n = robot.base.len();
     let shapes = chi.len() == n
         && covariance.shape() == (n, n)
         && prior.bodies.len() == robot.frames.len()
         && prior.attached.len() == robot.frames.len()
+        && prior.ellipsoids.len() == robot.frames.len()
         && prior.rotors.len() == robot.joints();
     if !shapes {
         return Err(NearPriorError::Shape);
@@ -158,31 +197,45 @@ fn check(robot: &Robot, chi: &[f64], covariance: &DMatrix<f64>, prior: &Prior) -
     Ok(())
 }
 
-/// The parameters of a minimum, and what decided them.
-fn outcome(search: &Search, robot: &Robot, gamma: f64, x: &DVector<f64>, least: f64) -> NearPrior {
+/// The parameters of a minimum, and what decided them, but for the least distance.
+fn outcome(
+    search: &Search,
+    robot: &Robot,
+    prior: &Prior,
+    gamma: f64,
+    x: &DVector<f64>,
+) -> Result<NearPrior, NearPriorError> {
+    let (step, _) = search.newton(gamma, x).ok_or(NearPriorError::NotConverged)?;
     let mut divergence = vec![0.0; robot.frames.len()];
+    let mut bounds = vec![None; robot.frames.len()];
     for body in &search.bodies {
         divergence[body.frame] = search.divergence(body, x).unwrap_or_default();
+        let (Some(place), Some(ellipsoid)) = (body.ellipsoid, &prior.ellipsoids[body.frame]) else {
+            continue;
+        };
+        let attached = &prior.attached[body.frame];
+        let own = std::array::from_fn(|k| x[body.link[k]] - attached[k]);
+        let margin = |body: &[f64; 10]| ellipsoid_margin(ellipsoid, body).unwrap_or_default();
+        bounds[body.frame] = Some(EllipsoidBound {
+            margin: margin(&own),
+            of_prior: prior.bodies[body.frame].as_ref().map_or(0.0, margin),
+            is_active: step.multipliers[place] > 0.0,
+        });
     }
-    let from_data = search.curvature(x).and_then(|(_, mut hessian)| {
-        let own = &search.normal / gamma;
-        hessian += &own;
-        let scale = hessian.diagonal().map(|d| 1.0 / d.sqrt());
-        let both =
-            |m: DMatrix<f64>| DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] * scale[i] * scale[j]);
-        let part = factored(both(hessian))?.solve(&both(own));
-        Some(part.diagonal().iter().map(|x| x.clamp(0.0, 1.0)).collect())
-    });
-    NearPrior {
+    let from_data = step.part_of(&(&search.normal / gamma));
+    let from_data = from_data.map(|part| part.iter().map(|x| x.clamp(0.0, 1.0)).collect());
+    Ok(NearPrior {
         chi: robot.base_from_standard(x.as_slice()),
         from_data: from_data.unwrap_or_else(|| vec![0.0; x.len()]),
         standard: x.as_slice().to_vec(),
         distance: search.distance(x),
-        least,
+        least: 0.0,
+        least_chi: Vec::new(),
         determined: search.determined,
         gamma,
         divergence,
-    }
+        bounds,
+    })
 }
 
 #[cfg(test)]

@@ -3,10 +3,13 @@
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
+use super::ellipsoid::{coefficients, ellipsoid_margin, pseudo_of, uniform_body};
 use super::interior_point::factored;
 use super::near_prior::{NearPriorError, Prior};
+use super::newton_step::Step;
 use super::problem::{Combination, parameter, rotors};
 use super::pseudo_inertia::{pseudo_inertia, unit_inertia};
+use super::release::Constraint;
 use crate::model::{ParameterKind, Robot};
 
 /// Uncertainty of a base parameter, relative to its size, below which it is as good as exact: what is written with fewer
@@ -33,6 +36,10 @@ pub(super) struct Search {
     rotors: Vec<(Combination, f64, f64)>,
     /// Parameters that stay as they start: of frames that carry nothing, and friction that the data do not show.
     fixed: Vec<usize>,
+    /// Ellipsoids that bodies lie in: tr(P Q) in units of the prior's mass as a function of x, without what is attached.
+    ellipsoids: Vec<Combination>,
+    /// What a released body or rotor is held by instead, weakly: parameter, where it is, scale.
+    loose: Vec<(usize, f64, f64)>,
     pub(super) start: DVector<f64>,
     pub(super) determined: usize,
 }
@@ -40,8 +47,12 @@ pub(super) struct Search {
 /// A body with a prior.
 pub(super) struct Known {
     pub(super) frame: usize,
-    link: [usize; 10],
+    pub(super) link: [usize; 10],
     attached: Matrix4<f64>,
+    /// Its place among the ellipsoids.
+    pub(super) ellipsoid: Option<usize>,
+    /// tr(P Q) of what is attached, in the same units.
+    beyond: f64,
     /// Inverse of the prior's pseudo-inertia, and its logarithmic determinant.
     inverse: Matrix4<f64>,
     log_determinant: f64,
@@ -60,7 +71,9 @@ impl Search {
             y: DVector::zeros(0),
             normal: DMatrix::zeros(standard, standard),
             bodies: Vec::new(),
+            ellipsoids: Vec::new(),
             rotors: Vec::new(),
+            loose: Vec::new(),
             fixed: Vec::new(),
             start: DVector::zeros(standard),
             determined: 0,
@@ -87,24 +100,33 @@ impl Search {
         let own = ParameterKind::INERTIAL.map(|kind| parameter(robot, frame, kind));
         let known: Vec<usize> = own.into_iter().flatten().collect();
         let link = <[usize; 10]>::try_from(known).map_err(|_| NearPriorError::Shape)?;
-        let numbers = |body: &[f64; 10]| DVector::from_column_slice(body);
-        let own: [usize; 10] = std::array::from_fn(|k| k);
-        let attached = pseudo_inertia(&own, &numbers(&prior.attached[frame]));
+        let attached = pseudo_of(&prior.attached[frame]);
         let Some(body) = &prior.bodies[frame] else {
             self.fixed.extend(link);
             link.iter().zip(prior.attached[frame]).for_each(|(&k, value)| self.start[k] = value);
             return Ok(());
         };
-        let pseudo = pseudo_inertia(&own, &numbers(body));
-        let factor = nalgebra::Cholesky::new(pseudo).ok_or(NearPriorError::Prior(frame))?;
+        let factor = nalgebra::Cholesky::new(pseudo_of(body)).ok_or(NearPriorError::Prior(frame))?;
         let log_determinant = 2.0 * (0..4).map(|i| factor.l_dirty()[(i, i)].ln()).sum::<f64>();
         if !log_determinant.is_finite() {
             return Err(NearPriorError::Prior(frame));
         }
-        for (place, &k) in link.iter().enumerate() {
-            self.start[k] = body[place] + prior.attached[frame][place];
+        let (mut begin, mut ellipsoid, mut beyond) = (*body, None, 0.0);
+        if let Some(own) = &prior.ellipsoids[frame] {
+            let wrong = NearPriorError::Ellipsoid(frame);
+            let row = coefficients(own).ok_or(wrong)?.map(|a| a / body[9]);
+            beyond = row.iter().zip(&prior.attached[frame]).map(|(a, x)| a * x).sum();
+            ellipsoid = Some(self.ellipsoids.len());
+            self.ellipsoids.push(link.iter().copied().zip(row).collect());
+            if ellipsoid_margin(own, body).is_none_or(|margin| margin <= 0.0) {
+                begin = uniform_body(own, body[9]).ok_or(wrong)?;
+            }
         }
-        self.bodies.push(Known { frame, link, attached, inverse: factor.inverse(), log_determinant });
+        for (place, &k) in link.iter().enumerate() {
+            self.start[k] = begin[place] + prior.attached[frame][place];
+        }
+        let inverse = factor.inverse();
+        self.bodies.push(Known { frame, link, attached, ellipsoid, beyond, inverse, log_determinant });
         Ok(())
     }
 
@@ -172,6 +194,49 @@ impl Search {
         }
     }
 
+    /// Takes away what keeps a body one, or a rotor's inertia positive. `false` where there is no such.
+    pub(super) fn release(&mut self, what: Constraint) -> bool {
+        match what {
+            Constraint::Body(frame) => {
+                let Some(at) = self.bodies.iter().position(|body| body.frame == frame) else { return false };
+                let body = self.bodies.remove(at);
+                if let Some(place) = body.ellipsoid {
+                    self.ellipsoids.remove(place);
+                    let later = self.bodies.iter_mut().filter_map(|body| body.ellipsoid.as_mut());
+                    later.filter(|other| **other > place).for_each(|other| *other -= 1);
+                }
+                // Numbers of one unit have one scale.
+                for part in [&body.link[..6], &body.link[6..9], &body.link[9..]] {
+                    let largest = part.iter().map(|&k| self.start[k].abs()).fold(EXACT, f64::max);
+                    self.loose.extend(part.iter().map(|&k| (k, self.start[k], largest)));
+                }
+            }
+            Constraint::Rotor(motor) => {
+                if motor >= self.rotors.len() {
+                    return false;
+                }
+                let (combination, ..) = self.rotors.remove(motor);
+                self.loose.extend(combination.iter().map(|&(k, _)| (k, self.start[k], UNKNOWN)));
+            }
+        }
+        true
+    }
+
+    /// tr(P Q) of each ellipsoid's body in units of its prior's mass. What rounding takes below zero is at the surface.
+    fn margins(&self, x: &DVector<f64>) -> DVector<f64> {
+        let bounded = self.bodies.iter().filter_map(|body| Some((body.ellipsoid?, body.beyond)));
+        let value = |(k, beyond): (usize, f64)| (at(&self.ellipsoids[k], x) - beyond).max(0.0);
+        DVector::from_iterator(self.ellipsoids.len(), bounded.map(value))
+    }
+
+    /// Newton's step from x for half the distance and `gamma` R, both over `gamma`, and the gradient there.
+    pub(super) fn newton(&self, gamma: f64, x: &DVector<f64>) -> Option<(Step, DVector<f64>)> {
+        let (mut gradient, mut hessian) = self.curvature(x)?;
+        gradient += self.g.tr_mul(&(&self.g * x - &self.y)) / gamma;
+        hessian += &self.normal / gamma;
+        Some((Step::new(hessian, &gradient, &self.ellipsoids, &self.margins(x))?, gradient))
+    }
+
     pub(super) fn distance(&self, x: &DVector<f64>) -> f64 {
         (&self.g * x - &self.y).norm_squared()
     }
@@ -198,6 +263,7 @@ impl Search {
             }
             sum += weight * (value / scale - (value / scale).ln() - 1.0);
         }
+        sum += self.loose.iter().map(|&(k, at, scale)| 0.5 * ((x[k] - at) / scale).powi(2)).sum::<f64>();
         sum.is_finite().then_some(sum)
     }
 
@@ -226,6 +292,10 @@ impl Search {
                 }
             }
         }
+        for &(k, at, scale) in &self.loose {
+            gradient[k] += (x[k] - at) / (scale * scale);
+            hessian[(k, k)] += 1.0 / (scale * scale);
+        }
         self.fixed.iter().for_each(|&k| hessian[(k, k)] = 1.0);
         Some((gradient, hessian))
     }
@@ -234,11 +304,9 @@ impl Search {
     pub(super) fn minimum(&self, gamma: f64, mut x: DVector<f64>) -> Result<DVector<f64>, NearPriorError> {
         let value = |x: &DVector<f64>| Some(0.5 * self.distance(x) / gamma + self.regulariser(x)?);
         for _ in 0..MOST_STEPS {
-            let (mut gradient, mut hessian) = self.curvature(&x).ok_or(NearPriorError::NotConverged)?;
-            gradient += self.g.tr_mul(&(&self.g * &x - &self.y)) / gamma;
-            hessian += &self.normal / gamma;
-            let step = scaled_solution(hessian, &gradient).ok_or(NearPriorError::NotConverged)?;
-            let decrement = gradient.dot(&step);
+            let (found, gradient) = self.newton(gamma, &x).ok_or(NearPriorError::NotConverged)?;
+            let step = found.step;
+            let decrement = -gradient.dot(&step);
             if !decrement.is_finite() {
                 return Err(NearPriorError::NotConverged);
             }
@@ -248,7 +316,7 @@ impl Search {
             }
             let mut share = 1.0;
             let next = loop {
-                let next = &x - &step * share;
+                let next = &x + &step * share;
                 if value(&next).is_some_and(|after| after <= before - 0.1 * share * decrement) {
                     break Some(next);
                 }
@@ -266,17 +334,6 @@ impl Search {
         }
         Err(NearPriorError::NotConverged)
     }
-}
-
-/// The solution of a symmetric system whose unknowns have units of different size.
-fn scaled_solution(mut matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let scale = matrix.diagonal().map(|d| 1.0 / d.sqrt());
-    for i in 0..scale.len() {
-        for j in 0..scale.len() {
-            matrix[(i, j)] *= scale[i] * scale[j];
-        }
-    }
-    Some(factored(matrix)?.solve(&right.component_mul(&scale)).component_mul(&scale))
 }
 
 fn at(combination: &Combination, x: &DVector<f64>) -> f64 {

@@ -1,0 +1,56 @@
+//! Which body or rotor keeps the identified base parameters from being those of a robot.
+
+use nalgebra::DMatrix;
+
+use super::near_prior::{NearPriorError, Prior, check, path};
+use super::prior_problem::Search;
+use crate::model::Robot;
+
+/// What must hold of one part of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Constraint {
+    /// The body of a frame, 0-based, has a density that is nowhere negative, and is within its ellipsoid.
+    Body(usize),
+    /// The rotor inertia of a motor, 0-based, is positive.
+    Rotor(usize),
+}
+
+/// What the rest of a robot could have if one constraint were none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Released {
+    /// The constraint.
+    pub what: Constraint,
+    /// The least distance of [`NearPrior`](super::NearPrior) without it: at most that with it, and far below where this body
+    /// or rotor is what cannot be.
+    pub least: f64,
+    /// Base parameters at that distance.
+    pub chi: Vec<f64>,
+}
+
+/// The least distance with each constraint left out alone, those first without which it is smallest; arguments as of
+/// [`near_prior`](super::near_prior).
+///
+/// # Errors
+/// See [`NearPriorError`].
+pub fn released(
+    robot: &Robot,
+    chi: &[f64],
+    covariance: &DMatrix<f64>,
+    prior: &Prior,
+) -> Result<Vec<Released>, NearPriorError> {
+    check(robot, chi, covariance, prior)?;
+    let bodies = (0..robot.frames.len()).map(Constraint::Body);
+    let mut all = Vec::new();
+    for what in bodies.chain((0..robot.joints()).map(Constraint::Rotor)) {
+        let mut search = Search::new(robot, chi, covariance, prior)?;
+        if !search.release(what) {
+            continue;
+        }
+        // What cannot be found says nothing of this one.
+        let Ok(path) = path(&search) else { continue };
+        let Some((_, x)) = path.last() else { continue };
+        all.push(Released { what, least: search.distance(x), chi: robot.base_from_standard(x.as_slice()) });
+    }
+    all.sort_by(|a, b| a.least.total_cmp(&b.least));
+    Ok(all)
+}
