@@ -30,7 +30,7 @@ impl Drop for Memory {
     }
 }
 
-/// An array for results, whose numbers are of no meaning yet.
+/// An array for results, whose numbers are of no meaning before they are written.
 ///
 /// # Errors
 /// Where the machine has no room for it.
@@ -38,7 +38,9 @@ pub(crate) fn array(py: Python<'_>, shape: [usize; 3]) -> PyResult<Bound<'_, PyA
     let no_room = || PyMemoryError::new_err(format!("no room for an array {shape:?} of float64"));
     let length = shape.iter().try_fold(1_usize, |product, n| product.checked_mul(*n)).ok_or_else(no_room)?;
     if length <= CACHED || !system::CAN_TAKE_BACK {
-        return Ok(PyArray3::zeros(py, shape, false));
+        // SAFETY: every number that the memory may hold is a number, as in an array of `numpy.empty` that a caller hands in,
+        // and the caller of this writes all of them. Clearing it first costs up to a fifth of the time of small arrays.
+        return Ok(unsafe { PyArray3::new(py, shape, false) });
     }
     let memory = Bound::new(py, Memory(numbers(length).ok_or_else(no_room)?))?;
     let view =
