@@ -2,16 +2,19 @@
 
 use std::sync::Mutex;
 
-use numpy::ndarray::ArrayView3;
 use numpy::PyArray3;
+use numpy::ndarray::ArrayView3;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 
 use crate::dense::CACHED;
 use crate::error::error;
 
-/// What the last large array that was dropped left. The system clears memory before it gives it to a program, which takes
-/// longer than to compute and write a regressor; this was given already. The system may take it back at any time.
+/// Arrays of fewer numbers than this, half a megabyte, come from numpy.
+const LEAST: usize = 1 << 16;
+
+/// What the last array that was dropped left. The system clears memory before it gives it to a program, which takes longer
+/// than to compute and write a regressor; this was given already. The system may take back what is larger than the cache.
 static LEFT: Mutex<Vec<f64>> = Mutex::new(Vec::new());
 
 /// What an array of Python keeps alive while it is used.
@@ -21,11 +24,11 @@ pub(crate) struct Memory(Vec<f64>);
 impl Drop for Memory {
     fn drop(&mut self) {
         let mut dropped = std::mem::take(&mut self.0);
-        if system::may_take_back(&mut dropped) {
-            if let Ok(mut left) = LEFT.lock() {
-                // The one before it is given back here.
-                *left = dropped;
-            }
+        // To offer memory costs as much as it saves where it fits into the cache.
+        let is_kept = dropped.len() <= CACHED || system::may_take_back(&mut dropped);
+        if let (true, Ok(mut left)) = (is_kept, LEFT.lock()) {
+            // The one before it is given back here.
+            *left = dropped;
         }
     }
 }
@@ -37,10 +40,8 @@ impl Drop for Memory {
 pub(crate) fn array(py: Python<'_>, shape: [usize; 3]) -> PyResult<Bound<'_, PyArray3<f64>>> {
     let no_room = || PyMemoryError::new_err(format!("no room for an array {shape:?} of float64"));
     let length = shape.iter().try_fold(1_usize, |product, n| product.checked_mul(*n)).ok_or_else(no_room)?;
-    if length <= CACHED || !system::CAN_TAKE_BACK {
-        // SAFETY: every number that the memory may hold is a number, as in an array of `numpy.empty` that a caller hands in,
-        // and the caller of this writes all of them. Clearing it first costs up to a fifth of the time of small arrays.
-        return Ok(unsafe { PyArray3::new(py, shape, false) });
+    if length < LEAST || (length > CACHED && !system::CAN_TAKE_BACK) {
+        return Ok(PyArray3::zeros(py, shape, false));
     }
     let memory = Bound::new(py, Memory(numbers(length).ok_or_else(no_room)?))?;
     let view =
@@ -54,7 +55,7 @@ pub(crate) fn array(py: Python<'_>, shape: [usize; 3]) -> PyResult<Bound<'_, PyA
 /// is no room.
 fn numbers(length: usize) -> Option<Vec<f64>> {
     let left = LEFT.lock().map(|mut left| std::mem::take(&mut *left)).unwrap_or_default();
-    if (length..2 * length).contains(&left.len()) {
+    if (length..length.saturating_mul(2)).contains(&left.len()) {
         return Some(left);
     }
     // Before more is asked for.
