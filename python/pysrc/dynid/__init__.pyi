@@ -1,6 +1,6 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ __all__: list[str]
 
 class Error(ValueError): ...
 
+@final
 class Robot:
     def __new__(cls, robot: str) -> Robot: ...
     @property
@@ -41,6 +42,7 @@ class Robot:
     def torque(self, chi: ArrayLike, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike) -> Array: ...
     def mass_matrix(self, chi: ArrayLike, q: ArrayLike) -> Array: ...
 
+@final
 class Recording:
     def __new__(
         cls,
@@ -62,8 +64,9 @@ class Recording:
     @property
     def left_out(self) -> list[str]: ...
     def arrays(self) -> list[tuple[Array, Array, Array]]: ...
-    def __add__(self, other: Recording) -> Recording: ...
+    def __add__(self, other: Recording, /) -> Recording: ...
 
+@final
 class Fit:
     @property
     def names(self) -> list[str]: ...
@@ -92,6 +95,7 @@ class Fit:
     def json(self) -> str: ...
     def save(self, path: Path) -> None: ...
 
+@final
 class Finding:
     @property
     def effect(self) -> str: ...
@@ -108,6 +112,7 @@ class Finding:
     @property
     def on_test(self) -> tuple[float, float | None] | None: ...
 
+@final
 class Diagnosis:
     @property
     def findings(self) -> list[Finding]: ...
@@ -122,6 +127,7 @@ class Diagnosis:
     def json(self) -> str: ...
     def report(self, path: Path) -> None: ...
 
+@final
 class Factors:
     @property
     def rows(self) -> int: ...
