@@ -16,20 +16,25 @@ in_columns = [np.asfortranarray(x) for x in in_rows]
 room = np.zeros((samples, r.joints, len(r.names)))
 
 
-def report(what, run):
-    least = np.inf
-    for _ in range(15):
-        began = time.perf_counter()
+def report(what, run, rounds=15, samples=samples):
+    wall, busy = np.inf, np.inf
+    for _ in range(rounds):
+        began, worked = time.perf_counter(), time.process_time()
         run()
-        least = min(least, time.perf_counter() - began)
-    print(f"{what}: {1e9 * least / samples:.0f} ns a sample")
+        wall, busy = min(wall, time.perf_counter() - began), min(busy, time.process_time() - worked)
+    print(f"{what}: {1e9 * wall / samples:.0f} ns a sample, {1e9 * busy / samples:.0f} of a processor")
 
 
 report("entries, fresh memory, arrays in columns", lambda: r.regressor_entries(*in_columns))
 report("entries, fresh memory, arrays in rows", lambda: r.regressor_entries(*in_rows))
-report("dense, fresh memory, arrays in columns", lambda: r.regressor(*in_columns))
-report("dense, fresh memory, arrays in rows", lambda: r.regressor(*in_rows))
-report("dense, the same memory again, arrays in rows", lambda: r.regressor(*in_rows, out=room))
+for threads, how in [(1, "one thread"), (0, "all threads")]:
+    report(f"dense, arrays in columns, {how}", lambda: r.regressor(*in_columns, threads=threads))
+    report(f"dense, arrays in rows, {how}", lambda: r.regressor(*in_rows, threads=threads))
+    report(f"dense, out= the same array again, {how}", lambda: r.regressor(*in_rows, out=room, threads=threads))
+# The first one has what the last call left.
+kept = [r.regressor(*in_columns)]
+report("dense, fresh memory, all threads", lambda: kept.append(r.regressor(*in_columns)), rounds=3)
+kept.clear()
 report("torques, arrays in rows", lambda: r.torque(r.chi, *in_rows))
 
 
@@ -54,12 +59,7 @@ def pinocchio_loop(most=5000):
         for k in range(samples):
             out[k] = pin.computeJointTorqueRegressor(model, data, q[k], dq[k], ddq[k])
 
-    least = np.inf
-    for _ in range(15):
-        began = time.perf_counter()
-        run()
-        least = min(least, time.perf_counter() - began)
-    print(f"Pinocchio, a loop in Python: {1e9 * least / samples:.0f} ns a sample")
+    report("Pinocchio, a loop in Python", run, samples=samples)
 
 
 try:

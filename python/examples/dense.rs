@@ -5,6 +5,7 @@
 mod dense;
 
 use std::hint::black_box;
+use std::ops::Range;
 use std::time::Instant;
 
 use dynid_runtime::model::{Model, States};
@@ -23,32 +24,34 @@ fn main() {
     let size = n * model.robot().base.len();
     report("entries, fresh memory", samples, || {
         let mut out = vec![0.0; entries * samples];
-        with_blocks(&signals, samples, |from, states| model.idm_block(states, samples, &mut out[from..]));
+        with_blocks(&signals, 0..samples, |from, states| model.idm_block(states, samples, &mut out[from..]));
         black_box(out);
     });
-    report("dense, fresh memory", samples, || {
+    for threads in [1, 0] {
+        let how = if threads == 1 { "one thread" } else { "all threads" };
+        report(&format!("dense, fresh memory, {how}"), samples, || {
+            let mut out = vec![0.0; size * samples];
+            dense(model, &signals, threads, &mut out);
+            black_box(out);
+        });
         let mut out = vec![0.0; size * samples];
-        dense(model, &signals, samples, &mut out, true);
-        black_box(out);
-    });
-    let mut out = vec![0.0; size * samples];
-    report("dense, the same memory again", samples, || {
-        dense(model, &signals, samples, &mut out, false);
-        black_box(&out);
+        report(&format!("dense, the same memory again, {how}"), samples, || {
+            dense(model, &signals, threads, &mut out);
+            black_box(&out);
+        });
+    }
+}
+
+fn dense(model: &dyn Model, signals: &[Vec<Vec<f64>>; 3], threads: usize, out: &mut [f64]) {
+    let samples = signals[0].first().map_or(0, Vec::len);
+    dense::regressors(model, samples, threads, out, |range, write| {
+        with_blocks(signals, range, |_, states| write(states));
     });
 }
 
-fn dense(model: &dyn Model, signals: &[Vec<Vec<f64>>; 3], samples: usize, out: &mut [f64], is_fresh: bool) {
-    let mut dense = dense::DenseRegressor::new(model);
-    with_blocks(signals, samples, |from, states| {
-        let range = from..from + states.samples();
-        dense.write(&range, states, out, is_fresh);
-    });
-}
-
-fn with_blocks(signals: &[Vec<Vec<f64>>; 3], samples: usize, mut work: impl FnMut(usize, States<'_>)) {
-    for from in (0..samples).step_by(BLOCK) {
-        let to = samples.min(from + BLOCK);
+fn with_blocks(signals: &[Vec<Vec<f64>>; 3], range: Range<usize>, mut work: impl FnMut(usize, States<'_>)) {
+    for from in range.clone().step_by(BLOCK) {
+        let to = range.end.min(from + BLOCK);
         let [q, dq, ddq] = [0, 1, 2].map(|s| signals[s].iter().map(|x| &x[from..to]).collect::<Vec<_>>());
         work(from, States { q: &q, dq: &dq, ddq: &ddq });
     }

@@ -8,6 +8,7 @@ mod fit;
 mod identify;
 mod interruptible;
 mod known;
+mod memory;
 mod recording;
 mod robot;
 mod signals;

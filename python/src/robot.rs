@@ -10,8 +10,9 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntyped
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::dense::DenseRegressor;
+use crate::dense::regressors;
 use crate::error::{error, of_failure};
+use crate::memory;
 use crate::signals::{Signals, vector};
 
 /// A robot and its dynamics in closed form, linear in its base parameters chi (n joints, p parameters).
@@ -120,9 +121,10 @@ impl PyRobot {
 
     /// Base torque regressor W (N, n, p) with torque = W chi.
     ///
-    /// ``out`` is an array (N, n, p) of float64 to write to instead of a new one, which saves the time that fresh memory
-    /// costs.
-    #[pyo3(signature = (q, dq, ddq, out = None))]
+    /// ``out`` is an array (N, n, p) of float64 to write to instead of a new one. ``threads`` work at once, 0 for as many as
+    /// the machine has; the numbers do not depend on it. The memory of a large array that is dropped serves the next one,
+    /// unless the system takes it back before.
+    #[pyo3(signature = (q, dq, ddq, out = None, *, threads = 0))]
     fn regressor<'py>(
         &self,
         py: Python<'py>,
@@ -130,21 +132,23 @@ impl PyRobot {
         dq: &Bound<'py, PyAny>,
         ddq: &Bound<'py, PyAny>,
         out: Option<&Bound<'py, PyAny>>,
+        threads: usize,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.description();
         let (joints, columns) = (robot.joints(), robot.base.len());
         let signals = Signals::read(joints, &[("q", q), ("dq", dq), ("ddq", ddq)])?;
         let shape = [signals.samples, joints, columns];
         let array = match out {
-            None => PyArray3::<f64>::zeros(py, shape, false),
+            None => memory::array(py, shape)?,
             Some(given) => room(given, shape)?,
         };
         let mut writable = array.try_readwrite().map_err(|why| error(format!("out: {why}")))?;
         let numbers = writable.as_slice_mut().map_err(|why| error(format!("out: {why}")))?;
-        let (views, model, is_fresh) = (signals.views(), self.model(), out.is_none());
+        let (views, model) = (signals.views(), self.model());
         py.detach(|| {
-            let mut dense = DenseRegressor::new(model);
-            views.blocks(|range, states| dense.write(&range, states, numbers, is_fresh));
+            regressors(model, views.samples(), threads, numbers, |range, write| {
+                views.blocks_of(range, |_, states| write(states));
+            });
         });
         drop(writable);
         if signals.single && out.is_none() {

@@ -140,12 +140,17 @@ impl Views<'_> {
     /// Calls `work` with blocks of samples in sequence. Columns that lie in memory as the batch engine reads them
     /// (an array in the order of Fortran, or the transpose of one with a row a joint) are read where they are; others are
     /// gathered block by block. A signal that was not given reads as zeros.
-    pub fn blocks(&self, mut work: impl FnMut(Range<usize>, States<'_>)) {
+    pub fn blocks(&self, work: impl FnMut(Range<usize>, States<'_>)) {
+        self.blocks_of(0..self.samples, work);
+    }
+
+    /// [`Self::blocks`] of a range of the samples.
+    pub fn blocks_of(&self, samples: Range<usize>, mut work: impl FnMut(Range<usize>, States<'_>)) {
         let (n, zeros) = (self.joints, [0.0; BLOCK]);
         let mut gathered = vec![0.0; 3 * n * BLOCK];
-        let mut from = 0;
-        while from < self.samples {
-            let range = from..self.samples.min(from + BLOCK);
+        let mut from = samples.start;
+        while from < samples.end {
+            let range = from..samples.end.min(from + BLOCK);
             let count = range.len();
             for (s, signal) in self.signals.iter().enumerate().filter(|(_, s)| !columns_lie(s)) {
                 let room = &mut gathered[s * n * BLOCK..][..n * BLOCK];

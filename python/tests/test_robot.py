@@ -100,6 +100,56 @@ def test_every_layout_of_an_array_has_the_same_numbers(tx40):
     np.testing.assert_allclose(dense, expected, rtol=1e-12, atol=1e-12)
 
 
+# 20 MB of them: more than is written through the cache.
+MANY = 7001
+
+
+@pytest.mark.parametrize("samples", [1, 7, 64, 65, 4097, MANY])
+def test_regressors_have_the_same_bytes_for_any_number_of_threads(tx40, samples):
+    q, dq, ddq = states(tx40, samples)
+    expected = tx40.regressor(q, dq, ddq, threads=1).tobytes()
+    for threads in [0, 2, 5]:
+        assert tx40.regressor(q, dq, ddq, threads=threads).tobytes() == expected
+
+
+@pytest.mark.parametrize("name", dynid.robots())
+def test_an_array_larger_than_the_cache_has_the_bytes_of_its_pieces(name):
+    r = dynid.Robot(name)
+    samples = (5 << 19) // (r.joints * len(r.names)) + 3
+    q, dq, ddq = states(r, samples)
+    whole = r.regressor(q, dq, ddq)
+    pieces = [r.regressor(q[at : at + 1000], dq[at : at + 1000], ddq[at : at + 1000]) for at in range(0, samples, 1000)]
+    assert whole.tobytes() == np.concatenate(pieces).tobytes()
+    # Numbers that begin between two multiples of 16 bytes.
+    room = np.full(whole.size + 2, np.nan)[1:-1].reshape(whole.shape)
+    assert r.regressor(q, dq, ddq, out=room) is room and room.tobytes() == whole.tobytes()
+    assert np.isnan(room.base[[0, -1]]).all()
+
+
+@pytest.mark.parametrize("samples", [400, MANY])
+def test_memory_serves_again_only_after_its_array_and_all_views_of_it_are_gone(tx40, samples):
+    q, dq, ddq = states(tx40, samples)
+    expected = tx40.regressor(q, dq, ddq)
+    copy, view = expected.copy(), expected[5:9]
+    other = tx40.regressor(-q, dq, ddq)
+    assert (expected == copy).all()
+    del expected
+    kept = other.copy()
+    # More than half as many samples go into the same memory.
+    part = samples // 2 + 9
+    for _ in range(3):
+        assert (tx40.regressor(q, dq, ddq) == copy).all()
+        assert (tx40.regressor(q[:part], dq[:part], ddq[:part]) == copy[:part]).all()
+    assert (view == copy[5:9]).all() and (other == kept).all()
+    assert other.flags.writeable and other.flags.aligned and other.flags.c_contiguous
+
+
+def test_an_array_that_no_machine_can_hold_is_a_memory_error(tx40):
+    q = np.broadcast_to(np.zeros(6), (1 << 44, 6))
+    with pytest.raises(MemoryError):
+        tx40.regressor(q, q, q)
+
+
 def test_one_state_is_a_row_without_its_first_axis(tx40):
     q, dq, ddq = states(tx40, 1)
     for of in ["regressor", "power_regressor", "regressor_entries"]:

@@ -90,14 +90,12 @@ fn prologue(graph: &Graph, inputs: &InputNames, program: &Program<'_>, values: &
         ("ddq", n, Symbol::Acceleration),
         ("chi", inputs.parameters.len(), Symbol::Parameter),
     ];
-    let mut head = Vec::new();
-    for (name, count, symbol) in families {
+    let unpacked = families.iter().filter_map(|&(name, count, symbol)| {
         let used = |k: usize| symbols.contains(&symbol(k)).then(|| inputs.symbol(symbol(k)));
         let values: Vec<Option<String>> = (0..count).map(used).collect();
-        if values.iter().any(Option::is_some) {
-            head.push(Statement::Unpack { array: name.to_owned(), values });
-        }
-    }
+        values.iter().any(Option::is_some).then(|| Statement::Unpack { array: name.to_owned(), values })
+    });
+    let mut head: Vec<Statement> = unpacked.collect();
     if !angles.is_empty() {
         let is_used = |node: Node| reachable.iter().any(|&at| graph.node(at) == node);
         let pair = |&a: &usize| {
@@ -108,7 +106,10 @@ fn prologue(graph: &Graph, inputs: &InputNames, program: &Program<'_>, values: &
                 angle: program.angle(a),
             }
         };
-        head.push(Statement::SinesAndCosines(angles.iter().map(pair).collect()));
+        let pairs = angles.iter().map(pair).collect();
+        // Right after the positions: a value that is loaded before the branch for large angles is spilled to the stack.
+        let place = usize::from(symbols.iter().any(|s| matches!(s, Symbol::Position(_))));
+        head.insert(place, Statement::SinesAndCosines(pairs));
     }
     head
 }

@@ -230,8 +230,8 @@ pub fn energy<T: Number>(
 ) {
     let k = T::constant;
     let [q1, q2] = *q;
-    let [dq1, dq2] = *dq;
     let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
+    let [dq1, dq2] = *dq;
     // Link 1.
     h[0] = k(0.5) * (dq1 * dq1);
     let t1 = k(9.81) * s1;
@@ -265,9 +265,9 @@ pub fn power<T: Number>(
 ) {
     let k = T::constant;
     let [q1, q2] = *q;
+    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     let [dq1, dq2] = *dq;
     let [ddq1, ddq2] = *ddq;
-    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     // Link 1.
     dh[0] = ddq1 * dq1;
     let a1_y = k(9.81) * c1;
@@ -303,9 +303,9 @@ pub fn idm<T: Number>(
 ) {
     let k = T::constant;
     let [q1, q2] = *q;
+    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     let [dq1, dq2] = *dq;
     let [ddq1, ddq2] = *ddq;
-    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     // Row 1, link 1.
     idm[0] = ddq1;
     let a1_y = k(9.81) * c1;
@@ -349,9 +349,9 @@ pub fn mass_and_bias<T: Number>(
 ) {
     let k = T::constant;
     let [q1, q2] = *q;
+    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     let [dq1, dq2] = *dq;
     let [ZZ1R, MX1R, MY1, _, _, _, ZZ2, MX2, MY2, Ia2, _, _, _] = *chi;
-    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     // Mass matrix.
     let v1_2y = k(0.5) * c2;
     let v1_2x = k(0.5) * s2;
@@ -390,10 +390,10 @@ pub fn tau<T: Number>(
 ) {
     let k = T::constant;
     let [q1, q2] = *q;
+    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     let [dq1, dq2] = *dq;
     let [ddq1, ddq2] = *ddq;
     let [ZZ1R, MX1R, MY1, Fv1, Fc1, off1, ZZ2, MX2, MY2, Ia2, Fv2, Fc2, off2] = *chi;
-    let ([s1, s2], [c1, c2]) = T::sin_cos_each([q1, q2]);
     // Joint 2.
     let a1_y = k(9.81) * c1;
     let t1 = a1_y.add_product(k(0.5), ddq1);

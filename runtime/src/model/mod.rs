@@ -32,6 +32,7 @@ mod lanes;
 mod number;
 mod recursive;
 mod scalar;
+mod sines;
 mod states;
 mod torques;
 
