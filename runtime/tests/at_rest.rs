@@ -143,24 +143,33 @@ fn without_a_baseline_a_robot_that_holds_still_is_refused_in_words() {
     assert!(matches!(refused, DiagnosisError::NothingMoves { .. }), "{refused}");
 }
 
-#[test]
-fn strokes_of_one_joint_name_what_that_joint_has_and_say_that_the_others_are_not_judged() {
+/// Strokes of the second joint of the SCARA, four waves, with a spring of this stiffness, N.m/rad; the others hold still.
+fn strokes(stiffness: f64, seed: u64) -> Diagnosis {
+    const WAVES: [[f64; 3]; 4] = [[0.5, 1.7, 0.3], [0.25, 3.1, 1.9], [0.15, 4.9, 4.0], [0.1, 6.6, 5.1]];
     let robot = scara();
-    let (w, v) = (2.1, 5.3);
     let stroke = |t: f64| {
-        let q = 0.8 * (w * t).sin() + 0.2 * (v * t).sin();
-        let dq = 0.8 * w * (w * t).cos() + 0.2 * v * (v * t).cos();
-        let ddq = -0.8 * w * w * (w * t).sin() - 0.2 * v * v * (v * t).sin();
+        let sum = |of: fn([f64; 3], f64) -> f64| WAVES.iter().map(|&wave| of(wave, t)).sum::<f64>();
+        let q = sum(|[a, w, p], t| a * (w * t + p).sin());
+        let dq = sum(|[a, w, p], t| a * w * (w * t + p).cos());
+        let ddq = sum(|[a, w, p], t| -a * w * w * (w * t + p).sin());
         [vec![0.3, q, 0.05], vec![0.0, dq, 0.0], vec![0.0, ddq, 0.0]]
     };
-    let spring = |t: f64| vec![0.0, 4.0 * stroke(t)[0][1], 0.0];
-    let diagnosis = diagnosed(&robot, recorded(&robot, 24.0, 3, stroke, spring), &[]).unwrap();
-    let named: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.as_slice())).collect();
-    // Two frequencies hardly tell a spring from inertia: what is left of it beside that is a torque of the position.
-    let of_position = |effect: &str| ["spring", "position_dependent_torque"].contains(&effect);
-    assert!(named.iter().any(|(effect, _)| of_position(effect)), "{:?}", diagnosis.verdict);
-    // An inverse dynamics without compliance jumps at reversals: what filters make of that may be named besides.
-    assert!(named.iter().all(|(_, joints)| *joints == [2]), "{named:?}");
-    let not_judged: Vec<usize> = diagnosis.not_judged.iter().map(|j| j.joint).collect();
-    assert_eq!(not_judged, [1, 3]);
+    let spring = |t: f64| vec![0.0, stiffness * stroke(t)[0][1], 0.0];
+    diagnosed(&robot, recorded(&robot, 24.0, seed, stroke, spring), &[]).unwrap()
+}
+
+#[test]
+fn strokes_of_one_joint_name_what_that_joint_has_and_say_that_the_others_are_not_judged() {
+    for (seed, stiffness) in [(3, 2.0), (4, 4.0), (5, 8.0)] {
+        let diagnosis = strokes(stiffness, seed);
+        let named: Vec<_> =
+            diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.as_slice())).collect();
+        assert_eq!(named, [("spring", &[2][..])], "{stiffness} N.m/rad: {:?}", diagnosis.verdict);
+        let k = &diagnosis.findings[0].parameters["k"];
+        assert!((k.value - stiffness).abs() < 4.0 * k.sigma + 0.02 * stiffness, "{stiffness}: {k:?}");
+        let not_judged: Vec<usize> = diagnosis.not_judged.iter().map(|j| j.joint).collect();
+        assert_eq!(not_judged, [1, 3]);
+    }
+    let nothing = strokes(0.0, 6);
+    assert!(nothing.findings.is_empty(), "{:?}", nothing.verdict);
 }

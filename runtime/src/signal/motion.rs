@@ -31,7 +31,7 @@ pub struct Motion {
 
 impl Motion {
     /// Whether a joint stands still: because it is said, or because it travels less than half a milliradian or millimetre.
-    pub fn stands(&self, joint: usize) -> bool {
+    fn stands(&self, joint: usize) -> bool {
         let positions = self.q.get(joint).map_or(&[][..], Vec::as_slice);
         let [low, high] =
             positions.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);

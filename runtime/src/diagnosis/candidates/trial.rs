@@ -105,8 +105,13 @@ pub(in crate::diagnosis) fn term_columns(
     out
 }
 
-/// The skew of the torques behind the positions, which is always fitted along.
+/// The skew of the torques behind the positions, which is always fitted along: nothing where a single joint moves. Viscous
+/// friction that comes later is that joint's inertia, and what is left of its skew is how its torque changes with the
+/// jerk, as that of a spring or of a friction that no law has; only what all joints have in common is the recording's.
 pub(in crate::diagnosis) fn delay_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
+    if (0..design.joints).filter(|&j| !design.of_joint(j).is_empty()).count() < 2 {
+        return vec![vec![0.0; design.rows.len()]];
+    }
     dense_columns(context, design, EffectKind::TimeDelay, Place::Variant(0), &[], false)
 }
 
