@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::enclosing::{directions, enclosing};
 use crate::geometry::{Collision, Shape};
+use crate::mistake::shown;
 use crate::template::Template;
 use dynid_description::Ellipsoid;
 
@@ -62,7 +63,7 @@ impl Template<'_> {
                 let own = points_of(collision, meshes).map_err(|why| match link.name == target {
                     true => why,
                     false => {
-                        format!("of '{}', which is fixed to it, {why}", crate::mistake::shown(&link.name))
+                        format!("of '{}', which is fixed to it, {why}", shown(&link.name))
                     }
                 })?;
                 let seen = to_table.then(pose).then(&collision.pose);
@@ -97,15 +98,12 @@ fn points_of(collision: &Collision, meshes: &Meshes<'_>) -> Result<Vec<Vector3<f
             Ok(directions(2 * TILTS, TILTS).map(|d| d * outer).collect())
         }
         Shape::Mesh { file, scale } => {
-            let vertices =
-                meshes(file).map_err(|why| format!("the mesh {}: {why}", crate::mistake::shown(file)))?;
+            let vertices = meshes(file).map_err(|why| format!("the mesh {}: {why}", shown(file)))?;
             let points: Vec<Vector3<f64>> =
                 vertices.iter().map(|v| Vector3::from_fn(|i, _| v[i] * scale[i])).collect();
             match points.iter().all(|p| p.amax() <= FARTHEST) {
                 true => Ok(points),
-                false => {
-                    Err(format!("the mesh {}: it is larger than any robot", crate::mistake::shown(file)))
-                }
+                false => Err(format!("the mesh {}: it is larger than any robot", shown(file))),
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::diagnosis::{Diagnosis, DiagnosisError, term_torques};
 use crate::effects::{Distortion, EffectTerm};
 use crate::estimation::observe::ObserveError;
-use crate::model::{Model, StateSlices, torques};
+use crate::model::{Model, torques};
 use crate::signal::{Motion, SignalError};
 
 /// A model that predicts torques.
@@ -69,7 +69,7 @@ impl<'a> Predictor<'a> {
         let factor: f64 = self.effects.iter().filter_map(EffectTerm::distortion).map(times_faster).product();
         let corrected = (factor != 1.0).then(|| motion.faster(factor));
         let motion = corrected.as_ref().unwrap_or(motion);
-        let mut all = torques(model, self.chi, StateSlices::new(&motion.q, &motion.dq, &motion.ddq).states());
+        let mut all = torques(model, self.chi, motion.state_slices().states());
         if !self.effects.is_empty() {
             let added = term_torques(model, self.chi, self.effects, motion)?;
             for (torque, effect) in all.iter_mut().flatten().zip(added.iter().flatten()) {
