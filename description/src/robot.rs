@@ -174,6 +174,25 @@ impl Robot {
         self.base.iter().map(|p| p.combination.iter().map(|&(k, c)| c * standard[k]).sum()).collect()
     }
 
+    /// Standard parameters of a body on a frame (0-based) and nothing else: `inertial` are its XX XY XZ YY YZ ZZ MX MY MZ M at
+    /// the frame's origin, SI. All zero for a frame that the robot has not.
+    pub fn standard_of_body(&self, frame: usize, inertial: &[f64]) -> Vec<f64> {
+        let value = |parameter: &StandardParameter| {
+            let place = ParameterKind::INERTIAL.iter().position(|kind| *kind == parameter.kind);
+            place.filter(|_| parameter.frame == frame).and_then(|k| inertial.get(k)).copied()
+        };
+        self.standard.iter().map(|parameter| value(parameter).unwrap_or(0.0)).collect()
+    }
+
+    /// What such a body adds to each base parameter: base parameters are linear in standard ones. `None` where they cannot
+    /// hold it: the robot has no such frame, or says that something of it is 0.
+    pub fn base_of_body(&self, frame: usize, inertial: &[f64]) -> Option<Vec<f64>> {
+        let standard = self.standard_of_body(frame, inertial);
+        let is_lost = |&k: &usize| standard.get(k).is_some_and(|value| *value != 0.0);
+        let is_held = frame < self.frames.len() && !self.known.iter().any(is_lost);
+        is_held.then(|| self.base_from_standard(&standard))
+    }
+
     /// Indices in `frames` of the frames that move, in order.
     fn joint_frames(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.frames.len()).filter(|&k| self.frames[k].kind != JointKind::Fixed)

@@ -5,10 +5,11 @@
 mod common;
 
 use common::Hidden;
-use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
-use dynid_runtime::effects::{EffectKind, Place};
+use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose, term_torques};
+use dynid_runtime::effects::{EffectKind, EffectTerm, Place};
 use dynid_runtime::model::Model;
 use dynid_runtime::recording::Trajectory;
+use dynid_runtime::signal::{Preparation, prepare};
 use dynid_runtime::simulation::excitation::{ExcitationSettings, ExcitingMotion, MotionKind, excite};
 
 /// XX XY XZ YY YZ ZZ MX MY MZ M of a point on x.
@@ -86,4 +87,31 @@ fn one_body_is_told_once_with_what_it_weighs() {
         let told = &told[quantity];
         assert!((told.value - truth).abs() < 4.0 * told.sigma + 0.02 * truth, "{told:?}");
     }
+}
+
+#[test]
+fn a_law_that_follows_the_load_feels_the_body_that_was_found() {
+    let robot = common::planar();
+    let model: &dyn Model = &robot.model;
+    let chi = model.robot().base_from_standard(&robot.standard);
+    let inertial = point(2.0, 0.3);
+    let payload = common::term(EffectKind::Payload, Place::Link(1), &[], &inertial);
+    let friction = common::term(EffectKind::LoadDependentFriction, Place::Joint(0), &[], &[0.1]);
+    let recording = robot.record(&robot.motions(1, 4.5, 3), &Hidden::nothing(), 3);
+    let motion = prepare(&recording[0], &Preparation::default()).unwrap();
+    let torques = |chi: &[f64], terms: &[EffectTerm]| term_torques(model, chi, terms, &motion).unwrap();
+    let together = torques(&chi, &[payload.clone(), friction.clone()]);
+    let body = torques(&chi, &[payload]);
+    // The same robot with the body as a part of its last link.
+    let carried = model.robot().base_of_body(1, &inertial).unwrap();
+    let heavier: Vec<f64> = chi.iter().zip(&carried).map(|(x, more)| x + more).collect();
+    let felt = torques(&heavier, &[friction.clone()]);
+    let unloaded = torques(&chi, &[friction]);
+    for j in 0..2 {
+        for t in 0..motion.q[j].len() {
+            approx::assert_relative_eq!(together[j][t] - body[j][t], felt[j][t], epsilon = 1e-9);
+        }
+    }
+    let largest = |x: &[f64]| x.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    assert!(largest(&felt[0]) > 1.5 * largest(&unloaded[0]));
 }

@@ -31,6 +31,16 @@ fn with_laws(mu: f64, more: impl Fn(&mut World<'_>) + 'static) -> Hidden {
     })
 }
 
+/// The robot with its laws and a point of this mass on its last link.
+fn carrying(mass: f64) -> Hidden {
+    let x: f64 = 0.4;
+    let about = mass * x * x;
+    let inertial = [0.0, 0.0, 0.0, about, 0.0, about, mass * x, 0.0, 0.0, mass];
+    let payload = law(EffectKind::Payload, 1, &[], &inertial);
+    let body = EffectTerm { place: Place::Link(1), scale: None, ..payload };
+    with_laws(MU, move |world| world.put(&body))
+}
+
 fn record(robot: &SimulatedRobot, hidden: &Hidden, seed: u64) -> Vec<Trajectory> {
     robot.record(&robot.motions(3, 4.5, seed), hidden, seed)
 }
@@ -116,15 +126,22 @@ fn of_a_law_that_changed_the_change_is_told() {
 fn a_law_that_came_is_told_and_a_body_is_weighed() {
     let stribeck = |world: &mut World<'_>| world.put(&law(EffectKind::Stribeck, 1, &[0.3], &[2.0]));
     assert_eq!(named(&against(reference(), &with_laws(MU, stribeck))), [("stribeck", &[2][..])]);
-    let (mass, x): (f64, f64) = (0.3, 0.4);
-    let about = mass * x * x;
-    let inertial = [0.0, 0.0, 0.0, about, 0.0, about, mass * x, 0.0, 0.0, mass];
-    let body =
-        EffectTerm { place: Place::Link(1), scale: None, ..law(EffectKind::Payload, 1, &[], &inertial) };
-    let found = against(reference(), &with_laws(MU, move |world| world.put(&body)));
+    let found = against(reference(), &carrying(0.3));
     assert_eq!(named(&found), [("payload", &[][..])]);
     let weighed = &found.findings[0].parameters["mass"];
-    assert!((weighed.value - mass).abs() < 4.0 * weighed.sigma, "{weighed:?}");
+    assert!((weighed.value - 0.3).abs() < 4.0 * weighed.sigma, "{weighed:?}");
+}
+
+#[test]
+fn load_friction_that_stands_follows_a_body_that_is_news() {
+    let found = against(reference(), &carrying(3.0));
+    assert_eq!(named(&found), [("payload", &[][..])]);
+    let weighed = &found.findings[0].parameters["mass"];
+    assert!((weighed.value - 3.0).abs() < 4.0 * weighed.sigma, "{weighed:?}");
+    let share = found.held_out.after / found.held_out.before;
+    assert!(share < 0.02, "{share}: {:?}", found.held_out);
+    // Nor is the torque of the body taken for a skew.
+    assert!(found.delay.abs() < 2e-4, "{}", found.delay);
 }
 
 #[test]

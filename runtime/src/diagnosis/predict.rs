@@ -1,7 +1,7 @@
 //! Accepted effects as part of a model: their torques on any motion.
 
 use super::error::DiagnosisError;
-use super::rows::context::Context;
+use super::rows::context::{Carried, Context};
 use super::rows::scales::scales;
 use super::rows::signals::Signals;
 use crate::effects::{EffectTerm, Scale};
@@ -20,7 +20,8 @@ pub fn joint_scales(model: &dyn Model, motions: &[Motion], chi: &[f64]) -> Vec<S
 /// What is wrong with a recording rather than with the robot adds nothing: it changes the motion that the model is
 /// evaluated on, see [`crate::prediction::Predictor`].
 ///
-/// `chi` are the base parameters that were identified together with the terms. Contacts belong to the recording they
+/// `chi` are the base parameters that were identified together with the terms; laws that follow the load feel the bodies
+/// among these, too. Contacts belong to the recording they
 /// were seen in and add nothing.
 ///
 /// # Errors
@@ -49,6 +50,10 @@ pub(super) fn torques_on(
         return Ok(out);
     }
     let mut context = Context::new(model, signals, scales(model, signals, chi), chi.to_vec())?;
+    let carried = Carried::among(model.robot(), terms);
+    if !carried.is_empty() {
+        context.update(chi.to_vec(), carried);
+    }
     for term in terms.iter().filter(|t| t.distortion().is_none()) {
         if let (Some(j), Some(scale)) = (term.place.law_of(), term.scale)
             && j < n

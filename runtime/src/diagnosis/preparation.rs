@@ -14,6 +14,7 @@ use super::rules;
 use super::settings::Settings;
 use crate::model::{JointIndex, Model};
 use crate::recording::Trajectory;
+use std::sync::Arc;
 
 /// Everything that is computed once, before contacts and effects are looked for.
 pub(super) struct Prepared {
@@ -116,10 +117,18 @@ impl Prepared {
         Ok(context.beside(self.motions.settings().reference.clone()))
     }
 
-    /// A skew of more than a part of a sample is taken out of the motions themselves.
+    /// A skew of more than a part of a sample is taken out of the motions themselves. The robot may carry more than a
+    /// reference knows of, and the torque of that is no skew: every parameter is free to be another one.
     fn take_out_skew(&mut self, model: &dyn Model) -> Result<(), DiagnosisError> {
         for _ in 0..rules::DELAY_ROUNDS {
-            let found = skew_of(&self.context(model)?, self.aligned.clone())?;
+            let (mut rows, mut context) = (self.aligned.clone(), self.context(model)?);
+            if let Some(prior) = rows.prior.take() {
+                rows.prior = Some(Arc::new(prior.loosened(rules::LOOSE_REFERENCE)));
+                let fit = Fit::weighted(&rows, &self.sigma)?;
+                let chi = fit.chi.iter().take(rows.parameters).copied().collect();
+                context.update(chi, context.carried().to_vec());
+            }
+            let found = skew_of(&context, rows)?;
             let signals = &mut self.motions.signals;
             let rate = signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
             if found.abs() * rate < rules::DELAY_TAKEN_OUT {

@@ -72,6 +72,9 @@ pub(super) const TOP_SPEED_PERCENT: usize = 98;
 pub(super) const LEAST_LINK_INERTIA: f64 = 1e-3;
 /// Rounds in which a skew is taken out: the second takes what linearisation left of the first. Mechanics.
 pub(super) const DELAY_ROUNDS: usize = 2;
+/// So many times its standard deviations a reference's parameters may be off while the skew is measured. Statistics: it says
+/// nothing of what motion determines, and all of what it does not.
+pub(super) const LOOSE_REFERENCE: f64 = 1e3;
 /// A skew of fewer samples is left to its column. Mechanics: within one sample, linear interpolation is exact enough.
 pub(super) const DELAY_TAKEN_OUT: f64 = 0.75;
 /// A delay is named from this many samples on: a smaller one is part of sampling. Mechanics; time_delay in

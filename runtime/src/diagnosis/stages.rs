@@ -85,7 +85,7 @@ impl<'a> Course<'a> {
         self.progress.at(0.1, "candidates");
         let mut begun = self.begin(pushes.set_aside().as_ref(), settings)?;
         // Where something is said against what was found, the search goes on from here.
-        let without_effects = self.known.is_none().then(|| begun.search.model.copy()).transpose()?;
+        let without_effects = self.known.is_none().then(|| begun.search.model.clone());
         loop {
             // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
             let Some(report) = self.searched(&mut begun.search, pushes, settings)? else { return Ok(None) };
@@ -101,7 +101,7 @@ impl<'a> Course<'a> {
             }
             match &without_effects {
                 Some(model) if !objected.is_empty() => {
-                    begun.search.go_on_without(&objected, model.copy()?)?;
+                    begun.search.go_on_without(&objected, model.clone())?;
                 }
                 _ => return Ok(Some(diagnosis)),
             }
@@ -169,7 +169,8 @@ impl<'a> Course<'a> {
         let mut context = prepared.context(model)?;
         if contacts.is_some() {
             let fit = Fit::weighted(&rows.slow, &prepared.sigma)?;
-            context.update(fit.chi.iter().take(rows.slow.parameters).copied().collect());
+            let chi = fit.chi.iter().take(rows.slow.parameters).copied().collect();
+            context.update(chi, context.carried().to_vec());
         }
         let extended = ExtendedModel::new(context, rows.slow, rows.fast, self.change)?;
         let mut search = Search::new(extended, &motions.slowest, settings, self.progress);

@@ -294,12 +294,7 @@ impl<'m> World<'m> {
     /// Adds the ten inertial parameters of a body on a frame.
     fn put_body(&mut self, frame: usize, inertial: &[f64]) -> bool {
         let robot = self.nominal.robot();
-        let mut body = vec![0.0; robot.standard.len()];
-        let own = (0..body.len())
-            .filter(|&k| robot.standard[k].frame == frame && robot.standard[k].kind <= ParameterKind::M);
-        for (k, value) in own.zip(inertial) {
-            body[k] = *value;
-        }
+        let body = robot.standard_of_body(frame, inertial);
         let (parameters, more) = match &mut self.parameters {
             Parameters::Base(chi) => (chi, robot.base_from_standard(&body)),
             Parameters::Standard(standard) => (standard, body),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use dynid_codegen::{Carried, ExportError, Known, Law};
 use dynid_runtime::effects::{EffectTerm, Form};
-use dynid_runtime::model::{ParameterKind, Robot};
+use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::Identified;
 
 use super::Arguments;
@@ -45,7 +45,7 @@ fn known(identified: &Identified, robot: &Robot, chi: Vec<f64>) -> Known {
     for term in &identified.effects {
         let title = title(term);
         if let (Form::Body(_), Some(frame)) = (term.effect.form(), term.place.link()) {
-            match carried(robot, frame, &term.amplitude) {
+            match robot.base_of_body(frame, &term.amplitude) {
                 Some(chi) => known.bodies.push(Carried { title, chi }),
                 None => {
                     known.left_out.push(format!("{title}: the table says that parameters of it are 0"));
@@ -67,19 +67,6 @@ fn known(identified: &Identified, robot: &Robot, chi: Vec<f64>) -> Known {
         known.left_out.push(format!("the torque channel is {delay:.3} ms later than the positions"));
     }
     known
-}
-
-/// What the ten parameters of a body on a frame add to base parameters. `None` where these cannot hold one, because it is known
-/// to be 0.
-fn carried(robot: &Robot, frame: usize, body: &[f64]) -> Option<Vec<f64>> {
-    let mut standard = vec![0.0; robot.standard.len()];
-    let of_frame = robot.standard.iter().zip(&mut standard).filter(|(p, _)| p.frame == frame);
-    for (parameter, value) in of_frame {
-        let place = ParameterKind::INERTIAL.iter().position(|kind| *kind == parameter.kind);
-        *value = place.and_then(|k| body.get(k)).copied().unwrap_or(0.0);
-    }
-    let is_lost = |&k: &usize| standard.get(k).is_some_and(|value| *value != 0.0);
-    (!robot.known.iter().any(is_lost)).then(|| robot.base_from_standard(&standard))
 }
 
 /// `Stribeck friction on joint 2`.

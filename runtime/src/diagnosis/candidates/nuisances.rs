@@ -41,6 +41,29 @@ fn standing_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
     reference.standing().flat_map(|term| term_columns(context, design, term)).collect()
 }
 
+/// Torque that the laws of a reference have beyond the one that was taken out of the recorded torques, on all rows: joints that
+/// carry more than the reference knows of have more friction that follows the load. `None` where there is no such body.
+pub(in crate::diagnosis) fn more_of_standing_laws(
+    context: &Context<'_>,
+    design: &Design,
+) -> Option<Vec<f64>> {
+    let (reference, before) = (context.reference.as_ref()?, context.carried_before());
+    if context.carried() == before {
+        return None;
+    }
+    let without = context.carrying(before);
+    let mut more = vec![0.0; design.rows.len()];
+    for term in reference.standing() {
+        let both = term_columns(context, design, term).into_iter().zip(term_columns(&without, design, term));
+        for ((now, before), a) in both.zip(&term.amplitude) {
+            more.iter_mut()
+                .zip(now.iter().zip(before))
+                .for_each(|(m, (now, before))| *m += a * (now - before));
+        }
+    }
+    Some(more)
+}
+
 /// Per joint, on all rows: the second derivative of the model's torque, which is what a difference between the filters
 /// of positions and torques leaves, and position noise times inertia; and friction that builds up over a short
 /// displacement after a reversal.

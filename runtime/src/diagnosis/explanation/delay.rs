@@ -87,7 +87,7 @@ pub(in crate::diagnosis) fn unaware(
     model: &ExtendedModel<'_>,
     skew: f64,
 ) -> Result<HeldOutSquares, DiagnosisError> {
-    let mut standard = model.copy()?;
+    let mut standard = model.clone();
     standard.terms.clear();
     standard.refit()?;
     let fast = &standard.fast;

@@ -71,17 +71,20 @@ impl Regression {
         })
     }
 
-    /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again.
+    /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again; `known` is a torque on
+    /// all rows that is known beside them.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
     pub fn set_terms(
         &mut self,
         count: usize,
+        known: Option<&[f64]>,
         columns: impl Fn(&Design, usize) -> TermColumns,
     ) -> Result<(), SingularDesign> {
         self.design.columns.truncate(self.fixed_columns);
         self.design.y.clone_from(&self.measured);
+        self.design.y.iter_mut().zip(known.unwrap_or_default()).for_each(|(y, known)| *y -= known);
         self.design.shrunk.clear();
         self.term_columns.clear();
         for k in 0..count {

@@ -10,20 +10,52 @@ use crate::effects::{
     At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
     Transmission, body_columns, derivable, derivative,
 };
-use crate::model::{Link, Model, RecursiveModel};
+use crate::model::{Link, Model, RecursiveModel, Robot};
 use std::sync::{Arc, OnceLock};
 
 /// One column in one motion at the full rate: the joints that it acts on, with their torques.
 pub(in crate::diagnosis) type Series = Vec<(usize, Vec<f64>)>;
 
+/// A body that was found on the robot. It is not among the parameters `chi`, but the joints carry it: laws that follow the
+/// load feel it.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::diagnosis) struct Carried {
+    /// What it adds to each base parameter.
+    pub chi: Vec<f64>,
+    /// Whether the robot carried it in the baseline too.
+    pub in_baseline: bool,
+}
+
+impl Carried {
+    /// The bodies among terms, by their amplitudes; a body on a link of which the table says that it is none adds nothing.
+    pub fn among<'t>(robot: &Robot, terms: impl IntoIterator<Item = &'t EffectTerm>) -> Vec<Self> {
+        let of = |term: &EffectTerm| Self::of(robot, (term.effect, term.place), &term.amplitude, true);
+        terms.into_iter().filter_map(of).collect()
+    }
+
+    /// The body that a law at a place is; `None` for a law that is none.
+    pub fn of(
+        robot: &Robot,
+        (effect, place): (EffectKind, Place),
+        amplitude: &[f64],
+        in_baseline: bool,
+    ) -> Option<Self> {
+        let Form::Body(_) = effect.form() else { return None };
+        Some(Self { chi: robot.base_of_body(place.link()?, amplitude)?, in_baseline })
+    }
+}
+
+#[derive(Clone)]
 pub(in crate::diagnosis) struct Context<'a> {
     pub model: &'a dyn Model,
-    engine: RecursiveModel,
+    engine: Arc<RecursiveModel>,
     tables: Vec<Link<f64>>,
     pub signals: &'a [Signals],
     pub torques: Vec<ModelTorques>,
     pub scales: Vec<Scale>,
+    /// Base parameters, without the bodies that were found.
     pub chi: Vec<f64>,
+    carried: Vec<Carried>,
     links: Vec<OnceLock<Links>>,
     /// Torques of gravity, `[j][t]` of each motion.
     gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
@@ -45,12 +77,13 @@ impl<'a> Context<'a> {
         let torques = signals.iter().map(|s| ModelTorques::new(model, &chi, s)).collect();
         Ok(Self {
             model,
-            engine: derivable(robot)?,
+            engine: Arc::new(derivable(robot)?),
             tables: Link::of(robot),
             signals,
             torques,
             scales,
             chi,
+            carried: Vec::new(),
             links: signals.iter().map(|_| OnceLock::new()).collect(),
             gravity: signals.iter().map(|_| OnceLock::new()).collect(),
             inertias: (0..robot.joints()).map(|_| OnceLock::new()).collect(),
@@ -59,18 +92,54 @@ impl<'a> Context<'a> {
         })
     }
 
-    /// The same beside a model of the robot before it changed.
+    /// The same beside a model of the robot before it changed, and with the bodies that it has.
     pub fn beside(self, reference: Option<Arc<Reference>>) -> Self {
-        Self { reference, ..self }
+        let mut context = Self { reference, ..self };
+        let carried = context.carried_before();
+        if !carried.is_empty() {
+            context.update(context.chi.clone(), carried);
+        }
+        context
     }
 
-    /// Takes other standard parameters: loads and model torques follow.
-    pub fn update(&mut self, chi: Vec<f64>) {
-        self.torques = self.signals.iter().map(|s| ModelTorques::new(self.model, &chi, s)).collect();
+    /// Takes other base parameters and bodies: loads and model torques follow.
+    pub fn update(&mut self, chi: Vec<f64>, carried: Vec<Carried>) {
+        (self.chi, self.carried) = (chi, carried);
+        let of_motion = |k: usize| ModelTorques::new(self.model, &self.chi_in(k), &self.signals[k]);
+        self.torques = (0..self.signals.len()).map(of_motion).collect();
         self.links = self.signals.iter().map(|_| OnceLock::new()).collect();
         self.gravity = self.signals.iter().map(|_| OnceLock::new()).collect();
         self.inertias.iter_mut().for_each(|i| *i = OnceLock::new());
-        self.chi = chi;
+    }
+
+    /// A copy that carries these bodies.
+    pub fn carrying(&self, carried: Vec<Carried>) -> Self {
+        let mut copy = self.clone();
+        if copy.carried != carried {
+            copy.update(self.chi.clone(), carried);
+        }
+        copy
+    }
+
+    /// Bodies that the reference has.
+    pub fn carried_before(&self) -> Vec<Carried> {
+        let effects = self.reference.iter().flat_map(|reference| reference.effects());
+        Carried::among(self.model.robot(), effects)
+    }
+
+    /// Bodies that were found.
+    pub fn carried(&self) -> &[Carried] {
+        &self.carried
+    }
+
+    /// Base parameters of the robot in a motion with what it carries there.
+    fn chi_in(&self, signal: usize) -> Vec<f64> {
+        let mut chi = self.chi.clone();
+        let is_there = |body: &&Carried| body.in_baseline || self.signals[signal].is_target;
+        for body in self.carried.iter().filter(is_there) {
+            chi.iter_mut().zip(&body.chi).for_each(|(x, more)| *x += more);
+        }
+        chi
     }
 
     pub fn tables(&self) -> &[Link<f64>] {
@@ -124,8 +193,10 @@ impl<'a> Context<'a> {
 
     /// What gravity asks for in a motion, `[j][t]`.
     fn gravity(&self, signal: usize) -> &[Vec<f64>] {
-        self.gravity[signal]
-            .get_or_init(|| ModelTorques::new(self.model, &self.chi, &self.signals[signal].at_rest()).link)
+        self.gravity[signal].get_or_init(|| {
+            let at_rest = self.signals[signal].at_rest();
+            ModelTorques::new(self.model, &self.chi_in(signal), &at_rest).link
+        })
     }
 
     /// The law of joint `j` as a torque on joint `on`.
@@ -170,14 +241,14 @@ impl<'a> Context<'a> {
         let robot = self.model.robot();
         let variants = law.variants(robot);
         let wanted = if law.together() { &variants[..] } else { variants.get(v..=v).unwrap_or_default() };
-        let s = &self.signals[signal];
+        let (s, chi) = (&self.signals[signal], self.chi_in(signal));
         let mut columns: Vec<Series> = (0..wanted.len())
             .map(|which| {
                 let mut out = vec![Vec::new(); s.q.len()];
                 derivative(
                     &self.engine,
                     robot.gravity,
-                    &self.chi,
+                    &chi,
                     &Direction { effect: law, variants: wanted, which, at },
                     [&s.q, &s.dq, &s.ddq, &s.jerk],
                     &mut out,
@@ -249,13 +320,13 @@ impl<'a> Context<'a> {
     fn compliant(&self, signal: usize, j: usize, shape: &[f64]) -> Series {
         let t = self.transmission(j, shape);
         let motion = (&self.signals[signal], &self.torques[signal]);
-        self.links(signal).compliant((self.model, &self.chi), motion, j, &t)
+        self.links(signal).compliant((self.model, &self.chi_in(signal)), motion, j, &t)
     }
 
     /// How a joint with a transmission of this shape rings in a motion, from a stretch and from a rate at its start.
     pub fn ringing(&self, signal: usize, j: usize, shape: &[f64]) -> Vec<Series> {
         let t = self.transmission(j, shape);
-        self.links(signal).ringing((self.model, &self.chi), &self.signals[signal], j, &t)
+        self.links(signal).ringing((self.model, &self.chi_in(signal)), &self.signals[signal], j, &t)
     }
 
     /// The torques on all joints that an acceleration of joint j asks for in a motion.
@@ -264,6 +335,6 @@ impl<'a> Context<'a> {
     }
 
     fn links(&self, signal: usize) -> &Links {
-        self.links[signal].get_or_init(|| Links::new(self.model, &self.chi, &self.signals[signal]))
+        self.links[signal].get_or_init(|| Links::new(self.model, &self.chi_in(signal), &self.signals[signal]))
     }
 }

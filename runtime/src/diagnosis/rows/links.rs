@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 type Parametrised<'a> = (&'a dyn Model, &'a [f64]);
 
 /// The rigid robot in one motion.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct Links {
     joints: usize,
     /// Rigid torque, `[j][t]`.

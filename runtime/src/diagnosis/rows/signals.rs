@@ -258,6 +258,7 @@ fn shifted(x: &[f64], samples: f64) -> Vec<f64> {
 }
 
 /// Torques of the standard model for given parameters, split by what makes them. `[j][t]`.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct ModelTorques {
     /// Inertia, centrifugal, Coriolis, gravity, rotors.
     pub rigid: Vec<Vec<f64>>,

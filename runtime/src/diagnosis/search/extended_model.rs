@@ -1,20 +1,23 @@
 //! The standard model with accepted effects, fitted on the rows of both smoothing windows.
 
 use crate::diagnosis::candidates::companions::companions;
-use crate::diagnosis::candidates::nuisances::{NUISANCES, SKEW_COLUMNS, always_there, standing_from};
+use crate::diagnosis::candidates::nuisances::{
+    NUISANCES, SKEW_COLUMNS, always_there, more_of_standing_laws, standing_from,
+};
 use crate::diagnosis::candidates::trial::dense_columns;
-use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Regression, TermColumns};
-use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::context::{Carried, Context};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The standard model, the effects that were accepted, and both regressions with them.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct ExtendedModel<'a> {
     pub context: Context<'a>,
     pub slow: Regression,
@@ -76,7 +79,7 @@ impl<'a> ExtendedModel<'a> {
         for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
             put_terms(&mut self.slow, &self.context, &self.terms, self.change)?;
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
-            self.context.update(chi);
+            self.context.update(chi, self.carried());
             // An error that is not small bends its own column: derivatives are taken along the way to it.
             for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
                 if term.effect.form().shape_is_amplitude() {
@@ -91,12 +94,24 @@ impl<'a> ExtendedModel<'a> {
         put_terms(&mut self.fast, &self.context, &self.terms, self.change)
     }
 
+    /// Bodies that the robot carries: those of a reference, and those among the terms, with what the slow rows say of them. A
+    /// body that is a change was not there in the baseline.
+    fn carried(&self) -> Vec<Carried> {
+        let robot = self.context.model.robot();
+        let of = |(term, columns): (&Accepted, &Range<usize>)| {
+            let amplitude: Vec<f64> = columns.clone().map(|c| self.slow.fit.chi[c]).collect();
+            Carried::of(robot, (term.effect, term.place), &amplitude, !self.change)
+        };
+        let found = self.terms.iter().zip(&self.slow.term_columns).filter_map(of);
+        self.context.carried_before().into_iter().chain(found).collect()
+    }
+
     /// A copy without one of the terms, everything else refitted.
     ///
     /// # Errors
-    /// [`SingularDesign`] where there is no fit without it, or the model could not be built once more.
-    pub fn without(&self, term: usize) -> Result<Self, DiagnosisError> {
-        let mut copy = self.copy()?;
+    /// [`SingularDesign`] where there is no fit without it.
+    pub fn without(&self, term: usize) -> Result<Self, SingularDesign> {
+        let mut copy = self.clone();
         copy.terms.remove(term);
         copy.refit()?;
         Ok(copy)
@@ -107,8 +122,8 @@ impl<'a> ExtendedModel<'a> {
     ///
     /// # Errors
     /// As [`Self::without`].
-    pub fn without_nuisances(&self) -> Result<Self, DiagnosisError> {
-        let mut copy = self.copy()?;
+    pub fn without_nuisances(&self) -> Result<Self, SingularDesign> {
+        let mut copy = self.clone();
         for regression in [&mut copy.slow, &mut copy.fast] {
             let first = regression.design.parameters + SKEW_COLUMNS;
             let joints = regression.design.joints;
@@ -116,28 +131,6 @@ impl<'a> ExtendedModel<'a> {
         }
         copy.refit()?;
         Ok(copy)
-    }
-
-    /// A copy.
-    ///
-    /// # Errors
-    /// Where the model could not be built once more.
-    pub fn copy(&self) -> Result<Self, DiagnosisError> {
-        let context = &self.context;
-        Ok(Self {
-            context: Context::new(
-                context.model,
-                context.signals,
-                context.scales.clone(),
-                context.chi.clone(),
-            )?
-            .beside(context.reference.clone()),
-            slow: self.slow.clone(),
-            fast: self.fast.clone(),
-            benches: self.benches.clone(),
-            terms: self.terms.clone(),
-            change: self.change,
-        })
     }
 
     /// The columns of a law on all rows of a design of the same motions, one per amplitude.
@@ -159,6 +152,9 @@ impl<'a> ExtendedModel<'a> {
         for (k, column) in always.iter().enumerate() {
             subtract(column, chi[design.parameters + k]);
         }
+        if let Some(more) = more_of_standing_laws(&self.context, design) {
+            subtract(&more, 1.0);
+        }
         for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
             for (k, column) in self.columns_of(design, term).iter().enumerate() {
                 subtract(column, term.fixed.unwrap_or_else(|| chi[range.start + k]));
@@ -175,7 +171,8 @@ fn put_terms(
     terms: &[Accepted],
     change: bool,
 ) -> Result<(), SingularDesign> {
-    regression.set_terms(terms.len(), |design, k| {
+    let more = more_of_standing_laws(context, &regression.design);
+    regression.set_terms(terms.len(), more.as_deref(), |design, k| {
         let term = &terms[k];
         let columns = dense_columns(context, design, term.effect, term.place, &term.shape, change);
         TermColumns { columns, fixed: term.fixed, is_curve: term.effect.form().is_curve() }

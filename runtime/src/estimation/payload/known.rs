@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::{ParameterKind, Robot};
+use crate::model::Robot;
 
 /// What a person knows of a payload: SI units, in the last frame of the table.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -91,13 +91,12 @@ impl KnownPayload {
 /// Such a body changes the standard parameters of that frame and nothing else, so that its columns of the regressor are
 /// those of the base parameters times this matrix.
 pub(in crate::estimation) fn base_of_body(robot: &Robot) -> DMatrix<f64> {
-    let frame = robot.flange();
     let mut added = DMatrix::zeros(robot.base.len(), 10);
-    for (k, kind) in ParameterKind::INERTIAL.iter().enumerate() {
-        let place = robot.standard.iter().position(|s| Some(s.frame) == frame && s.kind == *kind);
-        let Some(place) = place else { continue };
-        let mut standard = vec![0.0; robot.standard.len()];
-        standard[place] = 1.0;
+    let Some(frame) = robot.flange() else { return added };
+    for k in 0..10 {
+        let mut unit = [0.0; 10];
+        unit[k] = 1.0;
+        let standard = robot.standard_of_body(frame, &unit);
         added.set_column(k, &DVector::from_vec(robot.base_from_standard(&standard)));
     }
     added
