@@ -15,6 +15,7 @@ pub mod meshes;
 pub mod models;
 pub mod motions;
 pub mod near_bodies;
+pub mod origin;
 pub mod output;
 pub mod pages;
 pub mod paper_tables;

@@ -76,6 +76,13 @@ impl Provenance {
         Ok(())
     }
 
+    /// SHA-256 of what was read: of the digests of the files, one after the other.
+    pub fn sha256(&self) -> String {
+        let mut hash = Sha256::new();
+        self.files.iter().for_each(|file| hash.update(&file.sha256));
+        hexadecimal(&hash.finalize())
+    }
+
     /// The command line, with quotation marks where a shell needs them; `None` where there was none.
     pub fn command(&self) -> Option<String> {
         let plain = |c: char| c.is_alphanumeric() || "_-./:=,@%+".contains(c);
@@ -100,7 +107,11 @@ fn digest(path: &Path) -> io::Result<(u64, String)> {
         hash.update(&block[..count]);
         size += count as u64;
     }
-    Ok((size, hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()))
+    Ok((size, hexadecimal(&hash.finalize())))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// An instant, s since 1970, as ISO 8601 in UTC; days by Hinnant's `civil_from_days`.

@@ -361,7 +361,34 @@ fn a_saved_model_is_a_reference_and_one_of_another_table_is_refused() {
     let against = folder.run(&["diagnose", "recording.yaml", "--reference", "m.json", "--json", "d.json"]);
     let said = words_of(&against) + &error_of(&against);
     assert!(said.contains("Compared with a model"), "{said}");
+    assert!(said.contains("is the one that is diagnosed"), "{said}");
     folder.write("arm.yaml", &ARM.replace("l1: 0.5", "l1: 0.7"));
     let other = folder.run(&["diagnose", "recording.yaml", "--reference", "m.json"]);
     assert_refused(&other, 2, &["m.json", "0.5", "0.7"]);
+}
+
+#[test]
+fn a_reference_is_taken_with_its_motions_where_they_are_as_they_were() {
+    let folder = Folder::new("origin");
+    folder.write("before/motion.csv", &moving(1500)).write("before/recording.yaml", MANIFEST);
+    folder.write("now/motion.csv", &moving(1400)).write("now/recording.yaml", MANIFEST);
+    let saved = folder.run(&["diagnose", "before/recording.yaml", "--out", "models/m.json"]);
+    assert_eq!(saved.status.code(), Some(0), "{}", error_of(&saved));
+    let model: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path("models/m.json")).unwrap()).unwrap();
+    assert_eq!(model["recording"]["path"], "../before/recording.yaml");
+    let against = || {
+        let said = folder.run(&["diagnose", "now/recording.yaml", "--reference", "models/m.json"]);
+        assert_eq!(said.status.code(), Some(0), "{}", error_of(&said));
+        words_of(&said)
+    };
+    let said = against();
+    assert!(said.contains("Compared with a model and the motions that it is from"), "{said}");
+    // A data file that is another is not what the model is from.
+    folder.write("before/motion.csv", &moving(1501));
+    let said = against();
+    assert!(said.contains("recording.yaml, has changed since"), "{said}");
+    std::fs::remove_file(folder.path("before/recording.yaml")).unwrap();
+    let said = against();
+    assert!(said.contains("recording.yaml, is not there"), "{said}");
 }

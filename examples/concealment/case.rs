@@ -1,5 +1,6 @@
 //! What is simulated and diagnosed.
 
+use clap::ValueEnum;
 use dynid_runtime::effects::EffectKind;
 
 use crate::options::Pushed;
@@ -24,12 +25,21 @@ pub struct Case {
     pub seconds: Option<f64>,
     /// Whether there is a baseline where no effect asks for one.
     pub baseline: bool,
-    /// Whether a model from before is the reference, of a robot that has laws then already.
-    pub reference: bool,
+    /// What is known of the robot from before, where a model is the reference: it has laws then already.
+    pub reference: Option<Before>,
     /// How it is recorded.
     pub recorder: Recorder,
     /// What a contact pushes, and how long, s.
     pub push: (Pushed, [f64; 2]),
+}
+
+/// What is there beside a recording of the same robot from before it changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Before {
+    /// The model alone
+    Model,
+    /// The model and the motions that it is from
+    Motions,
 }
 
 impl Case {
@@ -49,7 +59,8 @@ impl Case {
         };
         let baseline = match (self.baseline, self.reference) {
             (true, _) => "_baseline",
-            (_, true) => "_reference",
+            (_, Some(Before::Model)) => "_reference",
+            (_, Some(Before::Motions)) => "_reference_motions",
             _ => "",
         };
         format!(

@@ -104,7 +104,7 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
         secrets.push((secret, size));
     }
     let mut standing: Vec<(Secret, f64)> = Vec::new();
-    for effect in STANDING.into_iter().filter(|_| case.reference) {
+    for effect in STANDING.into_iter().filter(|_| case.reference.is_some()) {
         let taken: Vec<usize> = secrets.iter().chain(&standing).filter_map(|(s, _)| s.joint).collect();
         if let Some(secret) = Secret::draw(effect, model, &taken, &mut random) {
             let (size, _) = sized(model, &secret, VISIBLE[VISIBLE.len() - 1], &motions[..1], noise)?;
@@ -125,7 +125,7 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
     for (secret, size) in standing.iter().chain(&secrets) {
         hide(&mut world, model, secret, *size)?;
     }
-    let change = case.baseline || case.reference || case.effects.iter().any(|&e| is_change(e));
+    let change = case.baseline || case.reference.is_some() || case.effects.iter().any(|&e| is_change(e));
     let baseline = if change {
         recorded(&before, &planned(model, count, length, &mut random)?, &standing, noise.wrapping_add(100))?
     } else {

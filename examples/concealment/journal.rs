@@ -69,7 +69,7 @@ mod tests {
             seed,
             seconds: Some(5.0),
             baseline: false,
-            reference: false,
+            reference: None,
             recorder: Recorder::White,
         };
         let hidden = Hidden {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 
+use crate::case::Before;
 use crate::recorder::Recorder;
 
 /// What a contact pushes.
@@ -44,9 +45,15 @@ pub struct Options {
     #[arg(long)]
     pub baseline: bool,
     /// Let every robot have load friction and a spring before anything was hidden in it, too; diagnose it then, and judge
-    /// the recording against the model that this gives
-    #[arg(long, conflicts_with_all = ["baseline", "dump", "visible"])]
-    pub reference: bool,
+    /// the recording against the model that this gives, or against it and its motions
+    #[arg(
+        long,
+        value_enum,
+        num_args = 0..=1,
+        default_missing_value = "model",
+        conflicts_with_all = ["baseline", "dump", "visible"],
+    )]
+    pub reference: Option<Before>,
     /// One motion of this duration, s, instead of one to three of 16 to 24 s together
     #[arg(long)]
     pub seconds: Option<f64>,

@@ -8,7 +8,7 @@ use dynid_runtime::diagnosis::{Diagnosis, Finding, Reference, Settings, Silent, 
 use dynid_runtime::effects::EffectKind;
 use serde::{Deserialize, Serialize};
 
-use crate::case::Case;
+use crate::case::{Before, Case};
 use crate::failure::Failure;
 use crate::hide::{Hidden, recordings};
 use crate::pushes::{Told, told};
@@ -71,13 +71,12 @@ pub fn score(case: &Case) -> Result<Score, Failure> {
     let mut settings = Settings::default();
     settings.threads = 1;
     let start = Instant::now();
-    let baseline = if case.reference {
+    if case.reference.is_some() {
         let before = diagnose(model, &recordings.baseline, &[], &settings, &Silent)?;
         settings.reference = Reference::of(&before).map(Arc::new);
-        &[]
-    } else {
-        recordings.baseline.as_slice()
-    };
+    }
+    let alone = case.reference == Some(Before::Model);
+    let baseline = if alone { &[] } else { recordings.baseline.as_slice() };
     let found = diagnose(model, &recordings.motions, baseline, &settings, &Silent);
     let mut score = Score { seconds: start.elapsed().as_secs_f64(), ..Score::default() };
     match found {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::case::USUAL_PUSH;
+use crate::case::{Before, USUAL_PUSH};
 use crate::hide::Hidden;
 use crate::options::{Options, Pushed};
 use crate::recorder::Recorder;
@@ -126,8 +126,10 @@ pub fn command(options: &Options) -> String {
     if options.baseline {
         command.push_str(" --baseline");
     }
-    if options.reference {
-        command.push_str(" --reference");
+    match options.reference {
+        Some(Before::Model) => command.push_str(" --reference"),
+        Some(Before::Motions) => command.push_str(" --reference motions"),
+        None => {}
     }
     if options.push == Pushed::Joint {
         command.push_str(" --push joint");

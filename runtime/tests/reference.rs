@@ -184,3 +184,27 @@ fn a_file_with_standard_deviations_alone_still_is_a_reference_and_that_is_said()
     saved.between_motions = found.between_motions.clone();
     assert_eq!(saved.reference(robot).unwrap(), reference());
 }
+
+#[test]
+fn beside_its_motions_a_change_is_judged_by_how_much_they_differ() {
+    let robot = &BEFORE.0;
+    // Six motions in which the gain of a drive differs by a few percent, as it does from day to day.
+    let motions = robot.motions(6, 12.0, 11);
+    let gains = [0.03, -0.02, 0.0, -0.04, 0.04, -0.01];
+    let recorded = |(k, gain): (usize, &f64)| {
+        let mut one = robot.record(&motions[k..=k], &with_laws(MU, |_| ()), 20 + k as u64);
+        one.iter_mut().for_each(|t| t.torque[0].iter_mut().for_each(|x| *x *= 1.0 + gain));
+        one
+    };
+    let before: Vec<Trajectory> = gains.iter().enumerate().flat_map(recorded).collect();
+    let found = diagnose(&robot.model, &before, &[], &settings(None), &Silent).unwrap();
+    let mut now = robot.record(&robot.motions(1, 20.0, 31), &with_laws(MU, |_| ()), 31);
+    now.iter_mut().for_each(|t| t.torque[0].iter_mut().for_each(|x| *x *= 1.04));
+    let against = |reference: Reference, baseline: &[Trajectory]| {
+        diagnose(&robot.model, &now, baseline, &settings(Some(reference)), &Silent).unwrap()
+    };
+    let knowing = Reference::of(&found).unwrap();
+    let unaware = against(knowing.clone().differing_by(Vec::new()), &[]);
+    assert_ne!(named(&unaware), [], "who does not know how much it differs believes it");
+    assert_eq!(named(&against(knowing, &before)), []);
+}

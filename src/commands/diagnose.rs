@@ -24,6 +24,7 @@ use crate::compared::residual_file;
 use crate::errors::prediction_failure;
 use crate::estimated::named;
 use crate::failure::Failure;
+use crate::origin::{Origin, recorded_from};
 use crate::output::{Bar, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
@@ -80,16 +81,23 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
     let source = &arguments.recording;
     let measured = measure(source)?;
     let model = measured.dynamics.model();
-    let baseline = match (&arguments.baseline, &arguments.reference) {
-        (Some(path), _) => of_the_same_robot(measure(&source.other(path))?, &measured, path)?.trajectories,
-        (None, _) => Vec::new(),
+    let mut baseline = match &arguments.baseline {
+        Some(path) => of_the_same_robot(measure(&source.other(path))?, &measured, path)?.trajectories,
+        None => Vec::new(),
     };
     if !arguments.implausible {
         mistakes::check(&source.recording, &measured, &arguments.sampling)?;
     }
     let mut settings = settings(&arguments.sampling, model.robot().joints());
+    let mut lost = None;
     if let Some(path) = &arguments.reference {
-        settings.reference = Some(Arc::new(reference::read(path, model.robot())?));
+        let before = reference::read(path, (source, &measured))?;
+        settings.reference = Some(Arc::new(before.reference));
+        match before.origin {
+            Origin::Unknown => {}
+            Origin::Found(motions) => baseline = motions.trajectories,
+            Origin::Lost(why) => lost = Some(why),
+        }
     }
     if let Some(path) = &arguments.laws {
         settings.laws =
@@ -117,6 +125,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
     let mut diagnosis =
         outcome.map_err(|error| and_of_speeds(failure(error), &speed_words(&speeds, robot)))?;
     tell_speeds(&mut diagnosis, speeds, robot);
+    diagnosis.verdict.extend(lost.map(|why| reference::without_motions(&why)));
     let tested = match (&test, &arguments.test) {
         (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
         _ => None,
@@ -139,7 +148,8 @@ fn hand_out(
         write_json(path, &for_programs(diagnosis, extras)?)?;
     }
     if let Some(path) = &arguments.out {
-        write_json(path, &improved(measured, diagnosis, extras))?;
+        let recording = Some(recorded_from(&arguments.recording, path)?);
+        write_json(path, &Identified { recording, ..improved(measured, diagnosis, extras) })?;
     }
     if let Some(path) = &arguments.residuals {
         let Some(compared) = extras.compared() else {

@@ -22,6 +22,7 @@ use crate::arguments::{Sampling, Source};
 use crate::compared::residual_file;
 use crate::estimated::{cells, value};
 use crate::failure::Failure;
+use crate::origin::recorded_from;
 use crate::output::{print, table, write_json};
 use crate::ranges;
 use crate::recorded::{self, Recorded, left_out_words};
@@ -115,7 +116,8 @@ pub(super) fn run(arguments: &Arguments, line: &[String]) -> Result<(), Failure>
         write_json(path, &Identified { covariance: None, ..identified.clone() })?;
     }
     if let Some(path) = &arguments.out {
-        write_json(path, &identified)?;
+        let recording = Some(recorded_from(&arguments.recording, path)?);
+        write_json(path, &Identified { recording, ..identified.clone() })?;
     }
     if arguments.report.is_some() || arguments.residuals.is_some() {
         rows::write(arguments, line, &recorded, whole, &identified)?;

@@ -68,8 +68,9 @@ impl Motions {
                 motion.take_out(known);
             }
         }
-        let prior =
-            settings.reference.as_ref().and_then(|r| r.prior_of_parameters(&model.robot().fixed_base()));
+        // The rows of a baseline say what a reference was identified from.
+        let reference = settings.reference.as_ref().filter(|_| baseline.is_empty());
+        let prior = reference.and_then(|r| r.prior_of_parameters(&model.robot().fixed_base()));
         let (slowest, slowest_fast) = match given {
             Some(speeds) => (speeds.clone(), speeds),
             None => {

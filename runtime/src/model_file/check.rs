@@ -65,6 +65,18 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
         let what = "statistics must not be negative, freedom and stretch must be positive".to_owned();
         return wrong(&format!("between_motions[{j}]"), what);
     }
+    if let Some(recording) = &identified.recording {
+        let is_digest =
+            recording.sha256.len() == 64 && recording.sha256.bytes().all(|byte| byte.is_ascii_hexdigit());
+        if !is_digest {
+            return wrong("recording.sha256", "it must have 64 hexadecimal digits".to_owned());
+        }
+        if let (Some(from), Some(to)) = (recording.from, recording.to)
+            && from >= to
+        {
+            return wrong("recording.from", format!("{from} s is not before `to`, {to} s"));
+        }
+    }
     let Some(robot) = &identified.table else {
         if identified.schema_version > 0 {
             return wrong("table", "it is not there: the model does not say of which robot it is".to_owned());

@@ -82,12 +82,31 @@ pub struct Identified {
     /// How much each joint's torques differ between the motions that it is from, in the order of the joints.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub between_motions: Vec<Option<BetweenMotions>>,
+    /// The recording that it is from, where it was written down.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recording: Option<RecordedFrom>,
     /// [`fingerprint`] of the table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fingerprint: Option<String>,
     /// The robot as it was when the parameters were identified.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<Robot>,
+}
+
+/// The recording that a model is from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RecordedFrom {
+    /// Of its manifest, from the folder of the model, with `/`.
+    pub path: String,
+    /// SHA-256, hexadecimal, of the hexadecimal digests of its manifest, its robot where that is a file, and its data, one after
+    /// the other.
+    pub sha256: String,
+    /// What comes before this time was not used, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<f64>,
+    /// What comes after this time was not used, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<f64>,
 }
 
 /// A parameter with its uncertainty and unit.
@@ -217,6 +236,7 @@ impl Identified {
             covariance: None,
             between_motions: Vec::new(),
             standstill: None,
+            recording: None,
             fingerprint: Some(fingerprint(robot)),
             table: Some(robot.clone()),
         }

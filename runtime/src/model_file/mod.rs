@@ -34,7 +34,9 @@ pub use check::{check, read};
 pub use covariance::Covariance;
 pub use error::FileError;
 pub use fingerprint::{difference, fingerprint};
-pub use identified::{EssentialParameters, Identified, NamedParameter, SCHEMA, SimulatedStates, doubt};
+pub use identified::{
+    EssentialParameters, Identified, NamedParameter, RecordedFrom, SCHEMA, SimulatedStates, doubt,
+};
 pub use robot_yaml::to_yaml;
 pub use rows::{EquationRows, EvaluatedRows};
 

@@ -6,17 +6,32 @@ use dynid_runtime::diagnosis::Reference;
 use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::{Identified, difference};
 
+use crate::arguments::Source;
 use crate::failure::Failure;
+use crate::origin::{Origin, find};
+use crate::recorded::Measured;
 use crate::saved::{own_dynamics, read_model};
+
+/// A saved model, and the motions that it is from where they are still there.
+pub(super) struct Before {
+    pub reference: Reference,
+    pub origin: Origin,
+}
 
 /// What a saved model says of the robot that is diagnosed.
 ///
 /// # Errors
 /// [`Failure::Input`] where the file is no model, or one of another robot.
-pub(super) fn read(path: &Path, robot: &Robot) -> Result<Reference, Failure> {
+pub(super) fn read(path: &Path, diagnosed: (&Source, &Measured)) -> Result<Before, Failure> {
     let saved = read_model(path)?;
     let own = own_dynamics(&saved, path)?;
-    of(&saved, own.model().robot(), path, robot)
+    let reference = of(&saved, own.model().robot(), path, diagnosed.1.dynamics.model().robot())?;
+    Ok(Before { reference, origin: find(&saved, path, diagnosed) })
+}
+
+/// The sentence that tells of motions that could not be used.
+pub fn without_motions(why: &str) -> String {
+    format!("Of the model's motions only what its file holds was used: {why}.")
 }
 
 /// What a model of a robot (`its`) says of the robot that is diagnosed; errors call it `path`.

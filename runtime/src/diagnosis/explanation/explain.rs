@@ -105,7 +105,7 @@ pub(in crate::diagnosis) fn explain(
     diagnosis.verdict = words::verdict(&diagnosis);
     diagnosis.verdict.extend(words::of_user(robot, &settings.laws, &search.untried, &diagnosis));
     if let Some(reference) = &model.context.reference {
-        diagnosis.verdict.push(words::of_reference(reference));
+        diagnosis.verdict.push(words::of_reference(reference, model.context.is_alone()));
     }
     Ok(diagnosis)
 }
@@ -273,9 +273,10 @@ fn how(model: &ExtendedModel<'_>) -> String {
     let design = &model.slow.design;
     let mut targets = design.segments.iter().filter(|s| s.is_target).map(|s| s.signal);
     let first = targets.next();
-    if model.context.reference.is_some() && targets.all(|s| Some(s) == first) {
+    let only_reference = model.context.reference.is_some() && model.context.is_alone();
+    if only_reference && targets.all(|s| Some(s) == first) {
         "every stretch of the motion predicted from the reference and its other stretches".into()
-    } else if model.context.reference.is_some() {
+    } else if only_reference {
         "every motion predicted from the reference and the other motions".into()
     } else if model.change && targets.all(|s| Some(s) == first) {
         "every stretch of the new motion predicted from the baseline and its other stretches".into()

@@ -175,8 +175,12 @@ pub(in crate::diagnosis) fn not_judged(joints: &[NotJudged]) -> Option<String> {
     }
 }
 
-/// What a comparison with a reference rests on.
-pub(in crate::diagnosis) fn of_reference(reference: &Reference) -> String {
+/// What a comparison with a reference rests on, `alone` or beside the motions that it is from.
+pub(in crate::diagnosis) fn of_reference(reference: &Reference, alone: bool) -> String {
+    if !alone {
+        return "Compared with a model and the motions that it is from: a change is judged against how much these differ."
+            .to_owned();
+    }
     let judged = "Compared with a model: a change is judged against how much this recording varies from stretch to stretch";
     let text = if reference.between_motions().is_empty() {
         format!("{judged}; how much the robot differs from day to day this model does not tell.")

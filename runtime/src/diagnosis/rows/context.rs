@@ -127,6 +127,11 @@ impl<'a> Context<'a> {
         Carried::among(self.model.robot(), effects)
     }
 
+    /// Whether there are no motions of a baseline.
+    pub fn is_alone(&self) -> bool {
+        self.signals.iter().all(|s| s.is_target)
+    }
+
     /// Bodies that were found.
     pub fn carried(&self) -> &[Carried] {
         &self.carried

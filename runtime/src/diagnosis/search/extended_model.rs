@@ -42,7 +42,8 @@ impl<'a> ExtendedModel<'a> {
     ) -> Result<Self, SingularDesign> {
         let regression = |mut design: Design| {
             let nuisances = always_there(&context, &design, change);
-            if let Some(reference) = &context.reference {
+            // Beside a baseline its rows say as much.
+            if let Some(reference) = context.reference.as_ref().filter(|_| context.is_alone()) {
                 let first = design.parameters + standing_from(design.joints);
                 design.prior = reference.prior_with_laws(first, &design.known).map(Arc::new);
             }

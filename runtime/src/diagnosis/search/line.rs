@@ -63,7 +63,7 @@ pub(in crate::diagnosis) fn all_lines(
         let resolution = resolution(&now);
         // Where a motor's angle begins differs from one start to the next, and so do the phases of its waves: what was
         // there before looks as new as what was not.
-        let alone = context.reference.is_none() && context.signals.iter().all(|s| s.is_target);
+        let alone = context.reference.is_none() && context.is_alone();
         let new = if alone { lines(&now, &known, &picked, slowest[j]) } else { Vec::new() };
         let torques = context.signals.iter().filter(|s| s.is_target).flat_map(|s| &s.torque[j]);
         let (squares, count) = torques.fold((0.0, 0), |(sum, n), y| (sum + y * y, n + 1));
