@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use dynid_runtime::estimation::PIECE;
 use dynid_runtime::model_file::{Identified, RecordedFrom};
+use dynid_runtime::recording::Trajectory;
 
 use crate::arguments::Source;
 use crate::commands::diagnose::of_the_same_robot;
@@ -32,7 +33,7 @@ pub enum Origin {
     /// The model does not say where it is from.
     Unknown,
     /// It is where it was, and as it was.
-    Found(Measured),
+    Found(Vec<Trajectory>),
     /// It cannot be taken for what it was, and why.
     Lost(String),
 }
@@ -58,7 +59,7 @@ pub fn find(saved: &Identified, model: &Path, (source, measured): (&Source, &Mea
     }
     let before = Source { from: from.from, to: from.to, ..source.other(&path) };
     match measure(&before).and_then(|motions| of_the_same_robot(motions, measured, &path)) {
-        Ok(motions) => Origin::Found(motions),
+        Ok(motions) => Origin::Found(motions.trajectories),
         Err(why) => lost(&format!("cannot be read: {why}")),
     }
 }

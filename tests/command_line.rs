@@ -370,6 +370,7 @@ fn a_saved_model_is_a_reference_and_one_of_another_table_is_refused() {
 #[test]
 fn a_reference_is_taken_with_its_motions_where_they_are_as_they_were() {
     let folder = Folder::new("origin");
+    folder.make("before").make("now").make("models");
     folder.write("before/motion.csv", &moving(1500)).write("before/recording.yaml", MANIFEST);
     folder.write("now/motion.csv", &moving(1400)).write("now/recording.yaml", MANIFEST);
     let saved = folder.run(&["diagnose", "before/recording.yaml", "--out", "models/m.json"]);

@@ -43,7 +43,8 @@ pub(super) struct Arguments {
     #[arg(long)]
     baseline: Option<PathBuf>,
     /// A model of the same robot before it changed, saved by `identify` or `diagnose`: its parameters and laws, as well as
-    /// it knows them, are no news
+    /// it knows them, are no news, nor is what differs anyway between the motions that it is from, where these are as they
+    /// were
     #[arg(long, conflicts_with = "baseline")]
     reference: Option<PathBuf>,
     /// Laws of your own that are tried beside those of the catalogue: a YAML list of {id, joint, law, unit, shapes}
@@ -95,7 +96,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
         settings.reference = Some(Arc::new(before.reference));
         match before.origin {
             Origin::Unknown => {}
-            Origin::Found(motions) => baseline = motions.trajectories,
+            Origin::Found(motions) => baseline = motions,
             Origin::Lost(why) => lost = Some(why),
         }
     }
