@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use dynid::arguments::DiagnosisOptions;
+use dynid::arguments::{DiagnosisOptions, Source};
 use dynid::commands::diagnose::compare::{Test, fitted, tested};
+use dynid::commands::diagnose::reference::without_motions;
 use dynid::commands::diagnose::{
     confirmation_failure, contradicting, diagnosis_failure, for_programs, improved, mistakes,
     of_the_same_robot, tell_speeds,
 };
 use dynid::failure::Failure;
+use dynid::origin::Origin;
 use dynid::output::write;
 use dynid::pages::Prior;
 use dynid::pages::diagnosis::{Extras, page, summary};
@@ -165,7 +167,8 @@ impl PyDiagnosis {
 ///
 /// ``recordings`` is a recording or a list of them; no parameter is fitted to ``test``, which tells how much of each
 /// finding is there; with ``baseline``, recordings from before something changed, only what changed is looked for; with
-/// ``reference``, a :class:`Fit` or the path of a saved model from before, its parameters and laws are no news. ``laws`` are
+/// ``reference``, a :class:`Fit` or the path of a saved model from before, its parameters and laws are no news, nor is what differs
+/// anyway between the motions of a file that it names, where these are as they were. ``laws`` are
 /// tried beside those of the catalogue: the path of a YAML, or a list of dictionaries with id, joint, law, and where needed
 /// unit and shapes. ``progress(share, what)`` is called about every 50 ms; ``True`` is a bar of tqdm, where that is installed.
 /// A recording that a wrong sign, order, unit or robot explains far better is refused, unless ``implausible``.
@@ -217,11 +220,18 @@ pub(crate) fn diagnose(
     if let Some(laws) = laws {
         settings.laws = known::laws(py, laws, robot)?;
     }
-    let before = reference.map(|given| known::before(given, robot)).transpose()?;
-    settings.reference = before.as_ref().map(|before| Arc::clone(&before.reference));
-    let prior = before.map(|before| before.prior);
-    let work = Work { path, measured: Arc::clone(&measured), test, settings, prior, implausible };
-    let before: Vec<Trajectory> = baseline.map_or_else(Vec::new, |(_, measured)| measured.trajectories);
+    let mut before: Vec<Trajectory> = baseline.map_or_else(Vec::new, |(_, measured)| measured.trajectories);
+    let (mut prior, mut lost) = (None, None);
+    if let Some(given) = reference {
+        let known = known::before(given, (&Source::whole(path.clone()), &measured))?;
+        (settings.reference, prior) = (Some(known.reference), Some(known.prior));
+        match known.origin {
+            Origin::Unknown => {}
+            Origin::Found(motions) => before = motions,
+            Origin::Lost(why) => lost = Some(why),
+        }
+    }
+    let work = Work { path, measured: Arc::clone(&measured), test, settings, prior, lost, implausible };
     let found = interruptible::run(py, ("diagnosis", progress), move |watch| work.diagnose(&before, watch))?;
     Ok(PyDiagnosis { measured, found: found.map_err(of_failure)? })
 }
@@ -233,13 +243,15 @@ struct Work {
     test: Option<(PathBuf, Measured)>,
     settings: Settings,
     prior: Option<Prior>,
+    /// Why the motions of a reference are not used.
+    lost: Option<String>,
     implausible: bool,
 }
 
 impl Work {
     /// As `dynid diagnose`.
     fn diagnose(self, baseline: &[Trajectory], watch: &Watch) -> Result<Diagnosed, Failure> {
-        let Self { path, measured, test, settings, prior, implausible } = self;
+        let Self { path, measured, test, settings, prior, lost, implausible } = self;
         let options = DiagnosisOptions { threads: settings.threads, ..DiagnosisOptions::default() };
         if !implausible {
             mistakes::check(&path, &measured, &options)?;
@@ -262,6 +274,7 @@ impl Work {
         let mut diagnosis =
             outcome.map_err(|failure| and_of_speeds(failure, &speed_words(&speeds, robot)))?;
         tell_speeds(&mut diagnosis, speeds, robot);
+        diagnosis.verdict.extend(lost.map(|why| without_motions(&why)));
         let own = Extras::of(robot);
         let extras = Extras {
             fitted: fitted(&measured, &diagnosis, &options),

@@ -3,13 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use dynid::arguments::Source;
 use dynid::commands::diagnose::reference;
+use dynid::origin::{Origin, find};
 use dynid::pages::Prior;
+use dynid::recorded::Measured;
 use dynid::saved::read_model;
 use dynid_runtime::diagnosis::Reference;
 use dynid_runtime::effects::UserLaw;
 use dynid_runtime::law_file;
 use dynid_runtime::model::Robot;
+use dynid_runtime::model_file::Identified;
 use pyo3::prelude::*;
 
 use crate::error::{error, of_failure};
@@ -21,26 +25,30 @@ pub(crate) struct Before {
     pub reference: Arc<Reference>,
     /// The parameters, for the page.
     pub prior: Prior,
+    /// The motions that it is from, where its file names them and they are as they were; else why they are not used.
+    pub origin: Origin,
 }
 
-/// A [`PyFit`], or the path of a saved one, as a model of this robot from before.
+/// A [`PyFit`], or the path of a saved one, as a model from before of the robot whose recording is diagnosed.
 ///
 /// # Errors
 /// A file that is no model, or a model of another robot.
-pub(crate) fn before(given: &Bound<'_, PyAny>, robot: &Robot) -> PyResult<Before> {
-    let of = |saved: &_, its: &Robot, path: &Path| -> PyResult<Before> {
+pub(crate) fn before(given: &Bound<'_, PyAny>, diagnosed: (&Source, &Measured)) -> PyResult<Before> {
+    let robot = diagnosed.1.dynamics.model().robot();
+    let of = |saved: &Identified, its: &Robot, path: &Path, origin| -> PyResult<Before> {
         let reference = reference::of(saved, its, path, robot).map_err(of_failure)?;
-        Ok(Before { reference: Arc::new(reference), prior: Prior::saved("reference", saved, robot) })
+        let prior = Prior::saved("reference", saved, robot);
+        Ok(Before { reference: Arc::new(reference), prior, origin })
     };
     if let Ok(fit) = given.cast::<PyFit>() {
         let fit = fit.get();
-        return of(&fit.identified, fit.dynamics.model().robot(), Path::new("reference"));
+        return of(&fit.identified, fit.dynamics.model().robot(), Path::new("reference"), Origin::Unknown);
     }
     let path: PathBuf =
         given.extract().map_err(|_| error("reference: expected a dynid.Fit or the path of a saved model"))?;
     let saved = read_model(&path).map_err(of_failure)?;
     let own = dynid::saved::own_dynamics(&saved, &path).map_err(of_failure)?;
-    of(&saved, own.model().robot(), &path)
+    of(&saved, own.model().robot(), &path, find(&saved, &path, diagnosed))
 }
 
 /// The path of a list of laws, or the list: dictionaries with id, joint, law, and where needed unit and shapes.
