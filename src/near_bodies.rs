@@ -21,6 +21,9 @@ const BALL_GYRATION: f64 = 0.1;
 const THINNEST: f64 = 1e-3;
 const FLATTEST: f64 = 1e-2;
 
+/// Chance of a least distance below which no bodies are said to have the identified values.
+const IMPROBABLE: f64 = 0.01;
+
 /// Bodies of a model, and what was known before.
 pub struct NearBodies {
     /// The bodies' standard parameters, and how they were found.
@@ -99,7 +102,17 @@ impl NearBodies {
             robot.base.len(),
             significant((near.distance / near.determined.max(1) as f64).sqrt(), 2)
         ));
-        if near.least > near.determined as f64 {
+        text.push_str(&format!(
+            "\nthe prior has weight {}, the largest with about the least expected error of the torques (Mallows' Cp): of the {} it leaves {} to the data",
+            significant(near.gamma, 3),
+            near.determined,
+            significant(near.freedom, 3)
+        ));
+        if near.dispersion > 1.0 {
+            let times = significant(near.dispersion.sqrt(), 2);
+            text.push_str(&format!("; uncertainties count {times} times, because no bodies are nearer"));
+        }
+        if near.p_value < IMPROBABLE {
             text.push_str(&format!(
                 "\nwarning: no bodies have the identified base parameters within their uncertainty. Farthest off: {}",
                 self.farthest(identified, robot).join(", ")
