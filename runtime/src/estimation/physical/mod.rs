@@ -89,6 +89,8 @@ fn sigmas(observation: &Observation, estimate: &Estimate) -> Option<Vec<f64>> {
 }
 
 #[cfg(test)]
+mod log_cholesky_tests;
+#[cfg(test)]
 mod testing;
 #[cfg(test)]
 mod tests;
