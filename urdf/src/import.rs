@@ -67,7 +67,7 @@ pub fn import_with_geometry(
     urdf: &Urdf,
     file: &str,
     options: &ImportOptions,
-    meshes: &dyn Fn(&str) -> Result<Vec<[f64; 3]>, String>,
+    meshes: &Meshes<'_>,
 ) -> Result<Imported, Vec<Mistake>> {
     written(urdf, file, options, Some(meshes))
 }

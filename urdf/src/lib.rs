@@ -53,7 +53,7 @@ pub use between::{PointSpring, stiffness_and_rest};
 pub use body::Body;
 pub use document::{Urdf, read};
 pub use import::{ImportOptions, Imported, import, import_with_geometry};
-pub use link_bounds::LinkBound;
+pub use link_bounds::{LinkBound, Meshes};
 pub use mesh::mesh_vertices;
 pub use mistake::{Mistake, Place};
 pub use mjcf::write_mjcf;

@@ -29,7 +29,7 @@ pub struct LinkBound {
 }
 
 /// Reads the vertices of a mesh by the name that the URDF has for its file, or says why it cannot.
-pub(crate) type Meshes<'a> = dyn Fn(&str) -> Result<Vec<[f64; 3]>, String> + 'a;
+pub type Meshes<'a> = dyn Fn(&str) -> Result<Vec<[f64; 3]>, String> + 'a;
 
 impl Template<'_> {
     /// For each moving body an ellipsoid that holds the `<collision>` of its link and of what is fixed to it, the smallest to
