@@ -207,8 +207,15 @@ fn bodies_stay_within_the_geometry_of_the_prior_and_what_has_none_is_named() {
         warned.contains("'upper'") && warned.contains("not that of a body within its geometry"),
         "{warned}"
     );
-    assert!(text("bounded.html").contains("held back by it"));
+    assert!(
+        text("bounded.html").contains("held back by it")
+            && text("bounded.html").contains("The prior has weight")
+    );
+    assert!(said.contains("the prior has weight"), "{said}");
     let json: serde_json::Value = serde_json::from_str(&text("bounded.json")).unwrap();
+    let [weight, from_data, determined] =
+        ["prior_weight", "from_data", "determined"].map(|key| json["bodies"][key].as_f64().unwrap());
+    assert!(weight > 0.0 && from_data > 0.0 && from_data < determined, "{json}");
     let links = json["bodies"]["ellipsoids"].as_array().unwrap();
     let of = |name: &str| links.iter().find(|link| link["link"] == name).unwrap();
     assert!(of("upper")["active"] == true && of("upper")["margin_of_prior"].as_f64().unwrap() < 0.0);
