@@ -5,7 +5,7 @@ use std::path::Path;
 use dynid_runtime::estimation::{
     NearPrior, NearPriorError, Prior, Released, ellipsoid_margin, near_prior, released, uniform_body,
 };
-use dynid_runtime::model::{Ellipsoid, ParameterKind, Robot};
+use dynid_runtime::model::{Ellipsoid, JointKind, ParameterKind, Robot};
 use dynid_runtime::model_file::Identified;
 use dynid_runtime::report::significant;
 use dynid_urdf::{Body, LinkBound, Pose, Template, value};
@@ -20,6 +20,26 @@ const BALL_GYRATION: f64 = 0.1;
 /// Least spread of a prior body in any direction, m, and as a part of its largest: thinner ones have no density.
 const THINNEST: f64 = 1e-3;
 const FLATTEST: f64 = 1e-2;
+
+/// Chance of a least distance below which no bodies are said to have the identified values.
+const IMPROBABLE: f64 = 0.01;
+
+/// What a table knows of bodies.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Table<'a> {
+    /// Nominal standard parameters.
+    pub nominal: Option<&'a [f64]>,
+    /// Ellipsoids that hold the mass of links, by index of the frame.
+    pub ellipsoids: &'a [(usize, Ellipsoid)],
+}
+
+impl<'a> Table<'a> {
+    /// What the table of a robot knows.
+    pub fn of(robot: &'a Robot) -> Self {
+        let nominal = robot.nominal.as_ref().map(|nominal| nominal.standard.as_ref());
+        Self { nominal, ellipsoids: &robot.ellipsoids }
+    }
+}
 
 /// Bodies of a model, and what was known before.
 pub struct NearBodies {
@@ -37,24 +57,26 @@ pub struct NearBodies {
 
 impl NearBodies {
     /// Bodies with the base parameters `chi` of a model within their uncertainty, nearest to a template's, and within its
-    /// geometry, or nearest to `nominal` standard parameters where there is none. Meshes are looked for from the template's path
-    /// on.
+    /// geometry, or nearest to those of a `table` with nominal parameters, and within its ellipsoids, where there is none. Meshes
+    /// are looked for from the template's path on.
     ///
     /// # Errors
     /// As of [`near_prior`].
     pub fn new(
         identified: &Identified,
         robot: &Robot,
-        nominal: Option<&[f64]>,
+        table: Table<'_>,
         template: Option<(&Template<'_>, &Path)>,
     ) -> Result<Self, NearPriorError> {
         let chi = identified.chi(robot).map_err(|_| NearPriorError::Shape)?;
-        let links = template
-            .map_or_else(Vec::new, |(template, path)| template.bounds(&|mesh| meshes::vertices(path, mesh)));
+        let links = template.map_or_else(
+            || table_bounds(robot, table.ellipsoids),
+            |(template, path)| template.bounds(&|mesh| meshes::vertices(path, mesh)),
+        );
         let has_some = links.iter().any(|link| link.ellipsoid.is_ok());
         let mut ellipsoids = vec![None; robot.frames.len()];
         links.iter().for_each(|link| ellipsoids[link.frame] = link.ellipsoid.as_ref().ok().copied());
-        let (prior, values) = prior(robot, nominal, template.map(|(template, _)| template), ellipsoids);
+        let (prior, values) = prior(robot, table.nominal, template.map(|(template, _)| template), ellipsoids);
         let covariance = identified.base_covariance(robot);
         let near = near_prior(robot, &chi, &covariance, &prior)?;
         let unbounded = has_some.then(|| {
@@ -67,7 +89,8 @@ impl NearBodies {
             false => Vec::new(),
         };
         // Where no link has geometry there is nothing to say of it.
-        let links = if template.is_some_and(|(t, _)| t.has_geometry()) { links } else { Vec::new() };
+        let is_bounded = template.is_none_or(|(template, _)| template.has_geometry());
+        let links = if is_bounded { links } else { Vec::new() };
         Ok(Self { near, prior: values, links, unbounded: unbounded.flatten(), released })
     }
 
@@ -99,7 +122,17 @@ impl NearBodies {
             robot.base.len(),
             significant((near.distance / near.determined.max(1) as f64).sqrt(), 2)
         ));
-        if near.least > near.determined as f64 {
+        text.push_str(&format!(
+            "\nthe prior has weight {}, the largest with about the least expected error of the torques (Mallows' Cp): of the {} it leaves {} to the data",
+            significant(near.gamma, 3),
+            near.determined,
+            significant(near.freedom, 3)
+        ));
+        if near.dispersion > 1.0 {
+            let times = significant(near.dispersion.sqrt(), 2);
+            text.push_str(&format!("; uncertainties count {times} times, because no bodies are nearer"));
+        }
+        if near.p_value < IMPROBABLE {
             text.push_str(&format!(
                 "\nwarning: no bodies have the identified base parameters within their uncertainty. Farthest off: {}",
                 self.farthest(identified, robot).join(", ")
@@ -121,6 +154,26 @@ impl NearBodies {
         off.sort_by(|a, b| b.0.total_cmp(&a.0));
         off.into_iter().take(3).map(|(far, words)| format!("{words} ({far:.1} sigma)")).collect()
     }
+}
+
+/// What a table says of where each moving body is; empty where it says nothing.
+fn table_bounds(robot: &Robot, ellipsoids: &[(usize, Ellipsoid)]) -> Vec<LinkBound> {
+    let motions = robot.motions();
+    let own = |frame: usize| ellipsoids.iter().find(|(k, _)| *k == frame).map(|(_, ellipsoid)| *ellipsoid);
+    let has_mass = |frame: usize| {
+        !robot
+            .known
+            .iter()
+            .any(|&k| robot.standard[k].frame == frame && robot.standard[k].kind == ParameterKind::M)
+    };
+    let bound = |frame: usize| LinkBound {
+        frame,
+        link: format!("link{}", frame + 1),
+        ellipsoid: own(frame).ok_or_else(|| "the table has none".to_owned()),
+    };
+    let told =
+        |frame: &usize| own(*frame).is_some() || motions[*frame].kind != JointKind::Fixed && has_mass(*frame);
+    if ellipsoids.is_empty() { Vec::new() } else { (0..motions.len()).filter(told).map(bound).collect() }
 }
 
 /// The prior of a robot's bodies, and its standard parameters: the template's, else the nominal ones.
@@ -189,7 +242,7 @@ fn possible(body: &Body, mean_mass: f64, name: &str, within: Option<&Ellipsoid>)
     };
     if within.is_some_and(|within| ellipsoid_margin(within, &body.parameters()).is_some_and(|m| m <= 0.0)) {
         warn(&format!(
-            "{name}: its inertial is not that of a body within its <collision>; the result is within all the same"
+            "{name}: its inertial is not that of a body within its geometry; the result is within all the same"
         ));
     }
     let spread = (Matrix3::from_diagonal_element(0.5 * moments.trace()) - moments) / mass;

@@ -8,6 +8,7 @@ use dynid_runtime::regular_file;
 use dynid_urdf::{ImportOptions, Imported, Mistake, Template, Urdf};
 
 use crate::failure::{Failure, file_failure};
+use crate::meshes;
 use crate::output::warn;
 
 /// Longest URDF that is read, bytes.
@@ -56,9 +57,30 @@ pub fn template<'a>(
 /// # Errors
 /// [`Failure::Input`] with every mistake, one a line.
 pub fn imported(path: &Path, options: &ImportOptions) -> Result<(Imported, RobotTable), Failure> {
+    written(path, options, dynid_urdf::import)
+}
+
+/// [`imported`], with ellipsoids around the geometry of links, whose meshes are looked for from the URDF on.
+///
+/// # Errors
+/// As [`imported`].
+pub fn imported_with_geometry(
+    path: &Path,
+    options: &ImportOptions,
+) -> Result<(Imported, RobotTable), Failure> {
+    written(path, options, |urdf, name, options| {
+        dynid_urdf::import_with_geometry(urdf, name, options, &|mesh| meshes::vertices(path, mesh))
+    })
+}
+
+fn written(
+    path: &Path,
+    options: &ImportOptions,
+    import: impl Fn(&Urdf, &str, &ImportOptions) -> Result<Imported, Vec<Mistake>>,
+) -> Result<(Imported, RobotTable), Failure> {
     let urdf = parsed(path, &bytes(path)?, options.snap)?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let imported = dynid_urdf::import(&urdf, &name, options).map_err(|mistakes| refused(path, &mistakes))?;
+    let imported = import(&urdf, &name, options).map_err(|mistakes| refused(path, &mistakes))?;
     imported.warnings.iter().for_each(|warning| warn(&located(path, warning)));
     let table =
         parse(&format!("table of {}", path.display()), imported.yaml.as_bytes()).map_err(|mistakes| {

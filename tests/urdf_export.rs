@@ -204,11 +204,18 @@ fn bodies_stay_within_the_geometry_of_the_prior_and_what_has_none_is_named() {
     let (said, warned) = (words_of(&output), error_of(&output));
     assert!(said.contains("held back by it") && said.contains("it has no <collision>"), "{said}");
     assert!(
-        warned.contains("'upper'") && warned.contains("not that of a body within its <collision>"),
+        warned.contains("'upper'") && warned.contains("not that of a body within its geometry"),
         "{warned}"
     );
-    assert!(text("bounded.html").contains("held back by it"));
+    assert!(
+        text("bounded.html").contains("held back by it")
+            && text("bounded.html").contains("The prior has weight")
+    );
+    assert!(said.contains("the prior has weight"), "{said}");
     let json: serde_json::Value = serde_json::from_str(&text("bounded.json")).unwrap();
+    let [weight, from_data, determined] =
+        ["prior_weight", "from_data", "determined"].map(|key| json["bodies"][key].as_f64().unwrap());
+    assert!(weight > 0.0 && from_data > 0.0 && from_data < determined, "{json}");
     let links = json["bodies"]["ellipsoids"].as_array().unwrap();
     let of = |name: &str| links.iter().find(|link| link["link"] == name).unwrap();
     assert!(of("upper")["active"] == true && of("upper")["margin_of_prior"].as_f64().unwrap() < 0.0);
@@ -224,6 +231,44 @@ fn bodies_stay_within_the_geometry_of_the_prior_and_what_has_none_is_named() {
     let costs = json["bodies"]["impossible"].as_array().unwrap();
     let arm = costs.iter().find(|one| one["what"] == "link 2").unwrap();
     assert!(arm["least"].as_f64().unwrap() < 0.1 * with, "{costs:?}");
+}
+
+#[test]
+fn a_recording_of_a_urdf_and_the_table_imported_from_it_have_its_geometry() {
+    let folder = Folder::new("urdf-geometry");
+    folder.write("bounded.urdf", &with_geometry()).write("fore.stl", &stl());
+    folder.write("motion.csv", &text("motion.csv"));
+    folder.write("urdf.yaml", &RECORDING.replace("./leaning.urdf", "./bounded.urdf"));
+    folder.write("table.yaml", &RECORDING.replace("./leaning.urdf", "./arm.yaml"));
+    let bodies = |words: &str| -> serde_json::Value {
+        let output = folder.run(&words.split(' ').collect::<Vec<_>>());
+        assert!(output.status.success(), "{words}: {}", error_of(&output));
+        common::json_of(&output)["bodies"].clone()
+    };
+    let given = bodies("identify urdf.yaml --physical --prior bounded.urdf --json -");
+    assert_eq!(bodies("identify urdf.yaml --physical --json -"), given);
+    let output = folder.run(&["import", "bounded.urdf", "--out", "arm.yaml"]);
+    assert!(output.status.success(), "{}", error_of(&output));
+    let yaml = std::fs::read_to_string(folder.path("arm.yaml")).unwrap();
+    let (_, ellipsoids) = yaml.split_once("\nellipsoids:").unwrap();
+    assert_eq!(ellipsoids.matches("{frame: ").count(), 3, "{ellipsoids}");
+    for why in ["'hand' has an <inertial> and no <collision>", "of 'slide' the mesh package://arm/slide.dae"]
+    {
+        assert!(ellipsoids.contains(why), "{ellipsoids}");
+    }
+    // The same links are held back by the same bounds.
+    let table = bodies("identify table.yaml --physical --json -");
+    let links = |bodies: &serde_json::Value| -> Vec<(u64, Option<bool>)> {
+        let all = bodies["ellipsoids"].as_array().unwrap();
+        let one = |link: &serde_json::Value| {
+            let bounded = link["margin"].is_number().then(|| link["active"] == true);
+            (link["frame"].as_u64().unwrap(), bounded)
+        };
+        all.iter().map(one).collect()
+    };
+    assert_eq!(links(&table), links(&given));
+    let least = |bodies: &serde_json::Value| bodies["least"].as_f64().unwrap();
+    assert!((least(&table) / least(&given) - 1.0).abs() < 1e-2, "{} {}", least(&table), least(&given));
 }
 
 #[test]

@@ -33,6 +33,7 @@ pub fn numeric_robot(table: &RobotTable, set: &BaseSet) -> Robot {
         couplings: table.couplings.clone().into(),
         known: table.known.clone().into(),
         fixed: table.fixed.clone().into(),
+        ellipsoids: table.ellipsoids.clone().into(),
         limits: table.limits.clone(),
         standard: set.standard.clone().into(),
         base: set.base.clone().into(),
@@ -85,6 +86,7 @@ pub(crate) fn table_of(robot: &Robot) -> (RobotTable, BaseSet) {
         couplings: robot.couplings.to_vec(),
         known: robot.known.to_vec(),
         fixed: robot.fixed.to_vec(),
+        ellipsoids: robot.ellipsoids.to_vec(),
         limits: robot.limits.clone(),
         nominal: None,
     };

@@ -42,6 +42,7 @@ pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> RobotTable {
         couplings: Vec::new(),
         known: Vec::new(),
         fixed: Vec::new(),
+        ellipsoids: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

@@ -353,6 +353,7 @@ fn random_robot(random: &mut Pcg64) -> RobotTable {
         couplings: Vec::new(),
         known: Vec::new(),
         fixed: Vec::new(),
+        ellipsoids: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

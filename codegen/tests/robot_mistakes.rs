@@ -308,6 +308,39 @@ fn rows_may_move_with_variables_of_others() {
 }
 
 #[test]
+fn ellipsoids_hold_links_and_are_refused_where_nothing_can_be_within() {
+    let robot = read(&arm(
+        "ellipsoids:\n  - {frame: 2, radii: [0.3, 0.1, 0.2], rpy: [0, 0, pi/2]}\n  - {frame: 1, centre: [0.1, 0, 0], radii: [1, 1, 1]}",
+    ));
+    let frames: Vec<usize> = robot.ellipsoids.iter().map(|(frame, _)| *frame).collect();
+    assert_eq!(frames, [0, 1]);
+    assert_eq!(robot.ellipsoids[0].1.centre, [0.1, 0.0, 0.0]);
+    // Turned by a right angle about z: y has the first radius.
+    let shape = robot.ellipsoids[1].1.shape;
+    for (k, wanted) in [(0, 0.01), (1, 0.09), (2, 0.04)] {
+        assert!((shape[k][k] - wanted).abs() < 1e-15, "{shape:?}");
+    }
+    let one = |text: &str| arm(&format!("ellipsoids: [{{{text}}}]"));
+    one_mistake(&arm("ellipsoids: {2: 1}"), "5:13", &["ellipsoids as a list"]);
+    one_mistake(&one("frame: 3, radii: [1, 1, 1]"), "5:22", &["no frame 3", "1 to 2"]);
+    one_mistake(&one("radii: [1, 1, 1]"), "5:14", &["an ellipsoid has no 'frame'"]);
+    one_mistake(&one("frame: 2"), "5:14", &["an ellipsoid has no 'radii'"]);
+    one_mistake(&one("frame: 2, radii: [1, 1]"), "5:32", &["radii has 2 entries, expected 3"]);
+    one_mistake(&one("frame: 2, radii: [1, 0, 1]"), "5:32", &["radii has 0", "above 0"]);
+    one_mistake(&one("frame: 2, radii: [1, -2, 1]"), "5:32", &["radii has -2"]);
+    one_mistake(&one("frame: 2, radii: [1, 1, 1e300]"), "5:32", &["radii is 1e300", "at most"]);
+    one_mistake(&one("frame: 2, radii: [1, 1, 1], centre: q1"), "5:51", &["centre"]);
+    one_mistake(&one("frame: 2, radii: [1, 1, 1], shape: 1"), "5:43", &["unknown key 'shape'"]);
+    one_mistake(
+        &arm("massless: [2]\nellipsoids: [{frame: 2, radii: [1, 1, 1]}]"),
+        "6:22",
+        &["frame 2", "no mass"],
+    );
+    let twice = "ellipsoids: [{frame: 2, radii: [1, 1, 1]}, {frame: 2, radii: [2, 1, 1]}]";
+    one_mistake(&arm(twice), "5:44", &["frame 2 has an ellipsoid already"]);
+}
+
+#[test]
 fn what_is_known_is_no_base_parameter_or_one_with_a_value() {
     let rows = "  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n  \
                 - {j: 2, sigma: 0, alpha: 0, d: 0.1, theta: q2, r: 0}\n";

@@ -1,8 +1,8 @@
 //! A robot as numbers.
 
 use crate::{
-    BaseParameter, Coupling, DependentFrame, Drive, Frame, JointIndex, JointKind, JointNumber, Limits,
-    Motion, Nominal, ParameterKind, StandardParameter, motions,
+    BaseParameter, Coupling, DependentFrame, Drive, Ellipsoid, Frame, JointIndex, JointKind, JointNumber,
+    Limits, Motion, Nominal, ParameterKind, StandardParameter, motions,
 };
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -35,6 +35,10 @@ pub struct Robot {
     /// rest, base parameters hold known ones only: [`Robot::fixed_base`].
     #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
     pub fixed: Cow<'static, [(usize, f64)]>,
+    /// Ellipsoids that hold the mass of links, by index of the frame and in that frame, ascending; none where nothing is known.
+    /// Torques do not depend on them.
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    pub ellipsoids: Cow<'static, [(usize, Ellipsoid)]>,
     /// Limits per joint, SI.
     pub limits: Limits,
     /// The standard parameters in the order of chi_st: for each frame XX XY XZ YY YZ ZZ MX MY MZ M, then,

@@ -106,6 +106,7 @@ impl Robot {
             couplings: Cow::Borrowed(&[]),
             known: Cow::Borrowed(&[]),
             fixed: Cow::Borrowed(&[]),
+            ellipsoids: Cow::Borrowed(&[]),
             limits,
             standard: Cow::Owned(standard),
             base: Cow::Owned(base),

@@ -127,6 +127,7 @@ fn six_axes() -> Robot {
         couplings: Vec::new().into(),
         known: Vec::new().into(),
         fixed: Vec::new().into(),
+        ellipsoids: Vec::new().into(),
         limits: Limits::default(),
         standard: Vec::new().into(),
         base: Vec::new().into(),

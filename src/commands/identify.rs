@@ -27,6 +27,7 @@ use crate::output::{print, table, write_json};
 use crate::ranges;
 use crate::recorded::{self, Recorded, left_out_words};
 use crate::speeds::{and_of_speeds, speed_words};
+use crate::urdf_files::is_urdf;
 use crate::verdict;
 use crate::words::joint_number;
 use method::Identification;
@@ -65,7 +66,7 @@ pub(super) struct Arguments {
     /// Standard parameters that bodies can have, nearest to a prior; the model is saved with them
     #[arg(long)]
     physical: bool,
-    /// The prior: a URDF, a robot YAML with nominal parameters, or a model [default: the robot's nominal parameters]
+    /// The prior: a URDF, a robot YAML with nominal parameters, or a model [default: the recording's robot]
     #[arg(long, requires = "physical")]
     prior: Option<PathBuf>,
     #[command(flatten)]
@@ -105,7 +106,10 @@ pub(super) fn run(arguments: &Arguments, line: &[String]) -> Result<(), Failure>
     let mut words = summary(&recorded, &identified, &estimate, arguments);
     if let Some(torques) = observations.last().filter(|_| arguments.physical) {
         let robot = recorded.dynamics.model().robot();
-        let bodies = physical::make_physical(&mut identified, robot, torques, arguments.prior.as_deref())?;
+        // A URDF that is the robot has more than its table: links by name, and their geometry.
+        let own = Some(Path::new(&recorded.robot)).filter(|path| is_urdf(path));
+        let prior = arguments.prior.as_deref().or(own);
+        let bodies = physical::make_physical(&mut identified, robot, torques, prior)?;
         words.push_str(&format!("\n\n{bodies}"));
     }
     if arguments.json.as_deref() != Some(Path::new("-")) {

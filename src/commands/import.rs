@@ -8,7 +8,7 @@ use dynid_urdf::ImportOptions;
 use crate::arguments::UrdfOptions;
 use crate::failure::Failure;
 use crate::output::{print, write};
-use crate::urdf_files::imported;
+use crate::urdf_files::imported_with_geometry;
 
 /// What to import and where to put it.
 #[derive(Debug, Args)]
@@ -25,7 +25,7 @@ pub(super) struct Arguments {
 /// Imports, saves, says what was made.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options: ImportOptions = arguments.options.import()?;
-    let (imported, table) = imported(&arguments.urdf, &options)?;
+    let (imported, table) = imported_with_geometry(&arguments.urdf, &options)?;
     write(&arguments.out, &imported.yaml)?;
     if arguments.out != Path::new("-") {
         print(&format!(

@@ -82,9 +82,17 @@ fn bodies(page: &mut Page, bodies: &Bodies) {
             percent(least)
         )
     });
+    let weight = bodies.prior_weight.zip(bodies.from_data).map_or_else(String::new, |(weight, from_data)| {
+        format!(
+            " The prior has weight {}, the largest with about the least expected error of the torques (Mallows' Cp), which \
+             leaves {} of these to the data.",
+            significant(weight, 3),
+            significant(from_data, 3)
+        )
+    });
     page.paragraph(&format!(
         "The values are those of the bodies nearest to the prior: their squared distance from the identified ones, in units of \
-         the uncertainty of {} base parameters, is {}; the least that bodies can have is {}.{errors}",
+         the uncertainty of {} base parameters, is {}; the least that bodies can have is {}.{weight}{errors}",
         bodies.determined,
         significant(bodies.distance, 3),
         significant(bodies.least, 3)

@@ -7,8 +7,10 @@ use nalgebra::Vector3;
 use crate::body::Body;
 use crate::coaxial::links_between;
 use crate::document::Urdf;
+use crate::ellipsoid_yaml::ellipsoids;
 use crate::frames::{Frames, Row, frames};
 use crate::joint::{Joint, JointType};
+use crate::link_bounds::Meshes;
 use crate::mistake::{Mistake, shown};
 use crate::pose::Pose;
 use crate::text::{angle, length, number, plain, quoted, tidy, variable};
@@ -53,6 +55,29 @@ pub struct Imported {
 /// # Errors
 /// Links that are not there, joints of which there is no table, or more of them than a table has.
 pub fn import(urdf: &Urdf, file: &str, options: &ImportOptions) -> Result<Imported, Vec<Mistake>> {
+    written(urdf, file, options, None)
+}
+
+/// [`import`], with ellipsoids around the `<collision>` geometry of what moves, where it has some. `meshes` reads the vertices
+/// of a mesh by the name that the URDF has for its file, or says why it cannot.
+///
+/// # Errors
+/// As [`import`].
+pub fn import_with_geometry(
+    urdf: &Urdf,
+    file: &str,
+    options: &ImportOptions,
+    meshes: &Meshes<'_>,
+) -> Result<Imported, Vec<Mistake>> {
+    written(urdf, file, options, Some(meshes))
+}
+
+fn written(
+    urdf: &Urdf,
+    file: &str,
+    options: &ImportOptions,
+    meshes: Option<&Meshes<'_>>,
+) -> Result<Imported, Vec<Mistake>> {
     let tree = urdf.tree(options.base.as_deref(), options.tip.as_deref())?;
     let frames = frames(urdf, &tree);
     if frames.rows.len() > MAX_FRAMES {
@@ -65,7 +90,11 @@ pub fn import(urdf: &Urdf, file: &str, options: &ImportOptions) -> Result<Import
     let between = links_between(urdf, &tree);
     warnings.extend(without_mass(urdf, &tree, &between));
     warnings.extend(friction_of_followers(urdf, &tree));
-    let yaml = Writer { urdf, tree: &tree, frames: &frames, between: &between, options }.yaml(file);
+    let writer = Writer { urdf, tree: &tree, frames: &frames, between: &between, options };
+    let mut yaml = writer.yaml(file);
+    if let Some(meshes) = meshes {
+        yaml.push_str(&ellipsoids(urdf, &tree, &frames, &between, meshes));
+    }
     let own = tree.bodies.iter().filter(|m| m.follows.is_none());
     let joints = own.map(|m| urdf.joints[m.joint].name.clone()).collect();
     Ok(Imported { yaml, joints, warnings })

@@ -2,9 +2,11 @@
 
 use nalgebra::Vector3;
 
+use crate::document::Urdf;
 use crate::enclosing::{directions, enclosing};
 use crate::geometry::{Collision, Shape};
 use crate::mistake::shown;
+use crate::pose::Pose;
 use crate::template::Template;
 use dynid_description::Ellipsoid;
 
@@ -27,7 +29,7 @@ pub struct LinkBound {
 }
 
 /// Reads the vertices of a mesh by the name that the URDF has for its file, or says why it cannot.
-type Meshes<'a> = dyn Fn(&str) -> Result<Vec<[f64; 3]>, String> + 'a;
+pub type Meshes<'a> = dyn Fn(&str) -> Result<Vec<[f64; 3]>, String> + 'a;
 
 impl Template<'_> {
     /// For each moving body an ellipsoid that holds the `<collision>` of its link and of what is fixed to it, the smallest to
@@ -35,9 +37,8 @@ impl Template<'_> {
     pub fn bounds(&self, meshes: &Meshes<'_>) -> Vec<LinkBound> {
         let bound = |(k, body): (usize, usize)| {
             let known = self.body(k, self.frames[body]);
-            let ellipsoid = self.points(k, &known.link, meshes).and_then(|points| {
-                enclosing(&points).ok_or_else(|| "nothing encloses its geometry".to_owned())
-            });
+            let links = &self.tree.bodies[k].links;
+            let ellipsoid = ellipsoid_of(self.urdf, links, &self.in_link[k], Some(&known.link), meshes);
             LinkBound { frame: known.frame, link: known.link, ellipsoid }
         };
         self.carriers().map(bound).collect()
@@ -48,30 +49,44 @@ impl Template<'_> {
         let links = self.tree.bodies.iter().flat_map(|body| &body.links);
         links.into_iter().any(|(link, _)| !self.urdf.links[*link].collisions.is_empty())
     }
+}
 
-    /// Points whose convex hull holds the geometry that a joint moves, in the frame of the table. `target` is the link whose
-    /// mass is asked for: it must have some.
-    fn points(&self, k: usize, target: &str, meshes: &Meshes<'_>) -> Result<Vec<Vector3<f64>>, String> {
-        let to_table = self.in_link[k].inverse();
-        let mut points = Vec::new();
-        for (link, pose) in &self.tree.bodies[k].links {
-            let link = &self.urdf.links[*link];
-            if link.name == target && link.collisions.is_empty() {
-                return Err("it has no <collision>".to_owned());
-            }
-            for collision in &link.collisions {
-                let own = points_of(collision, meshes).map_err(|why| match link.name == target {
-                    true => why,
-                    false => {
-                        format!("of '{}', which is fixed to it, {why}", shown(&link.name))
-                    }
-                })?;
-                let seen = to_table.then(pose).then(&collision.pose);
-                points.extend(own.iter().map(|p| seen.rotation * p + seen.translation));
-            }
+/// The ellipsoid around the geometry of links that one joint moves, in the frame of the table, whose pose in the link of the
+/// joint is `in_link`. `target` is the link whose mass is asked for, all that have some where it is not given: these must have
+/// geometry.
+pub(crate) fn ellipsoid_of(
+    urdf: &Urdf,
+    links: &[(usize, Pose)],
+    in_link: &Pose,
+    target: Option<&str>,
+    meshes: &Meshes<'_>,
+) -> Result<Ellipsoid, String> {
+    let to_table = in_link.inverse();
+    let mut points = Vec::new();
+    for (link, pose) in links {
+        let link = &urdf.links[*link];
+        let name = shown(&link.name);
+        let is_target = target == Some(link.name.as_str());
+        if is_target && link.collisions.is_empty() {
+            return Err("it has no <collision>".to_owned());
         }
-        Ok(points)
+        if target.is_none() && link.inertial.is_some() && link.collisions.is_empty() {
+            return Err(format!("'{name}' has an <inertial> and no <collision>"));
+        }
+        for collision in &link.collisions {
+            let own = points_of(collision, meshes).map_err(|why| match target {
+                None => format!("of '{name}' {why}"),
+                Some(_) if is_target => why,
+                Some(_) => format!("of '{name}', which is fixed to it, {why}"),
+            })?;
+            let seen = to_table.then(pose).then(&collision.pose);
+            points.extend(own.iter().map(|p| seen.rotation * p + seen.translation));
+        }
     }
+    if points.is_empty() {
+        return Err("it has no <collision>".to_owned());
+    }
+    enclosing(&points).ok_or_else(|| "nothing encloses its geometry".to_owned())
 }
 
 /// Points whose convex hull holds a part of a link, in the frame of that part.
@@ -113,7 +128,6 @@ fn points_of(collision: &Collision, meshes: &Meshes<'_>) -> Result<Vec<Vector3<f
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that cannot set itself up has failed")]
     use super::*;
-    use crate::pose::Pose;
     use nalgebra::Matrix3;
     use rand::{RngExt, SeedableRng};
 

@@ -30,6 +30,7 @@ pub fn statics(robot: &Robot, equations: &Equations) -> String {
         ("couplings", records(robot.couplings.iter().map(coupling))),
         ("known", indices(4, &robot.known)),
         ("fixed", list(4, robot.fixed.iter().map(|pair| format!("{pair:?}")))),
+        ("ellipsoids", records(robot.ellipsoids.iter().map(|pair| format!("{pair:?}")))),
         ("limits", limits(&robot.limits)),
         ("standard", records(robot.standard.iter().map(standard))),
         ("base", records(robot.base.iter().map(base))),

@@ -28,11 +28,12 @@ fn opening(robot: &RobotTable, set: &BaseSet, equations: &Equations) -> TokenStr
     let dependent = (!robot.dependent.is_empty()).then(|| quote!(DependentFrame,));
     let coupling = (!robot.couplings.is_empty()).then(|| quote!(Coupling, CouplingLaw,));
     let between = robot.couplings.iter().any(|c| c.law.between().is_some()).then(|| quote!(Between,));
+    let ellipsoid = (!robot.ellipsoids.is_empty()).then(|| quote!(Ellipsoid,));
     quote! {
         #![allow(non_snake_case, unused_variables, clippy::all)]
 
         use dynid_runtime::model::{
-            BaseParameter, #between #coupling #dependent Drive, Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
+            BaseParameter, #between #coupling #dependent Drive, #ellipsoid Frame, JointKind, Lanes, Limits, Line, LineStates, Model, #nominal Number, Operations,
             ParameterKind, Pattern, Robot, StandardParameter, States, array, array_mut, evaluate_block, evaluate_line,
             evaluate_lines,
         };

@@ -51,6 +51,7 @@ fn random_robot(random: &mut Random) -> RobotTable {
         couplings: Vec::new(),
         known: Vec::new(),
         fixed: Vec::new(),
+        ellipsoids: Vec::new(),
         limits: Limits::default(),
         nominal: None,
     }

@@ -19,6 +19,8 @@
 //!   - {joint: 2}                    # torque K2*q2 - KR2; with `rest: 0.3` K2*(q2 - 0.3)
 //!   - {joints: {q1: 1, q2: 1}, name: balancer}   # K_balancer, KR_balancer
 //! known: {Ia1: 0, M2: 3.4}           # optional: standard parameters whose values are known
+//! ellipsoids:                       # optional: what holds the mass of links, in their frames; centre and rpy may be 0
+//!   - {frame: 2, centre: [0.2, 0, 0], radii: [0.3, 0.1, 0.1], rpy: [0, 0, pi/6]}
 //! limits:                           # optional, each of them; x stands for [-x, x], one value for every joint
 //!   position: [pi, [-1, 2], 0.2]
 //!   velocity: 3
@@ -62,6 +64,7 @@ mod diagnostic;
 mod document;
 mod drive;
 mod drive_table;
+mod ellipsoids;
 mod expression;
 mod formula;
 mod known;

@@ -5,6 +5,7 @@ use super::diagnostic::Diagnostic;
 use super::document::{Node, Place, START, Value, read_document};
 use super::drive::read_drive;
 use super::drive_table::DriveTable;
+use super::ellipsoids::read_ellipsoids;
 use super::formula::joint_variable;
 use super::known::{Known, read_known};
 use super::magnitudes::within;
@@ -16,7 +17,7 @@ use dynid_description::bounds::HEAVIEST;
 use dynid_description::{JointKind, Limits, StandardParameter};
 use std::collections::HashSet;
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "name",
     "description",
     "gravity",
@@ -27,6 +28,7 @@ const KEYS: [&str; 12] = [
     "springs",
     "massless",
     "known",
+    "ellipsoids",
     "limits",
     "nominal",
 ];
@@ -107,6 +109,8 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
     let couplings = read_couplings(reader, acting, (&frames, &dependent, &drive), &constants);
     let standard = standard_parameters(&frames, &drive, &couplings);
     let known = read_known(reader, zero, &standard, &constants);
+    let ellipsoids =
+        fields.get("ellipsoids").map(|node| read_ellipsoids(reader, node, (&standard, &known), &constants));
     let limits = match fields.get("limits") {
         Some(node) => read_limits(reader, node, joints, &constants),
         None => Limits::default(),
@@ -125,6 +129,7 @@ fn read_robot(reader: &mut Reader, root: &Node) -> Option<RobotTable> {
         couplings,
         known: known.zero,
         fixed: known.fixed,
+        ellipsoids: ellipsoids.unwrap_or_default(),
         limits,
         nominal,
     })

@@ -3,7 +3,7 @@
 use super::drive_table::DriveTable;
 use super::expression::Expression;
 use dynid_description::{
-    Coupling, DependentFrame, Frame, JointKind, Limits, Motion, StandardParameter, motions,
+    Coupling, DependentFrame, Ellipsoid, Frame, JointKind, Limits, Motion, StandardParameter, motions,
 };
 
 /// A robot read from its YAML, checked: the modified-DH table in symbols, and what else the file says.
@@ -31,6 +31,8 @@ pub struct RobotTable {
     pub known: Vec<usize>,
     /// Standard parameters, by index, that are known to have another value: kept only where nothing else can take them.
     pub fixed: Vec<(usize, f64)>,
+    /// Ellipsoids that hold the mass of links, by index of the frame, ascending.
+    pub ellipsoids: Vec<(usize, Ellipsoid)>,
     /// Limits per joint.
     pub limits: Limits,
     /// Values for simulation.

@@ -66,6 +66,7 @@ pub static ROBOT: Robot = Robot {
     couplings: Cow::Borrowed(&[]),
     known: Cow::Borrowed(&[]),
     fixed: Cow::Borrowed(&[]),
+    ellipsoids: Cow::Borrowed(&[]),
     limits: Limits {
         position: Cow::Borrowed(&[
             [-3.141592653589793, 3.141592653589793], [-2.6179938779914944, 2.6179938779914944],

@@ -49,6 +49,7 @@ fn arm() -> Robot {
         couplings: Vec::new().into(),
         known: Vec::new().into(),
         fixed: Vec::new().into(),
+        ellipsoids: Vec::new().into(),
         limits: Limits::default(),
         standard: standard.into(),
         base: Cow::Owned(base),

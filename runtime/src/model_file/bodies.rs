@@ -11,6 +11,15 @@ pub struct Bodies {
     pub distance: f64,
     /// The least that bodies can have of it.
     pub least: f64,
+    /// Weight of the prior: the largest with about the least expected error of the torques (Mallows' Cp).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior_weight: Option<f64>,
+    /// How many of the determined base parameters the data decide with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_data: Option<f64>,
+    /// Variance of the identified values over that of their covariance, by the least distance; 1 or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dispersion: Option<f64>,
     /// Relative error of the torques as they were identified, and with the bodies of the least distance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_errors: Option<[Option<f64>; 2]>,

@@ -18,6 +18,7 @@ fn robot(kinds: &[JointKind], gear: Vec<f64>) -> Robot {
         couplings: Vec::new().into(),
         known: Vec::new().into(),
         fixed: Vec::new().into(),
+        ellipsoids: Vec::new().into(),
         limits: Limits::default(),
         standard: Cow::Borrowed(&[]),
         base: Cow::Borrowed(&[]),

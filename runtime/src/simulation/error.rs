@@ -115,7 +115,7 @@ fn without_limits(robot: &str, missing: &[&'static str], joints: usize) -> Strin
     let numbers = (1..=joints).map(|j| format!("joint {j}")).collect::<Vec<_>>().join(", ");
     let keys: Vec<String> = missing.iter().map(|key| format!("{key}: [<{numbers}>]")).collect();
     format!(
-        "{robot} has no {names} limits. Add to its YAML, as a key of its own beside `frames:` (`dynid import` writes the YAML of a URDF):\n  \
+        "{robot} has no {names} limits. Add to its YAML, under `limits:`, a key beside `frames:` (`dynid import` writes the YAML of a URDF):\n  \
          limits: {{{}}}\nwith one number for a symmetric limit, or [low, high], for each joint; rad, rad/s, rad/s2, of \
          prismatic joints m, m/s, m/s2",
         keys.join(", ")

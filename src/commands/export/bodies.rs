@@ -10,7 +10,7 @@ use dynid_urdf::{Skeleton, Template, Urdf};
 use super::Arguments;
 use crate::body_report;
 use crate::failure::Failure;
-use crate::near_bodies::NearBodies;
+use crate::near_bodies::{NearBodies, Table};
 use crate::robots::resolve;
 use crate::saved::{is_model, own_dynamics, read_model};
 use crate::urdf_files;
@@ -73,8 +73,9 @@ impl Fitted {
         let template = template.as_ref().map(|template| (template, path_of_template));
         let nominal =
             identified.table.as_ref().and_then(|table| table.nominal.as_ref()).or(robot.nominal.as_ref());
-        let nominal = nominal.map(|n| n.standard.as_ref());
-        let bodies = NearBodies::new(&identified, &robot, nominal, template)
+        let ellipsoids = identified.table.as_ref().map_or(&robot.ellipsoids, |table| &table.ellipsoids);
+        let table = Table { nominal: nominal.map(|n| n.standard.as_ref()), ellipsoids };
+        let bodies = NearBodies::new(&identified, &robot, table, template)
             .map_err(|error| Failure::Data(format!("{}: {error}", path.display())))?;
         let standard = bodies.near.standard.clone();
         Ok(Self { standard, prior: bodies.prior.clone(), robot, identified: Some((identified, bodies)) })

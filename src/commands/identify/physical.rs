@@ -11,13 +11,14 @@ use dynid_urdf::ImportOptions;
 
 use crate::body_report::{report, words};
 use crate::failure::Failure;
-use crate::near_bodies::NearBodies;
+use crate::near_bodies::{NearBodies, Table};
 use crate::robots::resolve;
 use crate::saved::{is_model, read_model};
 use crate::urdf_files::{self, is_urdf};
 
 /// Makes a model one of bodies: its base parameters become theirs, its table's nominal values their standard parameters.
-/// Returns what to say of it. `prior` is a URDF, a robot YAML or a model; the robot's nominal values where it is not given.
+/// Returns what to say of it. `prior` is a URDF, a robot YAML or a model; the robot's nominal values and ellipsoids where it is
+/// not given.
 ///
 /// # Errors
 /// [`Failure::Input`] for a prior of another robot, [`Failure::Data`] where nothing says how near the parameters must be.
@@ -32,10 +33,10 @@ pub(super) fn make_physical(
             let options = ImportOptions::default();
             let urdf = urdf_files::parsed(path, &urdf_files::bytes(path)?, options.snap)?;
             let template = urdf_files::template(path, &urdf, robot, &options)?;
-            NearBodies::new(identified, robot, nominal(robot).as_deref(), Some((&template, path)))
+            NearBodies::new(identified, robot, Table::of(robot), Some((&template, path)))
         }
-        Some(path) => NearBodies::new(identified, robot, Some(&nominal_of(path, robot)?), None),
-        None => NearBodies::new(identified, robot, nominal(robot).as_deref(), None),
+        Some(path) => NearBodies::new(identified, robot, Table::of(&table_of(path, robot)?), None),
+        None => NearBodies::new(identified, robot, Table::of(robot), None),
     };
     let bodies = bodies.map_err(|error| Failure::Data(error.to_string()))?;
     let told = report(&bodies, robot, Some(torques), identified.relative_error);
@@ -76,15 +77,14 @@ pub(super) fn make_physical(
 /// # Errors
 /// [`Failure::Input`] for a prior of another robot.
 pub(super) fn standard_of(path: &Path, robot: &Robot) -> Result<Option<Vec<f64>>, Failure> {
-    if is_urdf(path) { Ok(None) } else { nominal_of(path, robot).map(Some) }
+    if is_urdf(path) {
+        return Ok(None);
+    }
+    Ok(table_of(path, robot)?.nominal.map(|nominal| nominal.standard.into_owned()))
 }
 
-fn nominal(robot: &Robot) -> Option<Vec<f64>> {
-    robot.nominal.as_ref().map(|nominal| nominal.standard.to_vec())
-}
-
-/// Nominal standard parameters of a robot YAML or of a model's table.
-fn nominal_of(path: &Path, robot: &Robot) -> Result<Vec<f64>, Failure> {
+/// The table of a robot YAML or of a model, with nominal standard parameters.
+fn table_of(path: &Path, robot: &Robot) -> Result<Robot, Failure> {
     let wrong = |what: String| Failure::Input(format!("{}: {what}", path.display()));
     let other = if is_model(path) {
         read_model(path)?.table.ok_or_else(|| wrong("a model without its table is no prior".to_owned()))?
@@ -94,5 +94,8 @@ fn nominal_of(path: &Path, robot: &Robot) -> Result<Vec<f64>, Failure> {
     if let Some(what) = difference(&other, robot) {
         return Err(wrong(format!("its table is not that of the recording's robot: {what}")));
     }
-    nominal(&other).ok_or_else(|| wrong("it has no nominal parameters".to_owned()))
+    if other.nominal.is_none() {
+        return Err(wrong("it has no nominal parameters".to_owned()));
+    }
+    Ok(other)
 }

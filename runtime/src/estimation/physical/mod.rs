@@ -10,6 +10,7 @@ mod interior_point;
 mod near_prior;
 mod newton_step;
 mod prior_problem;
+mod prior_weight;
 mod problem;
 mod pseudo_inertia;
 mod release;
@@ -87,5 +88,9 @@ fn sigmas(observation: &Observation, estimate: &Estimate) -> Option<Vec<f64>> {
     observation.groups.iter().map(sigma).collect()
 }
 
+#[cfg(test)]
+mod log_cholesky_tests;
+#[cfg(test)]
+mod testing;
 #[cfg(test)]
 mod tests;

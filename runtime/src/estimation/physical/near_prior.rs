@@ -7,29 +7,19 @@
 //! that is nowhere negative.
 //!
 //! min over x of ½ (K x - chi)ᵀ Λ (K x - chi) + γ R(x), with Λ the information of chi, is convex and smooth; Newton's method
-//! with backtracking finds it for any γ. γ is the largest with which the base parameters stay as near as their uncertainty
-//! allows: (K x - chi)ᵀ Λ (K x - chi) at most the number of them beyond the least that bodies can have (Morozov's
-//! discrepancy principle). A prior that agrees with the data is not left; what the data leave open is the prior's.
+//! with backtracking finds it for any γ, which is that of the least expected error (`prior_weight.rs`). A prior that agrees
+//! with the data is not left; what the data leave open is the prior's.
 //!
 //! Where an ellipsoid is known that holds a link, its body stays within: tr(P Q) >= 0 (Wensing, Kim and Slotine 2018), linear in
 //! x. R keeps P positive definite, so that these are the only constraints; Newton's method obeys them exactly, and bounds that
 //! hold nothing back change nothing.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::ellipsoid::ellipsoid_margin;
 use super::prior_problem::Search;
+use super::prior_weight::{Chosen, choose, path};
 use crate::model::{Ellipsoid, ParameterKind, Robot};
-
-/// The first weight of the prior, with which the data hardly count, and the factor from one to the next.
-const FIRST: f64 = 1e12;
-const NEXT: f64 = 0.1;
-/// The last weight, and the change of the distance over a decade, relative to it and to one parameter, that ends the way
-/// earlier.
-const LAST: f64 = 1e-8;
-const SETTLED: f64 = 1e-3;
-/// Bisections of the logarithm of the weight between two of a decade.
-const BISECTIONS: usize = 20;
 
 /// What is known of a robot's bodies before any recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +65,12 @@ pub struct NearPrior {
     pub determined: usize,
     /// Weight of the prior that was chosen.
     pub gamma: f64,
+    /// How many of the determined base parameters the data decide with it; the rest of them is the prior's.
+    pub freedom: f64,
+    /// Variance of the identified values over that of their covariance, as the least distance shows it; 1 or more.
+    pub dispersion: f64,
+    /// Chance of a least distance as large as this one where bodies have the true values.
+    pub p_value: f64,
     /// Divergence of each frame's body from its prior; 0 where there is none.
     pub divergence: Vec<f64>,
     /// Each frame's ellipsoid; `None` where it has none.
@@ -123,47 +119,12 @@ pub fn near_prior(
 ) -> Result<NearPrior, NearPriorError> {
     check(robot, chi, covariance, prior)?;
     let search = Search::new(robot, chi, covariance, prior)?;
-    let mut path = path(&search)?;
-    let distances: Vec<f64> = path.iter().map(|(_, x)| search.distance(x)).collect();
-    let least = distances.last().copied().unwrap_or_default();
-    let least_chi = path.last().map_or_else(Vec::new, |(_, x)| robot.base_from_standard(x.as_slice()));
-    let allowed = least + search.determined as f64;
-    let first = distances.iter().position(|d| *d <= allowed).unwrap_or(path.len() - 1);
-    let (mut gamma, mut x) = path.swap_remove(first);
-    if let Some(before) = first.checked_sub(1) {
-        // From bodies nearer to the prior, which are farther from the rim of what is possible.
-        let (mut above, mut start) = path.swap_remove(before);
-        for _ in 0..BISECTIONS {
-            let middle = (gamma * above).sqrt();
-            let found = search.minimum(middle, start.clone())?;
-            if search.distance(&found) <= allowed {
-                (gamma, x) = (middle, found);
-            } else {
-                (above, start) = (middle, found);
-            }
-        }
-    }
-    let found = outcome(&search, robot, prior, gamma, &x)?;
-    Ok(NearPrior { least, least_chi, ..found })
-}
-
-/// Minima with less and less weight of the prior, until the distance has settled: the last one is the least that there is.
-pub(super) fn path(search: &Search) -> Result<Vec<(f64, DVector<f64>)>, NearPriorError> {
-    let mut path = vec![(FIRST, search.minimum(FIRST, search.start.clone())?)];
-    while let Some((gamma, x)) = path.last()
-        && *gamma > LAST
-    {
-        let next = gamma * NEXT;
-        // Where rounding takes over, the way is at its end.
-        let Ok(found) = search.minimum(next, x.clone()) else { break };
-        let [before, after] = [x, &found].map(|x| search.distance(x));
-        let settled = next < 1.0 && before - after < SETTLED * (1.0 + after);
-        path.push((next, found));
-        if settled {
-            break;
-        }
-    }
-    Ok(path)
+    let path = path(&search)?;
+    let chosen = choose(&search, &path)?;
+    let Some(nearest) = path.last() else { return Err(NearPriorError::NotConverged) };
+    let found = outcome(&search, robot, prior, &chosen)?;
+    let least_chi = robot.base_from_standard(nearest.x.as_slice());
+    Ok(NearPrior { least: nearest.distance, least_chi, ..found })
 }
 
 /// Whether the arguments are of one robot, and its known parameters of bodies as a whole.
@@ -202,9 +163,9 @@ fn outcome(
     search: &Search,
     robot: &Robot,
     prior: &Prior,
-    gamma: f64,
-    x: &DVector<f64>,
+    chosen: &Chosen,
 ) -> Result<NearPrior, NearPriorError> {
+    let (gamma, x) = (chosen.minimum.gamma, &chosen.minimum.x);
     let (step, _) = search.newton(gamma, x).ok_or(NearPriorError::NotConverged)?;
     let mut divergence = vec![0.0; robot.frames.len()];
     let mut bounds = vec![None; robot.frames.len()];
@@ -228,11 +189,14 @@ fn outcome(
         chi: robot.base_from_standard(x.as_slice()),
         from_data: from_data.unwrap_or_else(|| vec![0.0; x.len()]),
         standard: x.as_slice().to_vec(),
-        distance: search.distance(x),
+        distance: chosen.minimum.distance,
         least: 0.0,
         least_chi: Vec::new(),
         determined: search.determined,
         gamma,
+        freedom: chosen.freedom,
+        dispersion: chosen.dispersion,
+        p_value: chosen.p_value,
         divergence,
         bounds,
     })

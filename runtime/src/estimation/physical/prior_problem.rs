@@ -300,9 +300,14 @@ impl Search {
         Some((gradient, hessian))
     }
 
-    /// The minimum of half the distance and `gamma` R, both over `gamma`.
+    /// Half the distance and `gamma` R, both over `gamma`; `None` outside of what is possible.
+    pub(super) fn objective(&self, gamma: f64, x: &DVector<f64>) -> Option<f64> {
+        Some(0.5 * self.distance(x) / gamma + self.regulariser(x)?)
+    }
+
+    /// The minimum of [`Self::objective`].
     pub(super) fn minimum(&self, gamma: f64, mut x: DVector<f64>) -> Result<DVector<f64>, NearPriorError> {
-        let value = |x: &DVector<f64>| Some(0.5 * self.distance(x) / gamma + self.regulariser(x)?);
+        let value = |x: &DVector<f64>| self.objective(gamma, x);
         for _ in 0..MOST_STEPS {
             let (found, gradient) = self.newton(gamma, &x).ok_or(NearPriorError::NotConverged)?;
             let step = found.step;

@@ -2,8 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use super::near_prior::{NearPriorError, Prior, check, path};
+use super::near_prior::{NearPriorError, Prior, check};
 use super::prior_problem::Search;
+use super::prior_weight::path;
 use crate::model::Robot;
 
 /// What must hold of one part of a robot.
@@ -48,8 +49,9 @@ pub fn released(
         }
         // What cannot be found says nothing of this one.
         let Ok(path) = path(&search) else { continue };
-        let Some((_, x)) = path.last() else { continue };
-        all.push(Released { what, least: search.distance(x), chi: robot.base_from_standard(x.as_slice()) });
+        let Some(nearest) = path.last() else { continue };
+        let chi = robot.base_from_standard(nearest.x.as_slice());
+        all.push(Released { what, least: nearest.distance, chi });
     }
     all.sort_by(|a, b| a.least.total_cmp(&b.least));
     Ok(all)
