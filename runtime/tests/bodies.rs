@@ -105,7 +105,7 @@ fn a_law_that_follows_the_load_feels_the_body_that_was_found() {
     // The same robot with the body as a part of its last link.
     let carried = model.robot().base_of_body(1, &inertial).unwrap();
     let heavier: Vec<f64> = chi.iter().zip(&carried).map(|(x, more)| x + more).collect();
-    let felt = torques(&heavier, &[friction.clone()]);
+    let felt = torques(&heavier, std::slice::from_ref(&friction));
     let unloaded = torques(&chi, &[friction]);
     for j in 0..2 {
         for t in 0..motion.q[j].len() {
