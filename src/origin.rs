@@ -28,21 +28,24 @@ pub fn recorded_from(source: &Source, model: &Path) -> Result<RecordedFrom, Fail
     })
 }
 
-/// What became of the recording that a model is from.
-pub enum Origin {
-    /// The model does not say where it is from.
-    Unknown,
-    /// It is where it was, and as it was.
-    Found(Vec<Trajectory>),
-    /// It cannot be taken for what it was, and why.
-    Lost(String),
+/// What became of the recording that a model is from; nothing where the model does not say which it is.
+#[derive(Default)]
+pub struct Origin {
+    /// Its motions, where it is where it was, and as it was.
+    pub motions: Vec<Trajectory>,
+    /// The sentence that says why it cannot be taken for what it was.
+    pub lost: Option<String>,
 }
 
 /// Looks for the recording that a model, read from `model`, is from; it must be of the robot that is diagnosed.
 pub fn find(saved: &Identified, model: &Path, (source, measured): (&Source, &Measured)) -> Origin {
-    let Some(from) = &saved.recording else { return Origin::Unknown };
+    let Some(from) = &saved.recording else { return Origin::default() };
     let path = folder_of(model).join(&from.path);
-    let lost = |why: &str| Origin::Lost(format!("the recording that it is from, {}, {why}", path.display()));
+    let lost = |why: &str| {
+        let only = "Of the model's motions only what its file holds was used";
+        let lost = format!("{only}: the recording that it is from, {}, {why}.", path.display());
+        Origin { lost: Some(lost), ..Origin::default() }
+    };
     if !path.is_file() {
         return lost("is not there");
     }
@@ -51,7 +54,7 @@ pub fn find(saved: &Identified, model: &Path, (source, measured): (&Source, &Mea
     if !same(&path) {
         return lost("has changed since");
     }
-    if same(&source.recording) && (source.from, source.to) == (from.from, from.to) {
+    if (source.from, source.to) == (from.from, from.to) && same(&source.recording) {
         return lost("is the one that is diagnosed");
     }
     if saved.samples > PIECE {
@@ -59,7 +62,7 @@ pub fn find(saved: &Identified, model: &Path, (source, measured): (&Source, &Mea
     }
     let before = Source { from: from.from, to: from.to, ..source.other(&path) };
     match measure(&before).and_then(|motions| of_the_same_robot(motions, measured, &path)) {
-        Ok(motions) => Origin::Found(motions.trajectories),
+        Ok(before) => Origin { motions: before.trajectories, lost: None },
         Err(why) => lost(&format!("cannot be read: {why}")),
     }
 }

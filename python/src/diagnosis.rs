@@ -5,13 +5,11 @@ use std::sync::Arc;
 
 use dynid::arguments::{DiagnosisOptions, Source};
 use dynid::commands::diagnose::compare::{Test, fitted, tested};
-use dynid::commands::diagnose::reference::without_motions;
 use dynid::commands::diagnose::{
     confirmation_failure, contradicting, diagnosis_failure, for_programs, improved, mistakes,
     of_the_same_robot, tell_speeds,
 };
 use dynid::failure::Failure;
-use dynid::origin::Origin;
 use dynid::output::write;
 use dynid::pages::Prior;
 use dynid::pages::diagnosis::{Extras, page, summary};
@@ -225,11 +223,7 @@ pub(crate) fn diagnose(
     if let Some(given) = reference {
         let known = known::before(given, (&Source::whole(path.clone()), &measured))?;
         (settings.reference, prior) = (Some(known.reference), Some(known.prior));
-        match known.origin {
-            Origin::Unknown => {}
-            Origin::Found(motions) => before = motions,
-            Origin::Lost(why) => lost = Some(why),
-        }
+        (before, lost) = (known.origin.motions, known.origin.lost);
     }
     let work = Work { path, measured: Arc::clone(&measured), test, settings, prior, lost, implausible };
     let found = interruptible::run(py, ("diagnosis", progress), move |watch| work.diagnose(&before, watch))?;
@@ -243,7 +237,7 @@ struct Work {
     test: Option<(PathBuf, Measured)>,
     settings: Settings,
     prior: Option<Prior>,
-    /// Why the motions of a reference are not used.
+    /// The sentence that says why the motions of a reference are not used.
     lost: Option<String>,
     implausible: bool,
 }
@@ -274,7 +268,7 @@ impl Work {
         let mut diagnosis =
             outcome.map_err(|failure| and_of_speeds(failure, &speed_words(&speeds, robot)))?;
         tell_speeds(&mut diagnosis, speeds, robot);
-        diagnosis.verdict.extend(lost.map(|why| without_motions(&why)));
+        diagnosis.verdict.extend(lost);
         let own = Extras::of(robot);
         let extras = Extras {
             fitted: fitted(&measured, &diagnosis, &options),

@@ -42,7 +42,7 @@ pub(crate) fn before(given: &Bound<'_, PyAny>, diagnosed: (&Source, &Measured)) 
     };
     if let Ok(fit) = given.cast::<PyFit>() {
         let fit = fit.get();
-        return of(&fit.identified, fit.dynamics.model().robot(), Path::new("reference"), Origin::Unknown);
+        return of(&fit.identified, fit.dynamics.model().robot(), Path::new("reference"), Origin::default());
     }
     let path: PathBuf =
         given.extract().map_err(|_| error("reference: expected a dynid.Fit or the path of a saved model"))?;

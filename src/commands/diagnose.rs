@@ -24,7 +24,7 @@ use crate::compared::residual_file;
 use crate::errors::prediction_failure;
 use crate::estimated::named;
 use crate::failure::Failure;
-use crate::origin::{Origin, recorded_from};
+use crate::origin::recorded_from;
 use crate::output::{Bar, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
@@ -94,11 +94,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
     if let Some(path) = &arguments.reference {
         let before = reference::read(path, (source, &measured))?;
         settings.reference = Some(Arc::new(before.reference));
-        match before.origin {
-            Origin::Unknown => {}
-            Origin::Found(motions) => baseline = motions,
-            Origin::Lost(why) => lost = Some(why),
-        }
+        (baseline, lost) = (before.origin.motions, before.origin.lost);
     }
     if let Some(path) = &arguments.laws {
         settings.laws =
@@ -126,7 +122,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
     let mut diagnosis =
         outcome.map_err(|error| and_of_speeds(failure(error), &speed_words(&speeds, robot)))?;
     tell_speeds(&mut diagnosis, speeds, robot);
-    diagnosis.verdict.extend(lost.map(|why| reference::without_motions(&why)));
+    diagnosis.verdict.extend(lost);
     let tested = match (&test, &arguments.test) {
         (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
         _ => None,

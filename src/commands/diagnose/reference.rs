@@ -29,11 +29,6 @@ pub(super) fn read(path: &Path, diagnosed: (&Source, &Measured)) -> Result<Befor
     Ok(Before { reference, origin: find(&saved, path, diagnosed) })
 }
 
-/// The sentence that tells of motions that could not be used.
-pub fn without_motions(why: &str) -> String {
-    format!("Of the model's motions only what its file holds was used: {why}.")
-}
-
 /// What a model of a robot (`its`) says of the robot that is diagnosed; errors call it `path`.
 ///
 /// Parameters mean something with the table that they were identified with, so that a model with another one is refused.
