@@ -129,6 +129,10 @@ pub(super) fn run(arguments: &Arguments, line: &[String]) -> Result<(), Failure>
     Ok(())
 }
 
+/// Equations for each parameter below which the errors that are left are no measure of what the parameters are worth:
+/// half as many degrees of freedom as parameters.
+const LEAST_ROWS_PER_PARAMETER: f64 = 1.5;
+
 /// Identifies from the observation of the method's equations; the last one is of the torques.
 fn identify(
     recorded: &Recorded,
@@ -149,7 +153,7 @@ fn identify(
             ..EstimateSettings::for_method(arguments.method.method())
         },
     );
-    if estimate.degrees_of_freedom == 0 {
+    if estimate.degrees_of_freedom == 0 || estimate.rows_per_parameter() < LEAST_ROWS_PER_PARAMETER {
         return Err(Failure::Data(format!(
             "{}: {} equations cannot determine {} parameters: record longer, or raise --band",
             arguments.recording.recording.display(),

@@ -122,6 +122,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// Equations for each parameter that they determine; infinite where they determine none.
+    ///
+    /// With fewer than two most of what the equations say is taken up by the parameters, and their errors say little.
+    pub fn rows_per_parameter(&self) -> f64 {
+        self.rows as f64 / self.rows.saturating_sub(self.degrees_of_freedom) as f64
+    }
+
     /// The parameters as a vector in the order of the observation's unknowns.
     pub fn chi(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.value).collect()

@@ -45,6 +45,7 @@ pub(super) fn equal(observation: &Observation) -> Weights {
 /// that fit is its sigma.
 pub(super) fn from_own_fits(observation: &Observation) -> Weights {
     let mut weights = equal(observation);
+    let mut found = vec![Variance::of_squares(0.0, 0.0); observation.groups.len()];
     for own in by_equation(observation) {
         let Some((&first, others)) = own.split_first() else { continue };
         let mut all = observation.groups[first].factor.clone();
@@ -59,17 +60,15 @@ pub(super) fn from_own_fits(observation: &Observation) -> Weights {
         for (&l, x) in independent.iter().zip(solved) {
             chi[l] = x;
         }
-        let squares: Vec<Variance> = own
-            .iter()
-            .map(|&g| {
-                let factor = &observation.groups[g].factor;
-                let places: Vec<(usize, usize)> =
-                    independent.iter().enumerate().map(|(place, &l)| (l, place)).collect();
-                squares(factor, factor.residual_norm(&chi), leverage(&gram(factor), &places, &inverse))
-            })
-            .collect();
-        settle(observation, &own, &squares, &mut weights);
+        let places: Vec<(usize, usize)> =
+            independent.iter().enumerate().map(|(place, &l)| (l, place)).collect();
+        for g in own {
+            let factor = &observation.groups[g].factor;
+            let leverage = leverage(&gram(factor), &places, &inverse);
+            found[g] = squares(factor, factor.residual_norm(&chi), leverage);
+        }
     }
+    settle(observation, &by_equation(observation), &found, &mut weights);
     weights
 }
 
@@ -102,17 +101,16 @@ pub(super) fn iterate(observation: &Observation, active: &[usize], start: &Weigh
             chi[l] = x;
         }
         let before = weights.sigma.clone();
-        for own in &equations {
-            let squares: Vec<Variance> = own
-                .iter()
-                .map(|&g| {
-                    let group = &observation.groups[g];
-                    let leverage = leverage(&grams[g], &places[g], &inverse) / before[g].powi(2);
-                    squares(&group.factor, residual_norm(group, &chi), leverage)
-                })
-                .collect();
-            settle(observation, own, &squares, &mut weights);
-        }
+        let found: Vec<Variance> = observation
+            .groups
+            .iter()
+            .enumerate()
+            .map(|(g, group)| {
+                let leverage = leverage(&grams[g], &places[g], &inverse) / before[g].powi(2);
+                squares(&group.factor, residual_norm(group, &chi), leverage)
+            })
+            .collect();
+        settle(observation, &equations, &found, &mut weights);
         let rows = |g: usize| observation.groups[g].factor.rows();
         let change = (0..before.len()).filter(|&g| rows(g) > 0).map(|g| weights.sigma[g] / before[g] - 1.0);
         weights.converged = change.fold(0.0, |m: f64, c| m.max(c.abs())) < CONVERGED;
@@ -175,16 +173,36 @@ fn squares(factor: &Factor, residual: f64, leverage: f64) -> Variance {
     Variance::of_squares(residual * residual, (rows - leverage).clamp(0.0, rows))
 }
 
-/// The standard deviations of the groups of one equation from their squares, never so small that their inverse means
-/// nothing.
-fn settle(observation: &Observation, own: &[usize], squares: &[Variance], weights: &mut Weights) {
-    let prior = Prior::of_groups(squares);
-    for (&g, &squares) in own.iter().zip(squares) {
+/// The standard deviations of the groups from their squares, never so small that their inverse means nothing.
+///
+/// An equation of which the fit leaves less than one degree of freedom does not tell its error: what it lacks is lent by
+/// the others, of which it is taken to have the relative error. Else an equation with fewer rows than parameters, in a
+/// recording of one trajectory, would be interpolated and outweigh all others.
+fn settle(observation: &Observation, equations: &[Vec<usize>], squares: &[Variance], weights: &mut Weights) {
+    let mean_square = |g: usize| {
         let factor = &observation.groups[g].factor;
-        let floor = FLOOR * factor.norm_y() / (factor.rows().max(1) as f64).sqrt();
-        let sigma = prior.map_or(0.0, |prior| prior.moderate(squares).value.sqrt()).max(floor);
-        weights.sigma[g] = if sigma > 0.0 { sigma } else { 1.0 };
-        weights.freedom[g] = squares.freedom;
+        factor.norm_y().powi(2) / factor.rows().max(1) as f64
+    };
+    let relative: Vec<Variance> = (0..squares.len())
+        .filter(|&g| mean_square(g) > 0.0)
+        .map(|g| Variance { value: squares[g].value / mean_square(g), ..squares[g] })
+        .collect();
+    let lent = Prior::of_groups(&relative).map_or(0.0, |prior| prior.variance);
+    for own in equations {
+        let seen: Vec<Variance> = own.iter().map(|&g| squares[g]).collect();
+        let prior = Prior::of_groups(&seen);
+        let told = seen.iter().map(|s| s.freedom).sum::<f64>().min(1.0);
+        for &g in own {
+            let moderated = prior.map_or(0.0, |prior| prior.moderate(squares[g]).value);
+            let variance = if told < 1.0 {
+                told * moderated + (1.0 - told) * lent * mean_square(g)
+            } else {
+                moderated
+            };
+            let sigma = variance.sqrt().max(FLOOR * mean_square(g).sqrt());
+            weights.sigma[g] = if sigma > 0.0 { sigma } else { 1.0 };
+            weights.freedom[g] = squares[g].freedom;
+        }
     }
 }
 

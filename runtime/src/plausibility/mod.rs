@@ -40,6 +40,10 @@ const PROMISING: f64 = 0.9;
 /// A joint's error where half of its squared torque is explained.
 const HALF: f64 = FRAC_1_SQRT_2;
 
+/// Equations for each parameter from which mistakes are looked for: with fewer, errors of single joints are what the
+/// parameters happened to leave there, and halve by accident.
+const ENOUGH_ROWS: f64 = 3.0;
+
 /// What physics says of a recording.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -107,6 +111,9 @@ pub fn judge(
     if own.strain > OVERSTRAINED || error > BAD {
         candidates.extend(mistakes(robot, &own));
     }
+    if estimated.rows_per_parameter() < ENOUGH_ROWS {
+        candidates.clear();
+    }
     let instead = better(judged, others, candidates, &own);
     if !instead.is_empty() {
         let worst = (JointIndex(worst), error);
@@ -159,13 +166,18 @@ fn better(
             let promising = |free: &[Option<f64>]| ratio(&own.per_equation, free) >= PROMISING * enough;
             let fit = candidate.fit(judged, others, promising)?;
             let better = ratio(&own.per_equation, &fit.per_equation);
-            // A factor of a thousand is the worst that is wrong: what is explained worst is explained by it.
-            let [before, after] =
-                [own, &fit].map(|f| errors_of(&f.per_equation).into_iter().fold(0.0, f64::max));
-            if matches!(candidate, Instead::Scale { .. }) && MISTAKE * after > before {
-                return None;
-            }
-            (better >= enough).then_some((better, candidate, fit.relative_error?))
+            let error = fit.relative_error?;
+            let explains = match candidate {
+                // A factor of a thousand is the worst that is wrong: what is explained worst is explained by it.
+                Instead::Scale { .. } => {
+                    let [before, after] =
+                        [own, &fit].map(|f| errors_of(&f.per_equation).into_iter().fold(0.0, f64::max));
+                    MISTAKE * after <= before
+                }
+                // Nor is a joint made right by what makes the torques of all together worse.
+                _ => own.relative_error.is_none_or(|own| error <= own),
+            };
+            (better >= enough && explains).then_some((better, candidate, error))
         })
         .collect();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
