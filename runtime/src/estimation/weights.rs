@@ -4,7 +4,7 @@
 use super::observe::{EquationFactor, Observation};
 use super::solve::{back_substitute, inverse_gram};
 use super::{Factor, RANK_TOLERANCE};
-use crate::statistics::moderation::{Prior, Variance};
+use crate::statistics::moderation::{Lent, Prior, Variance};
 use nalgebra::DMatrix;
 
 /// Largest relative change of a sigma at which the weights have converged.
@@ -173,32 +173,22 @@ fn squares(factor: &Factor, residual: f64, leverage: f64) -> Variance {
     Variance::of_squares(residual * residual, (rows - leverage).clamp(0.0, rows))
 }
 
-/// The standard deviations of the groups from their squares, never so small that their inverse means nothing.
-///
-/// An equation of which the fit leaves less than one degree of freedom does not tell its error: what it lacks is lent by
-/// the others, of which it is taken to have the relative error. Else an equation with fewer rows than parameters, in a
-/// recording of one trajectory, would be interpolated and outweigh all others.
+/// The standard deviations of the groups from their squares, never so small that their inverse means nothing. An equation
+/// that the fit leaves no freedom, as one of a single trajectory with fewer rows than parameters, is lent the relative
+/// error of the others.
 fn settle(observation: &Observation, equations: &[Vec<usize>], squares: &[Variance], weights: &mut Weights) {
     let mean_square = |g: usize| {
         let factor = &observation.groups[g].factor;
         factor.norm_y().powi(2) / factor.rows().max(1) as f64
     };
-    let relative: Vec<Variance> = (0..squares.len())
-        .filter(|&g| mean_square(g) > 0.0)
-        .map(|g| Variance { value: squares[g].value / mean_square(g), ..squares[g] })
-        .collect();
-    let lent = Prior::of_groups(&relative).map_or(0.0, |prior| prior.variance);
+    let lent = Lent::of((0..squares.len()).map(|g| (squares[g], mean_square(g))));
     for own in equations {
         let seen: Vec<Variance> = own.iter().map(|&g| squares[g]).collect();
         let prior = Prior::of_groups(&seen);
-        let told = seen.iter().map(|s| s.freedom).sum::<f64>().min(1.0);
+        let freedom = seen.iter().map(|s| s.freedom).sum();
         for &g in own {
             let moderated = prior.map_or(0.0, |prior| prior.moderate(squares[g]).value);
-            let variance = if told < 1.0 {
-                told * moderated + (1.0 - told) * lent * mean_square(g)
-            } else {
-                moderated
-            };
+            let variance = lent.completed(moderated, freedom, mean_square(g));
             let sigma = variance.sqrt().max(FLOOR * mean_square(g).sqrt());
             weights.sigma[g] = if sigma > 0.0 { sigma } else { 1.0 };
             weights.freedom[g] = squares[g].freedom;

@@ -82,6 +82,29 @@ impl Prior {
     }
 }
 
+/// What variances are in units of the mean squares of what they are errors of: lent to a quantity whose fit leaves less
+/// than one degree of freedom. It does not tell its error, and would else be interpolated and outweigh all others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Lent {
+    relative: f64,
+}
+
+impl Lent {
+    /// Of variances, each with the mean square of what it is an error of.
+    pub fn of(seen: impl Iterator<Item = (Variance, f64)>) -> Self {
+        let relative: Vec<Variance> = seen
+            .filter(|(_, mean_square)| *mean_square > 0.0)
+            .map(|(v, mean_square)| Variance { value: v.value / mean_square, ..v })
+            .collect();
+        Self { relative: Prior::of_groups(&relative).map_or(0.0, |prior| prior.variance) }
+    }
+
+    /// A variance that is known with `freedom` degrees, with what it lacks to one of them.
+    pub fn completed(self, value: f64, freedom: f64, mean_square: f64) -> f64 {
+        if freedom < 1.0 { freedom * value + (1.0 - freedom) * self.relative * mean_square } else { value }
+    }
+}
+
 /// The scale of the variances that is most likely where they scatter with so many degrees of freedom, and the
 /// logarithm of its likelihood, by golden sections of its logarithm.
 fn most_likely_variance(seen: &[Variance], freedom: f64) -> (f64, f64) {
@@ -182,6 +205,16 @@ mod tests {
         let groups = [Variance::of_squares(40.0, 40.0), Variance::of_squares(1e-20, 1e-6)];
         let prior = Prior::of_groups(&groups).expect("groups");
         assert_relative_eq!(prior.moderate(groups[1]).value, 1.0, max_relative = 1e-5);
+    }
+
+    #[test]
+    fn what_leaves_no_freedom_has_the_relative_error_of_the_others() {
+        let seen = [(4.0, 40.0, 100.0), (0.09, 30.0, 2.25), (1e-25, 1e-12, 25.0)];
+        let seen = seen.map(|(value, freedom, square)| (Variance { value, freedom }, square));
+        let lent = Lent::of(seen.into_iter());
+        assert_relative_eq!(lent.completed(1e-25, 1e-12, 25.0), 1.0, max_relative = 1e-6);
+        assert_relative_eq!(lent.completed(4.0, 40.0, 100.0), 4.0);
+        assert_relative_eq!(lent.completed(3.0, 0.5, 25.0), 2.0, max_relative = 1e-6);
     }
 
     #[test]

@@ -2,8 +2,9 @@
 
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::gram::Gram;
+use crate::diagnosis::rows::gram::{Gram, dot};
 use crate::diagnosis::rules::{LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
+use crate::statistics::moderation::{Lent, Variance};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -66,19 +67,52 @@ impl Fit {
     pub fn weighted(design: &Design, start: &[f64]) -> Result<Self, SingularDesign> {
         let mut fit = Self::whole(design, start)?;
         for _ in 0..WEIGHT_ROUNDS {
-            let sigma: Vec<f64> = (0..start.len()).map(|j| fit.deviation(design, j)).collect();
-            fit = Self::whole(design, &sigma)?;
+            fit = Self::whole(design, &fit.deviations(design))?;
         }
         Ok(fit)
     }
 
-    /// Standard deviation of the residual of a joint on all segments, bounded from below.
-    fn deviation(&self, design: &Design, joint: usize) -> f64 {
-        let rows = design.of_joint(joint);
-        let squares = self.squares_of_joint(design, joint);
-        let count = rows.len().max(1) as f64;
-        let largest = rows.map(|r| design.torque(r).abs()).fold(0.0_f64, f64::max);
-        (squares / count).sqrt().max(LEAST_RELATIVE_SIGMA * largest).max(LEAST_SIGMA)
+    /// Standard deviations of the residuals of the joints on all segments, bounded from below: squares over the degrees of
+    /// freedom that the fit leaves there, which is their share of restricted maximum likelihood (Patterson and Thompson
+    /// 1971). A joint that it leaves none is lent the relative error of the others.
+    fn deviations(&self, design: &Design) -> Vec<f64> {
+        let inverse = self.inverse_gram();
+        let mean_square = |j: usize| {
+            let rows = design.of_joint(j);
+            let count = rows.len().max(1) as f64;
+            rows.map(|r| design.torque(r).powi(2)).sum::<f64>() / count
+        };
+        let told: Vec<(Variance, f64)> = (0..design.joints)
+            .map(|j| {
+                let (rows, squares) = (design.of_joint(j).len() as f64, self.squares_of_joint(design, j));
+                let freedom = (rows - self.leverage(design, j, &inverse)).clamp(0.0, rows);
+                (Variance::of_squares(squares, freedom), mean_square(j))
+            })
+            .collect();
+        let lent = Lent::of(told.iter().copied());
+        let deviation = |(j, &(own, mean_square)): (usize, &(Variance, f64))| {
+            let largest = design.of_joint(j).map(|r| design.torque(r).abs()).fold(0.0_f64, f64::max);
+            let variance = lent.completed(own.value, own.freedom, mean_square);
+            variance.sqrt().max(LEAST_RELATIVE_SIGMA * largest).max(LEAST_SIGMA)
+        };
+        told.iter().enumerate().map(deviation).collect()
+    }
+
+    /// Trace of a joint's part of the hat matrix, W (Wᵀ W)⁻¹ Wᵀ of the weighted rows.
+    fn leverage(&self, design: &Design, joint: usize, inverse: &DMatrix<f64>) -> f64 {
+        let trained = (0..self.train.len()).filter(|&g| self.train[g]);
+        let of_segment = |g: usize| {
+            let gram = design.gram(joint, g);
+            (0..gram.columns()).map(|i| dot(gram.row(i), inverse.column(i).as_slice())).sum::<f64>()
+        };
+        trained.map(of_segment).sum::<f64>() / (self.sigma[joint] * self.sigma[joint])
+    }
+
+    /// (Wᵀ W)⁻¹ in units of the columns.
+    fn inverse_gram(&self) -> DMatrix<f64> {
+        let inverse = self.factor.inverse();
+        let p = self.chi.len();
+        DMatrix::from_fn(p, p, |i, k| inverse[(i, k)] * self.scale[i] * self.scale[k])
     }
 
     /// (Wᵀ W)⁻¹ b.
@@ -187,8 +221,8 @@ impl Fit {
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].
     pub fn known_beforehand(&self, design: &Design) -> f64 {
         let Some(prior) = &design.prior else { return 0.0 };
-        let inverse = self.factor.inverse();
-        prior.parameters(|i, k| inverse[(i, k)] * self.scale[i] * self.scale[k])
+        let inverse = self.inverse_gram();
+        prior.parameters(|i, k| inverse[(i, k)])
     }
 
     /// Columns that the segments do not determine: the part that the others do not make is below `least` of their
