@@ -3,8 +3,8 @@
 //! Evidence inside one recording cannot exclude that a law imitates something that this motion has and other motion has
 //! not. Where there is a test recording, each finding is therefore held against it: the part of it that is there
 //! ([`OnTest`]) must be more than one half, or its joints are predicted worse with it; it must be told from nothing where
-//! the motion could have shown it; and it must not certainly make the other joints worse. What fails is taken out, and the
-//! search goes on without it. The test recording then no longer is one for what was chosen by it: of a finding that
+//! the motion could have shown it; it must not certainly make the other joints worse; and a factor must be the same. What
+//! fails is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by it: of a finding that
 //! stays, only that it did not fail is known from it.
 
 mod slope;
@@ -121,6 +121,9 @@ fn held_against_test(
         let on_all = Slope::of(&evaluation, [which, 0], None);
         let own = slope.judgement();
         let fails = match own {
+            Judgement::Stands if finding.term.effect.properties().is_factor && slope.certainly_differs() => {
+                true
+            }
             Judgement::Stands => on_all.is_some_and(|s| s.certainly_harms()),
             Judgement::Harms => true,
             Judgement::NotSeen => on_all.is_none_or(|s| s.judgement() != Judgement::Stands),
@@ -128,7 +131,7 @@ fn held_against_test(
         if fails {
             let [test_before, test_after] = [which, 0].map(|m| error_on(model, finding, &evaluation, m));
             let (effect, joints) = (finding.effect.clone(), finding.joints.clone());
-            let harms_others = own == Judgement::Stands;
+            let harms_others = own == Judgement::Stands && on_all.is_some_and(|s| s.certainly_harms());
             failing.push((*k, Refuted { effect, joints, test_before, test_after, on_test, harms_others }));
         }
     }

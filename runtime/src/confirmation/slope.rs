@@ -19,6 +19,10 @@ const LEVEL: f64 = 0.025;
 /// Slope at which a law changes nothing: squares of the residual that go are proportional to 2 beta - 1.
 const NEUTRAL: f64 = 0.5;
 
+/// Part of a factor by which it may seem to differ in another motion: inertia and friction that are a few per cent off
+/// change what seems to be multiplied. Judgement.
+const SAME: f64 = 0.1;
+
 /// The part of a law that other motion shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Slope {
@@ -101,6 +105,11 @@ impl Slope {
         self.margin().is_some_and(|margin| self.value < NEUTRAL - margin)
     }
 
+    /// Whether another size than that of the law is certain.
+    pub(super) fn certainly_differs(&self) -> bool {
+        self.margin().is_some_and(|margin| (self.value - 1.0).abs() > SAME + margin)
+    }
+
     /// What a slope differs by from the true one only in rare cases; `None` where that is not known.
     fn margin(&self) -> Option<f64> {
         let student = StudentsT::new(0.0, 1.0, self.units.checked_sub(1)? as f64).ok()?;
@@ -176,5 +185,15 @@ mod tests {
         // Half of them come out below one half by accident; none of the others is called unseen.
         let unclear = stands(3.0, &mut rng);
         assert!((200..350).contains(&unclear), "{unclear}");
+    }
+
+    #[test]
+    fn a_factor_of_another_size_is_told_and_one_of_the_same_size_is_not() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let mut differs =
+            |there: f64| (0..1000).filter(|_| slope(there, 0.1, 8, &mut rng).certainly_differs()).count();
+        assert!(differs(1.0) < 10);
+        assert!(differs(1.1) < 40, "a tenth is allowed");
+        assert!(differs(0.55) > 800);
     }
 }

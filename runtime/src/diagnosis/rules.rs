@@ -191,6 +191,9 @@ pub(super) const REPEATS: f64 = 0.02;
 pub(super) const COMPARABLE: f64 = 0.5;
 /// Most such rivals that a candidate is compared with. Judgement: saves time.
 pub(super) const MOST_COMPARED: usize = 6;
+/// Least part of a law's torque that a rival in the model leaves, for the two to explain different things. Statistics: where
+/// less than half of it stays, most of what it explained is the rival's as well.
+pub(super) const LEAST_KEPT: f64 = 0.5;
 /// Least change of a joint's friction torque that is named, as a share of it. Judgement: a user acts on no less.
 pub(super) const LEAST_FRICTION_CHANGE: f64 = 0.05;
 /// Displacement, as a fraction of a joint's travel, over which friction builds up after a reversal in the nuisance

@@ -92,6 +92,9 @@ pub struct Properties {
     /// Whether it is a law of friction that any recording of a robot may have: against a baseline it is then fitted to
     /// both, and only what differs is a change.
     pub standing_friction: bool,
+    /// Whether it is a factor on a recorded torque and nothing else. Whatever grows with the torque looks like one in a
+    /// single motion; only a factor is the same in every other.
+    pub is_factor: bool,
 }
 
 /// What an effect comes back to where its own number vanishes, or simpler laws that come close to it.

@@ -3,8 +3,9 @@
 //! A recording that is judged against a model has no motions of the robot before it changed. What they would have told is
 //! worked out while they are there, in the way of [`super::calibration`], and kept with the model.
 
-use crate::diagnosis::judging::calibration::{Compared, gain, of_companions, prior, with_other_motions};
+use crate::diagnosis::judging::calibration::{Compared, of_companions, prior, with_other_motions};
 use crate::diagnosis::judging::units::Units;
+use crate::diagnosis::judging::wald::Wald;
 use crate::diagnosis::judging::white_products::{Background, Regressors};
 use crate::diagnosis::outcome::BetweenMotions;
 use crate::parallel;
@@ -42,10 +43,9 @@ pub(in crate::diagnosis) fn between_motions(
         let bound = Regressors { free: &free, ..*regressors };
         let products = background.with(units, &bound, &level, residual);
         let of_unit =
-            |c: &Compared| gain(&c.whole, &products.units[*c.units.first()?], p, level.len(), false);
+            |c: &Compared| Wald::of(&c.whole, &products.units[*c.units.first()?], (p, level.len()), false);
         let compared = with_other_motions(units, &products, taken)?;
-        let own = compared.iter().filter_map(of_unit).map(|(squares, numbers)| squares / numbers as f64);
-        let own: Vec<f64> = own.collect();
+        let own: Vec<f64> = compared.iter().filter_map(of_unit).map(|wald| wald.mean()).collect();
         (own.len() > 1).then(|| BetweenMotions {
             laws: of_laws.variance,
             laws_freedom: of_laws.freedom,

@@ -10,10 +10,11 @@
 
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::units::Units;
+use crate::diagnosis::judging::wald::Wald;
 use crate::diagnosis::judging::white_products::{Background, Products, Regressors, factored};
-use crate::diagnosis::rules::{LEAST_EIGENVALUE, OWN_FRACTION};
+use crate::diagnosis::rules::OWN_FRACTION;
 use crate::statistics::moderation::{Prior, Variance};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// A law's statistic in the recording and its variation.
@@ -73,18 +74,18 @@ pub(in crate::diagnosis) fn calibrate(
     let found = if change {
         let fresh = sum(&products.files, |f| units.is_target(f));
         let old = sum(&products.files, |f| !units.is_target(f));
-        gain(&(&old + &fresh), &fresh, p, k, common)?
+        Wald::of(&(&old + &fresh), &fresh, (p, k), common)?
     } else {
-        gain(&all(&products, regressors, p + k), &sum(&products.units, |_| true), p, k, false)?
+        Wald::of(&all(&products, regressors, p + k), &sum(&products.units, |_| true), (p, k), false)?
     };
     // Without a baseline the law is in all units, and in each it may be another.
     let common = common || !change;
     let compared = compared(units, &products, all(&products, regressors, p + k));
     let own: Vec<f64> = compared
         .iter()
-        .flat_map(|c| c.units.iter().map(|&u| gain(&c.whole, &products.units[u], p, k, common)))
+        .flat_map(|c| c.units.iter().map(|&u| Wald::of(&c.whole, &products.units[u], (p, k), common)))
         .flatten()
-        .map(|(squares, numbers)| squares / numbers as f64)
+        .map(|wald| wald.mean())
         .collect();
     let m = if common { p + k } else { p };
     let others = of_companions(&compared, &products, m, p + k);
@@ -110,11 +111,19 @@ pub(in crate::diagnosis) fn calibrate(
     let target: Vec<&DMatrix<f64>> =
         products.units.iter().zip(&units.units).filter(|(_, u)| u.target).map(|(m, _)| m).collect();
     let carrying = carrying(&whole, &target, p, k);
-    Some(Calibrated { squares: found.0, numbers: found.1, lambda, freedom, carrying })
+    Some(Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, carrying })
 }
 
-/// The same evidence with another law in the model, given as its columns over all rows: what the first explains that the
-/// other does not.
+/// What a law explains that another one in the model does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct Beside {
+    /// The same evidence with the other one in the model.
+    pub evidence: Calibrated,
+    /// Part of its torque that is still there: 1 where the two have nothing in common, below 0 where it has turned.
+    pub kept: f64,
+}
+
+/// A law with another one in the model, given as its columns over all rows.
 pub(in crate::diagnosis) fn beside(
     units: &Units,
     regressors: &Regressors<'_>,
@@ -122,24 +131,31 @@ pub(in crate::diagnosis) fn beside(
     law: &Law<'_>,
     calibrated: &Calibrated,
     other: &[Vec<f64>],
-) -> Option<Calibrated> {
+) -> Option<Beside> {
     let (p, k, o) = (regressors.shared.len(), law.columns.len(), other.len());
     let both: Vec<Vec<f64>> = other.iter().chain(law.columns).cloned().collect();
     let products = background.with(units, regressors, &both, law.residual);
-    let found = if units.change() {
+    let (mut whole, part) = if units.change() {
         let fresh = sum(&products.files, |f| units.is_target(f));
-        let mut whole = sum(&products.files, |f| !units.is_target(f)) + &fresh;
+        (sum(&products.files, |f| !units.is_target(f)) + &fresh, fresh)
+    } else {
+        (all(&products, regressors, p + o + k), sum(&products.units, |_| true))
+    };
+    let alone: Vec<usize> = (0..whole.nrows()).filter(|i| !(p..p + o).contains(i)).collect();
+    let without = |m: &DMatrix<f64>| m.select_rows(&alone).select_columns(&alone);
+    let common = law.common && units.change();
+    let before = Wald::of(&without(&whole), &without(&part), (p, k), common)?;
+    if units.change() {
         // A change is not there before it.
         for i in p..p + o {
-            whole.set_row(i, &fresh.row(i));
-            whole.set_column(i, &fresh.column(i));
+            whole.set_row(i, &part.row(i));
+            whole.set_column(i, &part.column(i));
         }
-        gain(&whole, &fresh, p + o, k, law.common)?
-    } else {
-        let whole = all(&products, regressors, p + o + k);
-        gain(&whole, &sum(&products.units, |_| true), p + o, k, false)?
-    };
-    Some(Calibrated { squares: found.0, numbers: found.1, ..*calibrated })
+    }
+    let found = Wald::of(&whole, &part, (p + o, k), common)?;
+    let kept = before.product(&found.amplitude) / before.squares.max(f64::MIN_POSITIVE);
+    let evidence = Calibrated { squares: found.squares, numbers: found.numbers, ..*calibrated };
+    Some(Beside { evidence, kept })
 }
 
 /// Probability that a law is ahead of a rival by `ahead` squares only by accident.
@@ -285,51 +301,6 @@ fn carrying(whole: &DMatrix<f64>, units: &[&DMatrix<f64>], p: usize, k: usize) -
     let own: Vec<f64> = units.iter().map(own).collect();
     let squares = own.iter().map(|e| e * e).sum::<f64>();
     if squares > 0.0 { own.iter().sum::<f64>().powi(2) / squares } else { 0.0 }
-}
-
-/// Squares that `k` columns take away in one part of the whole, all other columns fitted to all of it, and how many of
-/// them are determined. The products are ordered `[p columns, law, y]`. Where `common`, the law may be there in all
-/// motion, and its change in the part is judged.
-pub(super) fn gain(
-    whole: &DMatrix<f64>,
-    part: &DMatrix<f64>,
-    p: usize,
-    k: usize,
-    common: bool,
-) -> Option<(f64, usize)> {
-    let m = if common { p + k } else { p };
-    let (law, y) = (p, p + k);
-    let g = whole.view((0, 0), (m, m)).into_owned();
-    let v = DVector::from_fn(m, |i, _| whole[(i, y)]);
-    let z = part.view((0, law), (m, k)).into_owned();
-    let own = part.view((law, law), (k, k)).into_owned();
-    let mut b = DVector::from_fn(k, |a, _| part[(law + a, y)]);
-    let (factor, scale) = factored(&g)?;
-    let scale = DMatrix::from_diagonal(&scale);
-    let scaled = &scale * &z;
-    let made = factor.solve(&scaled);
-    let mut s = &own - scaled.transpose() * &made;
-    b -= made.transpose() * (&scale * &v);
-    let alive: Vec<usize> =
-        (0..k).filter(|&a| own[(a, a)] > 0.0 && s[(a, a)] > OWN_FRACTION * own[(a, a)]).collect();
-    if alive.is_empty() {
-        return None;
-    }
-    s = s.select_rows(&alive).select_columns(&alive);
-    let b = b.select_rows(&alive);
-    let width = DVector::from_fn(alive.len(), |a, _| 1.0 / s[(a, a)].sqrt());
-    let correlation = DMatrix::from_fn(alive.len(), alive.len(), |i, c| s[(i, c)] * width[i] * width[c]);
-    // Directions that the columns have only together by rounding carry no evidence.
-    let eigen = correlation.symmetric_eigen();
-    let projected = eigen.eigenvectors.transpose() * b.component_mul(&width);
-    let (mut squares, mut numbers) = (0.0, 0);
-    for (value, x) in eigen.eigenvalues.iter().zip(projected.iter()) {
-        if *value > LEAST_EIGENVALUE {
-            squares += x * x / value;
-            numbers += 1;
-        }
-    }
-    (numbers > 0).then_some((squares, numbers))
 }
 
 #[cfg(test)]

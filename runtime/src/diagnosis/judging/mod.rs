@@ -17,4 +17,5 @@ pub(in crate::diagnosis) mod testing;
 #[cfg(test)]
 mod tests;
 pub(in crate::diagnosis) mod units;
+mod wald;
 pub(in crate::diagnosis) mod white_products;

@@ -193,7 +193,7 @@ impl Search<'_> {
         };
         let shows_beside = |(law, calibrated): &(Law<'_>, Calibrated), other: &[Vec<f64>]| {
             beside(&bench.units, &regressors, background, law, calibrated, other)
-                .is_some_and(|left| left.evidence().p_value <= TOLD_APART)
+                .is_some_and(|left| left.evidence.evidence().p_value <= TOLD_APART)
         };
         let of_friction = judged(&friction)?;
         let evidence = of_friction.1.evidence();

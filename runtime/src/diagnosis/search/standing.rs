@@ -2,8 +2,8 @@
 
 use crate::diagnosis::candidates::position_noise::position_noise;
 use crate::diagnosis::candidates::ringing::ringing;
-use crate::diagnosis::judging::calibration::{Calibrated, beside, rival_p_value};
-use crate::diagnosis::rules::{COMPARABLE, MOST_COMPARED, NOISE_MISSED, TOLD_APART};
+use crate::diagnosis::judging::calibration::{Beside, Calibrated, beside, rival_p_value};
+use crate::diagnosis::rules::{COMPARABLE, LEAST_KEPT, MOST_COMPARED, NOISE_MISSED, TOLD_APART};
 use crate::diagnosis::search::gate::{Gate, RoundEvidence};
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
@@ -28,8 +28,8 @@ fn penalty(candidates: usize) -> f64 {
 
 impl Search<'_> {
     /// How a candidate of a round stands against rivals at other places, which reach it through the parameters that
-    /// joints share: by what they explain of all joints in a residual made white. A law that is certain beside another
-    /// has no rival in it: they explain different things.
+    /// joints share: by what they explain of all joints in a residual made white. A law that is certain beside another, and
+    /// much the same as without it, has no rival in it: they explain different things.
     pub(in crate::diagnosis) fn standing(
         &self,
         round: &RoundEvidence,
@@ -54,7 +54,7 @@ impl Search<'_> {
             let Some(other) = self.gate(round, ranked, rivals[r]) else { return Standing::Ahead };
             let ahead = worth(&own.calibrated) - worth(&other.calibrated);
             if rival_p_value(&own.calibrated, &other.calibrated, ahead) <= TOLD_APART
-                || self.certain_beside(
+                || self.stands_beside(
                     round,
                     &ranked[candidate],
                     own,
@@ -119,7 +119,7 @@ impl Search<'_> {
         let (context, design) = (&self.model.context, &regression.design);
         let noise = round.noise.get_or_init(|| position_noise(context, design));
         let left = self.left_beside(round, &ranked[candidate], own, noise);
-        if left.is_none_or(|left| left.squares < NOISE_MISSED * own.calibrated.squares) {
+        if left.is_none_or(|left| left.evidence.squares < NOISE_MISSED * own.calibrated.squares) {
             return false;
         }
         let shape = &law.trials[ranked[candidate].verdict.trial].shape;
@@ -137,7 +137,23 @@ impl Search<'_> {
         least_confidence: f64,
     ) -> bool {
         let left = self.left_beside(round, candidate, own, rival);
-        left.is_some_and(|left| left.evidence().confidence(self.tries()) >= least_confidence)
+        left.is_some_and(|left| left.evidence.evidence().confidence(self.tries()) >= least_confidence)
+    }
+
+    /// Whether it also is much the same law there. Two laws that share what they explain may leave a difference that is as
+    /// certain, and is neither of them: a factor on the torque of one joint turns round beside that of another.
+    fn stands_beside(
+        &self,
+        round: &RoundEvidence,
+        candidate: &Ranked,
+        own: &Gate,
+        rival: &[Vec<f64>],
+        least_confidence: f64,
+    ) -> bool {
+        let left = self.left_beside(round, candidate, own, rival);
+        left.is_some_and(|left| {
+            left.kept >= LEAST_KEPT && left.evidence.evidence().confidence(self.tries()) >= least_confidence
+        })
     }
 
     /// The evidence for a candidate beside a rival, given as columns over all rows.
@@ -147,7 +163,7 @@ impl Search<'_> {
         candidate: &Ranked,
         own: &Gate,
         rival: &[Vec<f64>],
-    ) -> Option<Calibrated> {
+    ) -> Option<Beside> {
         let (bench, design) = (self.model.bench(candidate.window), &self.of(candidate).0.design);
         let background = round.of(candidate.window).get()?;
         let columns = self.columns(candidate);

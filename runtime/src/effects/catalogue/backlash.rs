@@ -35,6 +35,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Load,
     along_motion: false,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// The effect.

@@ -25,6 +25,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Time,
     along_motion: false,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// The effect.

@@ -36,6 +36,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Time,
     along_motion: true,
     standing_friction: true,
+    is_factor: false,
 };
 
 /// The effect.

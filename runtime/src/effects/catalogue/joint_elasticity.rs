@@ -31,6 +31,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Acceleration,
     along_motion: false,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// The effect.

@@ -39,6 +39,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Load,
     along_motion: true,
     standing_friction: true,
+    is_factor: false,
 };
 
 /// The effect.

@@ -34,6 +34,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Position,
     along_motion: true,
     standing_friction: true,
+    is_factor: false,
 };
 
 /// The effect.

@@ -34,6 +34,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Position,
     along_motion: false,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// What is a line in so much of its squares over the travel is called a spring.

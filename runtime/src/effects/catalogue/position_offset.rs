@@ -29,6 +29,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Position,
     along_motion: false,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// The effect.

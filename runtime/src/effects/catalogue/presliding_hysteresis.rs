@@ -32,6 +32,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::SinceReversal,
     along_motion: false,
     standing_friction: true,
+    is_factor: false,
 };
 
 /// The effect.

@@ -33,6 +33,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Speed,
     along_motion: false,
     standing_friction: true,
+    is_factor: false,
 };
 
 /// The effect.

@@ -42,6 +42,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::Time,
     along_motion: true,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// Time constants to try, in durations of the recording. With the last one a hundredth is not told from a line.

@@ -28,6 +28,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::HeardTorque,
     along_motion: false,
     standing_friction: false,
+    is_factor: true,
 };
 
 /// The effect.

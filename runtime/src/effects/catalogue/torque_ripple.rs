@@ -34,6 +34,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::WaveAngle,
     along_motion: false,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// The effect.

@@ -35,6 +35,7 @@ const PROPERTIES: Properties = Properties {
     abscissa: Abscissa::ModelTorque,
     along_motion: false,
     standing_friction: false,
+    is_factor: false,
 };
 
 /// A knee leaves at least this part of the torque beyond it.
