@@ -10,8 +10,7 @@ use wide::{f64x4, u64x4};
 pub(super) const REDUCIBLE: f64 = 1e5;
 
 /// Whether [`wide`] rounds a product and its sum once.
-const FUSED: bool =
-    cfg!(any(target_feature = "fma", all(target_feature = "neon", target_arch = "aarch64")));
+const FUSED: bool = cfg!(any(target_feature = "fma", all(target_feature = "neon", target_arch = "aarch64")));
 
 /// Added to a number it leaves the nearest integer in the low bits of the mantissa: 1.5 * 2^52. The quarter turn is read from
 /// there, which no conversion to integers has to make.
