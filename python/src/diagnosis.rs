@@ -24,6 +24,7 @@ use crate::error::{error, of_failure};
 use crate::fit::PyFit;
 use crate::interruptible::{self, Watch};
 use crate::known;
+use crate::ranges;
 use crate::recording::{PyRecording, copy, one};
 use crate::robot::again;
 
@@ -188,6 +189,7 @@ impl PyDiagnosis {
     recordings, *, test = None, baseline = None, reference = None, laws = None, implausible = false, threads = 0,
     progress = None
 ))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn diagnose(
     py: Python<'_>,
     recordings: &Bound<'_, PyAny>,
@@ -214,7 +216,7 @@ pub(crate) fn diagnose(
     let (path, measured) = (recording.path, recording.measured);
     let robot = measured.dynamics.model().robot();
     let mut settings = Settings::default();
-    settings.threads = threads;
+    settings.threads = ranges::threads(threads)?;
     if let Some(laws) = laws {
         settings.laws = known::laws(py, laws, robot)?;
     }

@@ -16,6 +16,7 @@ use pyo3::types::PyBytes;
 use crate::error::{error, of_failure};
 use crate::fit::PyFit;
 use crate::interruptible;
+use crate::ranges;
 use crate::recording::{copy, one};
 use crate::robot::{PyRobot, again};
 use crate::written;
@@ -77,7 +78,7 @@ impl PyFactors {
 #[pyfunction]
 #[pyo3(signature = (recording, *, band = None))]
 pub(crate) fn factor(py: Python<'_>, recording: &Bound<'_, PyAny>, band: Option<f64>) -> PyResult<PyFactors> {
-    let recording = one(recording, "recording")?;
+    let (recording, band) = (one(recording, "recording")?, ranges::band(band)?);
     let (path, own) = (recording.path.clone(), copy(&recording.measured)?);
     let observed = interruptible::run(py, ("factor", None), move |_| {
         let settings = RecordedSettings { band, ..RecordedSettings::default() };

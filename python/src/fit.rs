@@ -6,14 +6,20 @@ use std::sync::Arc;
 use dynid::output::write_json;
 use dynid::robots::Dynamics;
 use dynid::saved::{own_dynamics, read_model};
+use dynid_runtime::effects::{EffectTerm, Form};
 use dynid_runtime::model_file::{self, Identified};
+use dynid_runtime::prediction::Predictor;
+use dynid_runtime::signal::Motion;
+use dynid_runtime::simulation::SampledReference;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{error, of_failure};
+use crate::recording::rows;
 use crate::robot::{PyRobot, again, torques};
+use crate::signals::{motion, series};
 
 /// An identified model: base parameters with their uncertainty, and what it leaves of the torques.
 ///
@@ -30,6 +36,42 @@ impl PyFit {
     /// A model of a robot with these dynamics.
     pub fn of(identified: Identified, dynamics: Dynamics) -> Self {
         Self { identified: Arc::new(identified), dynamics: Arc::new(dynamics) }
+    }
+
+    /// Torques (N, n) along a motion.
+    fn along<'py>(
+        &self,
+        py: Python<'py>,
+        chi: &[f64],
+        arrays: [&Bound<'py, PyAny>; 4],
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let measured =
+            |term: &&EffectTerm| matches!(term.effect.form(), Form::Heard(_) | Form::Compliance(_));
+        if let Some(term) = self.identified.effects.iter().find(measured) {
+            return Err(error(format!(
+                "{} follows the torques that were measured: dynid validate predicts a recording",
+                term.effect.words().title()
+            )));
+        }
+        let model = self.dynamics.model();
+        let SampledReference { step, q, dq, ddq, .. } = motion(model.robot().joints(), arrays)?;
+        let start = series("t", arrays[0])?.first().copied().unwrap_or(0.0);
+        let torque = vec![vec![0.0; q.first().map_or(0, Vec::len)]; q.len()];
+        let name = "motion".to_owned();
+        let motion = Motion {
+            name,
+            rate: step.recip(),
+            start,
+            q,
+            dq,
+            ddq,
+            torque,
+            fixed: Vec::new(),
+            edge_samples: 0,
+        };
+        let predictor = Predictor { chi, effects: &self.identified.effects, delay: self.identified.delay };
+        let found = py.detach(|| predictor.torques(model, &motion)).map_err(|why| error(why.to_string()))?;
+        Ok(rows(py, &found).into_any())
     }
 
     fn each<T>(&self, of: impl Fn(&model_file::NamedParameter) -> T) -> Vec<T> {
@@ -106,23 +148,28 @@ impl PyFit {
         Ok(PyRobot { dynamics: Arc::new(again(&self.dynamics)?), found: self.identified.robot.clone() })
     }
 
-    /// Torques that it predicts (N, n), N.m or N.
+    /// Torques that it predicts (N, n), N.m or N. A model with laws beside its parameters, as a diagnosis makes it, needs the
+    /// times ``t`` (N,), s, evenly spaced: a law may look at all that went before. With them the torques are as late as the
+    /// channel that recorded them.
+    #[pyo3(signature = (q, dq, ddq, t = None))]
     fn predict<'py>(
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         dq: &Bound<'py, PyAny>,
         ddq: &Bound<'py, PyAny>,
+        t: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if !self.identified.effects.is_empty() {
-            return Err(error(
-                "the model has laws beside its parameters, which need a recording: dynid validate predicts one",
-            ));
-        }
         let model = self.dynamics.model();
         let missing = |name| error(format!("the model has no {name}, which its robot needs"));
         let chi = self.identified.chi(model.robot()).map_err(missing)?;
-        torques(py, model, &chi, [q, dq, ddq])
+        match t {
+            Some(t) => self.along(py, &chi, [t, q, dq, ddq]),
+            None if self.identified.effects.is_empty() => torques(py, model, &chi, [q, dq, ddq]),
+            None => Err(error(
+                "the model has laws beside its parameters, which look at a motion: give its times t as well",
+            )),
+        }
     }
 
     /// A pandas.DataFrame: a row a parameter, with value, sigma and unit. Needs pandas.

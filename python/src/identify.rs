@@ -15,15 +15,15 @@ use dynid_runtime::estimation::{
 };
 use dynid_runtime::model_file::{EvaluatedRows, Identified};
 use dynid_runtime::prediction::observed_errors;
-use dynid_runtime::simulation::SampledReference;
 use pyo3::prelude::*;
 
 use crate::error::{error, of_failure};
 use crate::fit::PyFit;
 use crate::interruptible::{self, Watch};
+use crate::ranges;
 use crate::recording::{copy, one};
 use crate::robot::again;
-use crate::signals::{Signals, series};
+use crate::signals::motion;
 
 /// Identifies the base parameters of a recording, or of several of one robot.
 ///
@@ -48,6 +48,7 @@ use crate::signals::{Signals, series};
 #[pyo3(signature = (
     recording, method = "idim-wls", *, planned = None, band = None, implausible = false, threads = 0, progress = None
 ))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn identify(
     py: Python<'_>,
     recording: &Bound<'_, PyAny>,
@@ -62,6 +63,7 @@ pub(crate) fn identify(
     let recording = one(recording, "recording")?;
     let joints = recording.measured.dynamics.model().robot().joints();
     let plan = plan(method, planned, joints)?;
+    let (band, threads) = (ranges::band(band)?, ranges::threads(threads)?);
     let work = Work { method, plan, band, implausible, threads };
     let (path, own) = (recording.path.clone(), copy(&recording.measured)?);
     let identified =
@@ -95,19 +97,8 @@ fn plan(method: Identification, planned: Option<&Bound<'_, PyAny>>, joints: usiz
     let mut motions = Vec::new();
     for item in planned.try_iter().map_err(wrong)? {
         let [t, q, dq, ddq]: [Bound<'_, PyAny>; 4] = item.and_then(|item| item.extract()).map_err(wrong)?;
-        let which = |what: &str| error(format!("planned[{}]: {what}", motions.len()));
-        let time = series("t", &t)?;
-        let signals = Signals::read(joints, &[("q", &q), ("dq", &dq), ("ddq", &ddq)])?;
-        if signals.single || signals.samples != time.len() {
-            return Err(which(&format!("q has {} rows, and t has {} values", signals.samples, time.len())));
-        }
-        let views = signals.views();
-        let columns = [0, 1, 2].map(|s| views.columns(s));
-        let mut all = columns.iter().flatten().flatten().chain(&time);
-        if !all.all(|x| x.is_finite()) {
-            return Err(which("a value is not a finite number"));
-        }
-        motions.push(SampledReference::new(&time, columns).map_err(|why| which(&why.to_string()))?);
+        let which = |why: PyErr| error(format!("planned[{}]: {}", motions.len(), why.value(planned.py())));
+        motions.push(motion(joints, [&t, &q, &dq, &ddq]).map_err(which)?);
     }
     Ok(Some(Plan { motions, path: PathBuf::from("planned") }))
 }

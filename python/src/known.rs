@@ -15,6 +15,7 @@ use dynid_runtime::law_file;
 use dynid_runtime::model::Robot;
 use dynid_runtime::model_file::Identified;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::error::{error, of_failure};
 use crate::fit::PyFit;
@@ -61,10 +62,13 @@ pub(crate) fn laws(py: Python<'_>, given: &Bound<'_, PyAny>, robot: &Robot) -> P
     }
     // JSON is YAML, with the same keys; a law a line, so that a mistake is told by its law.
     let json = py.import("json")?;
+    // Numbers of numpy are told as the numbers that they are.
+    let options = PyDict::new(py);
+    options.set_item("default", py.import("operator")?.call_method1("methodcaller", ("item",))?)?;
     let mut text = String::from("[");
     for law in given.try_iter().map_err(|_| error("laws: expected a path, or a list of dictionaries"))? {
         let separator = if text.len() > 1 { ",\n" } else { "" };
-        let law: String = json.call_method1("dumps", (law?,))?.extract()?;
+        let law: String = json.call_method("dumps", (law?,), Some(&options))?.extract()?;
         text.push_str(separator);
         text.push_str(&law);
     }

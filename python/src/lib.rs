@@ -9,6 +9,7 @@ mod identify;
 mod interruptible;
 mod known;
 mod memory;
+mod ranges;
 mod recording;
 mod robot;
 mod signals;

@@ -13,7 +13,8 @@ use pyo3::prelude::*;
 
 use crate::error::{error, of_failure};
 use crate::interruptible;
-use crate::robot::{PyRobot, again};
+use crate::ranges;
+use crate::robot::{PyRobot, again, name_or_path};
 use crate::signals::{Signals, series};
 
 /// What was measured on a robot, on the joint side of its gears: one motion or several.
@@ -184,11 +185,17 @@ pub(crate) fn _recording(
 pub(crate) fn open(
     py: Python<'_>,
     path: PathBuf,
-    robot: Option<String>,
+    robot: Option<Bound<'_, PyAny>>,
     start: Option<f64>,
     end: Option<f64>,
 ) -> PyResult<PyRecording> {
-    let source = Source { recording: path.clone(), robot, from: start, to: end };
+    let robot = robot.as_ref().map(name_or_path).transpose()?;
+    let source = Source {
+        recording: path.clone(),
+        robot,
+        from: ranges::instant("start", start)?,
+        to: ranges::instant("end", end)?,
+    };
     let measured =
         interruptible::run(py, ("reading", None), move |_| measure(&source))?.map_err(of_failure)?;
     Ok(PyRecording { measured: Arc::new(measured), path })
@@ -249,7 +256,12 @@ fn trajectory(
         [("q", q), ("tau", tau), ("dq", dq)].into_iter().filter_map(|(n, a)| Some((n, a?))).collect();
     let joints = robot.model().robot().joints();
     let signals = Signals::read(joints, &named)?;
-    if signals.single || signals.samples != time.len() {
+    if signals.single {
+        return Err(error(format!(
+            "q has the shape ({joints},), expected (N, {joints}): one row for each value of t"
+        )));
+    }
+    if signals.samples != time.len() {
         return Err(error(format!("q has {} rows, and t has {} values", signals.samples, time.len())));
     }
     let views = signals.views();
@@ -278,7 +290,7 @@ fn trajectory(
 }
 
 /// Signals joint by joint as an array (N, n).
-fn rows<'py>(py: Python<'py>, signal: &[Vec<f64>]) -> Bound<'py, PyArray2<f64>> {
+pub(crate) fn rows<'py>(py: Python<'py>, signal: &[Vec<f64>]) -> Bound<'py, PyArray2<f64>> {
     let samples = signal.first().map_or(0, Vec::len);
     Array2::from_shape_fn((samples, signal.len()), |(t, j)| signal[j][t]).into_pyarray(py)
 }

@@ -1,5 +1,6 @@
 //! Robots: regressors, torques and mass matrices of many states.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use dynid::models;
@@ -68,7 +69,8 @@ pub(crate) fn again(dynamics: &Dynamics) -> PyResult<Dynamics> {
 #[pymethods]
 impl PyRobot {
     #[new]
-    fn new(py: Python<'_>, robot: String) -> PyResult<Self> {
+    fn new(py: Python<'_>, robot: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let robot = name_or_path(robot)?;
         let dynamics = py.detach(|| resolve(&robot, None)).map_err(of_failure)?;
         Ok(Self { dynamics: Arc::new(dynamics), found: robot })
     }
@@ -292,6 +294,16 @@ impl PyRobot {
         };
         Ok((rebuild, (self.found.clone(), table)))
     }
+}
+
+/// What names a robot: a string, or a path as Python has them.
+pub(crate) fn name_or_path(robot: &Bound<'_, PyAny>) -> PyResult<String> {
+    let path: PathBuf = robot
+        .extract()
+        .map_err(|_| error("robot: expected a name, or the path of a robot YAML or of a URDF"))?;
+    path.into_os_string()
+        .into_string()
+        .map_err(|path| error(format!("robot: {path:?} is no text in Unicode")))
 }
 
 /// A robot that was pickled: its name, and its table where it is no generated one.

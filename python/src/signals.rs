@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use dynid_runtime::model::States;
+use dynid_runtime::simulation::SampledReference;
 use numpy::ndarray::{ArrayView2, Axis, Ix1, Slice};
 use numpy::{
     AllowTypeChange, PyArray2, PyArrayDyn, PyArrayLikeDyn, PyArrayMethods, PyReadonlyArray2,
@@ -15,12 +16,22 @@ use crate::error::error;
 /// Samples that are worked on at once: a multiple of a line of the batch engine, and what stays in the cache.
 const BLOCK: usize = 64;
 
-/// An array, or what numpy makes one of, as numbers. An array of float64 is not copied.
+/// An array, or what numpy makes one of, as numbers. An array of float64 is not copied. What numpy would turn into other
+/// numbers is refused: complex ones lose their imaginary part, dates their unit.
 fn numbers<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,
 ) -> PyResult<PyArrayLikeDyn<'py, f64, AllowTypeChange>> {
-    value.extract().map_err(|_| error(format!("{name}: not an array of numbers")))
+    let wrong = |_| error(format!("{name}: not an array of numbers"));
+    if value.cast::<PyArrayDyn<f64>>().is_err() {
+        let given = value.py().import("numpy")?.call_method1("asarray", (value,)).map_err(wrong)?;
+        let dtype = given.getattr("dtype")?;
+        let kind: char = dtype.getattr("kind")?.extract()?;
+        if !"biufO".contains(kind) {
+            return Err(error(format!("{name}: an array of {dtype} instead of numbers")));
+        }
+    }
+    value.extract().map_err(wrong)
 }
 
 /// The shape of an array as Python writes it.
@@ -50,6 +61,24 @@ pub(crate) fn series(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>>
         Ok(values) => Ok(values.to_vec()),
         Err(_) => Err(error(format!("{name} has the shape {}, expected (N,)", shape_words(found.shape())))),
     }
+}
+
+/// A motion: t (N,), evenly spaced, and q, dq and ddq (N, n).
+///
+/// # Errors
+/// Shapes that do not fit, values that are not finite, times that are not evenly spaced.
+pub(crate) fn motion(joints: usize, [t, q, dq, ddq]: [&Bound<'_, PyAny>; 4]) -> PyResult<SampledReference> {
+    let time = series("t", t)?;
+    let signals = Signals::read(joints, &[("q", q), ("dq", dq), ("ddq", ddq)])?;
+    if signals.single || signals.samples != time.len() {
+        return Err(error(format!("q has {} rows, and t has {} values", signals.samples, time.len())));
+    }
+    let views = signals.views();
+    let columns = [0, 1, 2].map(|s| views.columns(s));
+    if !columns.iter().flatten().flatten().chain(&time).all(|x| x.is_finite()) {
+        return Err(error("a value is not a finite number"));
+    }
+    SampledReference::new(&time, columns).map_err(|why| error(why.to_string()))
 }
 
 /// Signals of the joints at N samples, each (N, n).

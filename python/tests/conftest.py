@@ -1,5 +1,7 @@
 """Recordings that are made here: motions by formula, torques by inverse dynamics."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,28 @@ def recorded(robot, seed=0, added=None, noise=0.02, **options):
         tau = tau + added(q, dq, ddq)
     tau = tau + np.random.default_rng(100 + seed).normal(0, noise, tau.shape)
     return dynid.Recording(robot=robot, t=t, q=q, tau=tau), (q, dq, ddq)
+
+
+def written(recording, folder):
+    """The YAML of a recording of one motion of planar_2r that is written to files there."""
+    folder.mkdir(exist_ok=True)
+    ((t, q, tau),) = recording.arrays()
+    rows = np.column_stack([t, q, tau])
+    np.savetxt(folder / "run.csv", rows, delimiter=",", header="t,q1,q2,tau1,tau2", comments="", fmt="%.17g")
+    manifest = folder / "recording.yaml"
+    manifest.write_text(
+        "robot: planar_2r\ntime: {column: t, unit: s}\nposition: {columns: [q1, q2], unit: rad}\n"
+        "torque: {columns: [tau1, tau2], unit: N.m}\ntrajectories:\n  - {file: run.csv}\n"
+    )
+    return manifest
+
+
+@pytest.fixture(scope="session")
+def program():
+    """The path of the program, where the variable DYNID has it."""
+    if not os.environ.get("DYNID"):
+        pytest.skip("DYNID does not name the program: Python was not compared with the command line")
+    return os.environ["DYNID"]
 
 
 @pytest.fixture(scope="session")

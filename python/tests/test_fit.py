@@ -1,7 +1,6 @@
 """Identification, and recordings."""
 
 import json
-import os
 import pickle
 import subprocess
 
@@ -9,7 +8,7 @@ import numpy as np
 import pytest
 
 import dynid
-from conftest import motion, recorded
+from conftest import motion, recorded, written
 
 
 def test_the_parameters_of_a_simulated_recording_are_found_within_their_uncertainty(planar):
@@ -39,25 +38,18 @@ def test_several_recordings_are_one(planar):
     np.testing.assert_array_equal(dynid.identify(parts).values, dynid.identify(both).values)
 
 
-def test_the_numbers_are_those_of_the_command_line(planar, tmp_path):
-    """The same recording as files, read by dynid.open; and by the command line where it is built."""
+def test_a_recording_of_files_is_that_of_its_arrays(planar, tmp_path):
     rec, _ = recorded(planar)
-    ((t, q, tau),) = rec.arrays()
-    np.savetxt(tmp_path / "run.csv", np.column_stack([t, q, tau]), delimiter=",", header="t,q1,q2,tau1,tau2", comments="", fmt="%.17g")
-    manifest = tmp_path / "recording.yaml"
-    manifest.write_text(
-        "robot: planar_2r\ntime: {column: t, unit: s}\nposition: {columns: [q1, q2], unit: rad}\n"
-        "torque: {columns: [tau1, tau2], unit: N.m}\ntrajectories:\n  - {file: run.csv}\n"
-    )
-    opened = dynid.identify(dynid.open(manifest))
-    np.testing.assert_array_equal(opened.values, dynid.identify(rec).values)
-    binary = os.environ.get("DYNID")
-    if not binary:
-        pytest.skip("DYNID does not name the program: Python's numbers were not compared with the command line's")
-    out = tmp_path / "model.json"
-    subprocess.run([binary, "identify", str(manifest), "--out", str(out)], check=True, capture_output=True)
-    np.testing.assert_array_equal(dynid.load(out).values, opened.values)
-    np.testing.assert_array_equal(dynid.load(out).sigma, opened.sigma)
+    opened = dynid.open(written(rec, tmp_path))
+    np.testing.assert_array_equal(dynid.identify(opened).values, dynid.identify(rec).values)
+
+
+def test_the_numbers_are_those_of_the_command_line(planar, program, tmp_path):
+    manifest, out = written(recorded(planar)[0], tmp_path), tmp_path / "model.json"
+    subprocess.run([program, "identify", str(manifest), "--out", str(out)], check=True, capture_output=True)
+    here, there = dynid.identify(dynid.open(manifest)), dynid.load(out)
+    np.testing.assert_array_equal(there.values, here.values)
+    np.testing.assert_array_equal(there.sigma, here.sigma)
 
 
 def test_a_saved_model_is_read_back(planar, tmp_path):
@@ -67,6 +59,21 @@ def test_a_saved_model_is_read_back(planar, tmp_path):
         np.testing.assert_array_equal(again.values, fit.values)
         np.testing.assert_array_equal(again.covariance, fit.covariance)
         assert again.json() == fit.json()
+
+
+def test_ellipsoids_of_a_table_are_saved_with_the_model(tmp_path):
+    path = tmp_path / "arm.yaml"
+    path.write_text(
+        "name: arm\ngravity: [0, -9.81, 0]\nframes:\n  - {j: 1, sigma: 0, alpha: 0, d: 0, theta: q1, r: 0}\n"
+        "  - {j: 2, sigma: 0, alpha: 0, d: 0.5, theta: q2, r: 0}\n"
+        "ellipsoids:\n  - {frame: 2, centre: [0.2, 0, 0], radii: [0.3, 0.1, 0.1]}\n"
+    )
+    robot = dynid.Robot(path)
+    t, q, dq, ddq = motion(robot)
+    rec = dynid.Recording(robot, t, q, robot.torque(np.ones(len(robot.names)), q, dq, ddq))
+    ((link, saved),) = json.loads(dynid.identify(rec).json())["table"]["ellipsoids"]
+    assert link == 1 and saved["centre"] == [0.2, 0, 0]
+    np.testing.assert_allclose(saved["shape"], np.diag([0.09, 0.01, 0.01]), rtol=1e-12)
 
 
 def test_recordings_pickle(planar):
@@ -88,6 +95,8 @@ def test_a_frame_has_a_row_for_each_parameter(planar):
     "change, words",
     [
         (dict(t=np.arange(99) / 100.0), "q has 100 rows, and t has 99 values"),
+        (dict(q=np.zeros(2), tau=np.zeros(2)), "q has the shape (2,), expected (N, 2)"),
+        (dict(t=np.arange(100).astype("datetime64[ms]")), "t: an array of datetime64[ms] instead of numbers"),
         (dict(t=np.zeros(100)), "t[1] is 0, which does not come after t[0], 0"),
         (dict(q=np.zeros((100, 3))), "q has the shape (100, 3), expected (N, 2)"),
         (dict(tau=np.full((100, 2), np.nan)), "tau[0, 0] is NaN, expected a number"),
@@ -109,6 +118,13 @@ def test_what_identification_refuses_is_an_error_with_its_words(planar, tx40):
     with pytest.raises(dynid.Error, match="a recording of tx40, not of the planar_2r"):
         t, q, *_ = motion(tx40, duration=2)
         dynid.identify([rec, dynid.Recording(robot=tx40, t=t, q=q, tau=q)])
+    for options, words in [
+        (dict(band=0), "band: it must be a number from 0.01 to 100000"),
+        (dict(band=float("nan")), "band: it must be a number"),
+        (dict(threads=1025), "threads: it must be a number from 0 to 1024"),
+    ]:
+        with pytest.raises(dynid.Error, match=words):
+            dynid.identify(rec, **options)
     with pytest.raises(dynid.Error, match="there is no such file"):
         dynid.open("nowhere.yaml")
 

@@ -28,7 +28,7 @@ def test_generated_code_and_the_engine_over_the_yaml_have_the_same_numbers(name,
     text = (ROBOTS / f"{name}.yaml").read_text()
     path = tmp_path / f"{name}.yaml"
     path.write_text(text)
-    generated, recursive = dynid.Robot(name), dynid.Robot(str(path))
+    generated, recursive = dynid.Robot(name), dynid.Robot(path)
     assert generated.generated and not recursive.generated
     assert generated.names == recursive.names
     q, dq, ddq = states(generated)
@@ -165,9 +165,12 @@ def test_one_state_is_a_row_without_its_first_axis(tx40):
     [
         (lambda r: r.regressor(*np.zeros((3, 5, 4))), "q has the shape (5, 4), expected (N, 6) or (6,)"),
         (lambda r: r.regressor(np.zeros((5, 6)), np.zeros((4, 6)), np.zeros((5, 6))), "dq has the shape (4, 6), and q has (5, 6)"),
-        (lambda r: r.regressor("a", 1, 2), "q: not an array of numbers"),
+        (lambda r: r.regressor("a", 1, 2), "q: an array of <U1 instead of numbers"),
+        (lambda r: r.regressor([[{}] * 6], *np.zeros((2, 1, 6))), "q: not an array of numbers"),
+        (lambda r: r.regressor(np.zeros((5, 6)) + 0j, *np.zeros((2, 5, 6))), "q: an array of complex128 instead of numbers"),
         (lambda r: r.torque(np.zeros(3), *np.zeros((3, 5, 6))), "chi has the shape (3,), expected (60,)"),
         (lambda r: r.regressor(*np.zeros((3, 5, 6)), out=np.zeros((5, 6, 59))), "out must be an array [5, 6, 60]"),
+        (lambda _: dynid.Robot(3), "robot: expected a name, or the path of a robot YAML or of a URDF"),
         (lambda _: dynid.Robot("nothing"), "there is no robot 'nothing'"),
         (lambda _: dynid.Robot("nowhere.yaml"), "nowhere.yaml"),
     ],
@@ -184,6 +187,52 @@ def test_arguments_that_share_memory_with_the_result_are_refused(planar):
     q = room.reshape(-1, 2)[:2]
     with pytest.raises(dynid.Error):
         planar.regressor(q, np.zeros((2, 2)), np.zeros((2, 2)), out=room)
+
+
+ODD = {
+    # A linear axis, a fixed frame in mid-chain, a branch that moves with the sum of two joints.
+    "tree": """name: tree
+frames:
+  - {j: 1, sigma: 1, alpha: -pi/2, d: 0.1, theta: 0.3, r: q1}
+  - {j: 2, sigma: 2, alpha: 0.4, d: 0.2, theta: 0.5, r: 0.1}
+  - {j: 3, sigma: 0, alpha: pi/2, d: 0.3, theta: q3, r: 0.2}
+  - {j: 4, sigma: 0, alpha: 0, d: 0.2, theta: q4, r: 0}
+  - {j: 5, parent: 3, sigma: 0, alpha: 0, d: 0.1, theta: q4 - q3, r: 0}
+""",
+    # What is known, springs, and friction between joints.
+    "held": """name: held
+frames:
+  - {j: 1, sigma: 0, alpha: pi/2, d: 0, theta: q1, r: 0}
+  - {j: 2, sigma: 0, alpha: -pi/3, d: 0.5, theta: q2, r: 0.1}
+known: {M2: 0.2, Fc1: 0.4}
+springs: [{joint: 2}]
+friction: [{joints: {q1: 1, q2: -1}, name: belt}]
+ellipsoids: [{frame: 2, centre: [0.2, 0, 0], radii: [0.3, 0.1, 0.1]}]
+""",
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_robots_that_are_no_chains_of_turning_links_are_consistent(name, tmp_path):
+    path = tmp_path / f"{name}.yaml"
+    path.write_text(ODD[name])
+    r = dynid.Robot(path)
+    q, dq, ddq = states(r, 20)
+    chi = np.random.default_rng(5).normal(size=len(r.names))
+    torque = r.torque(chi, q, dq, ddq)
+    np.testing.assert_allclose(r.regressor(q, dq, ddq) @ chi, torque, rtol=1e-10, atol=1e-10)
+    power = r.power_regressor(q, dq, ddq) @ chi
+    np.testing.assert_allclose((dq * torque).sum(1), power, rtol=1e-10, atol=1e-10)
+    lossless = chi * [not n.startswith(("Fv", "Fc")) for n in r.names]
+    step = 1e-6
+    after, before = (r.energy(lossless, q + s * dq, dq + s * ddq) for s in (step, -step))
+    rate = (dq * r.torque(lossless, q, dq, ddq)).sum(1)
+    np.testing.assert_allclose((after - before) / (2 * step), rate, rtol=1e-4, atol=1e-4)
+    pushed = r.torque(chi, q, dq, ddq) - r.torque(chi, q, dq, np.zeros_like(q))
+    np.testing.assert_allclose(np.einsum("tij,tj->ti", r.mass_matrix(chi, q), ddq), pushed, rtol=1e-9, atol=1e-9)
+    again = pickle.loads(pickle.dumps(r))
+    path.unlink()
+    assert (again.torque(chi, q, dq, ddq) == torque).all() and again.relations == r.relations
 
 
 def test_robots_pickle(tx40, tmp_path):

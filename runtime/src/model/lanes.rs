@@ -3,7 +3,7 @@
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::number::Number;
-use super::sines::{REDUCIBLE, fast_sin_cos};
+use super::sines::{REDUCIBLE, sin_cos};
 use wide::f64x4;
 
 /// Samples in a [`Lanes`].
@@ -112,7 +112,7 @@ impl Number for Lanes {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = if self.0.abs().simd_lt(f64x4::splat(REDUCIBLE)).all() {
-            fast_sin_cos(self.0)
+            sin_cos(self.0)
         } else {
             each_sin_cos(self.0)
         };
@@ -126,7 +126,7 @@ impl Number for Lanes {
         let (mut sines, mut cosines) = ([Self::splat(0.0); N], [Self::splat(0.0); N]);
         if largest.simd_lt(f64x4::splat(REDUCIBLE)).all() {
             for k in 0..N {
-                (sines[k].0, cosines[k].0) = fast_sin_cos(angles[k].0);
+                (sines[k].0, cosines[k].0) = sin_cos(angles[k].0);
             }
         } else {
             for k in 0..N {
