@@ -2,7 +2,7 @@
 
 use super::Factor;
 use super::observe::Observation;
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 /// Noise in the columns that weighted least squares is corrected for.
 #[derive(Debug, Clone)]
@@ -13,6 +13,8 @@ pub(super) struct Attenuation {
     pub chi: Vec<f64>,
     /// What that added to each.
     pub missing: Vec<f64>,
+    /// More than half of what tells some parameters apart is noise: what it hides of them is given back only in part.
+    pub drowned: bool,
 }
 
 /// Standard deviation of a correction, as a share of it.
@@ -24,27 +26,20 @@ pub(super) struct Attenuation {
 /// the mean 1 and this standard deviation.
 pub(super) const UNCERTAINTY: f64 = 0.577_350_269_189_625_8;
 
-/// More than half of what tells some parameters apart is noise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Drowned;
-
 /// The parameters of least squares corrected for noise of known size in the columns (Fuller 1987, Measurement Error
 /// Models, section 2.2): WT W is expected to be that of the true columns plus that of the noise, N, which pulls
 /// parameters towards zero, so that (WT W - N) chi = WT Y.
 ///
 /// `stacked` has the unknowns `active`, whose weighted least-squares solution is `chi`; `sigma` are the errors of the
-/// groups. `None` where no noise is known.
-///
-/// # Errors
-/// [`Drowned`]: WT W - 2 N is not positive definite.
+/// groups. `None` where no noise is known. In directions where noise is more than half of WT W, half of it is taken away.
 pub(super) fn corrected(
     observation: &Observation,
     active: &[usize],
     sigma: &[f64],
     stacked: &Factor,
     chi: &[f64],
-) -> Result<Option<Attenuation>, Drowned> {
-    let Some(noise) = &observation.noise_of_columns else { return Ok(None) };
+) -> Option<Attenuation> {
+    let noise = observation.noise_of_columns.as_ref()?;
     let k = active.len();
     let mut place = vec![None; observation.unknowns.len()];
     for (p, &l) in active.iter().enumerate() {
@@ -60,33 +55,42 @@ pub(super) fn corrected(
             }
         }
     }
-    given_back(of_information, stacked, chi).map(Some)
+    given_back(of_information, stacked, chi)
 }
 
 /// The same from the part of the weighted WT W that is noise.
-///
-/// # Errors
-/// As of [`corrected`].
-pub(super) fn given_back(
-    of_information: DMatrix<f64>,
-    stacked: &Factor,
-    chi: &[f64],
-) -> Result<Attenuation, Drowned> {
+pub(super) fn given_back(of_information: DMatrix<f64>, stacked: &Factor, chi: &[f64]) -> Option<Attenuation> {
     let k = chi.len();
     let r = DMatrix::from_fn(k, k, |i, l| stacked.r(i, l));
     let information = r.tr_mul(&r);
     // Unit columns: the condition is that of the scaled W, squared.
     let scale = information.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
-    let scaled = |matrix: DMatrix<f64>| DMatrix::from_fn(k, k, |i, l| scale[i] * matrix[(i, l)] * scale[l]);
-    if Cholesky::new(scaled(&information - 2.0 * &of_information)).is_none() {
-        return Err(Drowned);
-    }
+    let scaled = |matrix: &DMatrix<f64>| DMatrix::from_fn(k, k, |i, l| scale[i] * matrix[(i, l)] * scale[l]);
+    let drowned = Cholesky::new(scaled(&(&information - 2.0 * &of_information))).is_none();
+    let of_information = if drowned {
+        let most = at_most_half(&scaled(&information), &scaled(&of_information))?;
+        DMatrix::from_fn(k, k, |i, l| most[(i, l)] / (scale[i] * scale[l]))
+    } else {
+        of_information
+    };
     let pull = (&of_information * DVector::from_column_slice(chi)).component_mul(&scale);
-    let Some(left) = Cholesky::new(scaled(&information - &of_information)) else { return Err(Drowned) };
+    let left = Cholesky::new(scaled(&(&information - &of_information)))?;
     let missing = left.solve(&pull).component_mul(&scale);
     let missing = missing.as_slice().to_vec();
     let chi = chi.iter().zip(&missing).map(|(x, d)| x + d).collect();
-    Ok(Attenuation { of_information, chi, missing })
+    Some(Attenuation { of_information, chi, missing, drowned })
+}
+
+/// The noise of which no direction has more than half of the information.
+///
+/// Where all that there is in a direction is noise, the noise that is expected is as likely more than what there is: its
+/// correction has no moments, and is bounded (Fuller 1987, section 2.5).
+fn at_most_half(information: &DMatrix<f64>, noise: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let half = Cholesky::new(information.clone())?.l();
+    let inverse = half.clone().try_inverse()?;
+    let mut of_unit = SymmetricEigen::new(&inverse * noise * inverse.transpose());
+    of_unit.eigenvalues.apply(|share| *share = share.min(0.5));
+    Some(&half * of_unit.recompose() * half.transpose())
 }
 
 #[cfg(test)]
@@ -145,17 +149,19 @@ mod tests {
         let stacked = stack(&observation, &sigma);
         let biased = stacked.solve().chi;
         assert!(biased[0] < 1.6, "{biased:?}");
-        let found = corrected(&observation, &[0, 1], &sigma, &stacked, &biased).expect("little noise");
-        let found = found.expect("known noise").chi;
+        let found = corrected(&observation, &[0, 1], &sigma, &stacked, &biased).expect("known noise").chi;
         assert!((found[0] - 2.0).abs() < 0.05 && (found[1] - 0.7).abs() < 0.1, "{found:?}");
     }
 
     #[test]
-    fn noise_that_drowns_the_motion_is_no_correction() {
+    fn what_noise_drowns_is_at_most_doubled() {
         let observation = observed(3.0, 9.0);
         let sigma = equal(&observation).sigma;
         let stacked = stack(&observation, &sigma);
         let chi = stacked.solve().chi;
-        assert_eq!(corrected(&observation, &[0, 1], &sigma, &stacked, &chi).err(), Some(Drowned));
+        let found = corrected(&observation, &[0, 1], &sigma, &stacked, &chi).expect("known noise");
+        assert!(found.drowned);
+        assert!((found.chi[0] / chi[0] - 2.0).abs() < 0.01, "{chi:?} {:?}", found.chi);
+        assert!((found.chi[1] - chi[1]).abs() < 0.1);
     }
 }

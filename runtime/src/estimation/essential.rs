@@ -87,7 +87,7 @@ pub(super) fn simplified(
     let (mut values, variance) = back_substitute(&reduced);
     let freedom = reduced.rows().saturating_sub(values.len()).max(1) as f64;
     let noise = reduced.residual_norm(&values).powi(2) / freedom;
-    let attenuation = corrected(observation, kept, &weights.sigma, &reduced, &values).ok().flatten();
+    let attenuation = corrected(observation, kept, &weights.sigma, &reduced, &values);
     if let Some(attenuation) = &attenuation {
         values.clone_from(&attenuation.chi);
     }

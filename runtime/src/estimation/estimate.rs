@@ -2,7 +2,7 @@
 //! Equation numbers are those of Gautier and Briot.
 
 use super::Factor;
-use super::attenuation::{Attenuation, Drowned, corrected};
+use super::attenuation::{Attenuation, corrected};
 use super::blocks::block_sigmas;
 use super::cautions::{describe_dependence, few_rows, joint_of, not_explained, strongest};
 use super::deviations::{Deviations, described, lasting_deviations, upper_covariance};
@@ -120,9 +120,9 @@ fn solve(observation: &Observation, settings: &EstimateSettings, warnings: &mut 
         }
         warnings.push(Warning::NoDeviations);
     } else {
-        match corrected(counted, &active, &weights.sigma, &rows, &solution.chi) {
-            Ok(found) => attenuation = found,
-            Err(Drowned) => warnings.push(Warning::NoisyColumns),
+        attenuation = corrected(counted, &active, &weights.sigma, &rows, &solution.chi);
+        if attenuation.as_ref().is_some_and(|a| a.drowned) {
+            warnings.push(Warning::NoisyColumns);
         }
     }
     if let Some(attenuation) = &attenuation {

@@ -12,7 +12,9 @@ pub struct ParameterEstimate {
     /// SI; zero where the data do not determine it.
     pub value: f64,
     /// Standard deviation, for errors that last as the residuals show it where the rows were kept, else by blocks of
-    /// time, and where there are too few of them `sigma_white`. `None` where the parameter is not determined.
+    /// time, and where there are too few of them `sigma_white`. The first is made for use with the normal deviate: where the
+    /// noise is known from few degrees of freedom, it is larger by Student's deviate over 1.96, so that 1.96 of it are half
+    /// an interval of 95 %. `None` where the parameter is not determined.
     pub sigma: Option<f64>,
     /// Standard deviation (18), for errors that are independent from row to row, as the paper assumes.
     #[serde(default)]

@@ -2,7 +2,7 @@
 
 use super::attenuation::UNCERTAINTY;
 use super::observe::{Equations, Observation, ObserveError, ObserveSettings, Progress, observe};
-use super::{Bandwidth, EncoderNoise, EstimateSettings, Piecewise, choose_bandwidth, estimate};
+use super::{Bandwidth, EncoderNoise, EstimateSettings, Piecewise, Warning, choose_bandwidth, estimate};
 use crate::model::Model;
 use crate::recording::{Loader, Manifest, RecordingError, RowReport, Trajectory};
 use crate::signal::{
@@ -202,13 +202,18 @@ pub fn observe_trajectories(
     Ok(widest)
 }
 
-/// The largest correction for the noise of the encoders, in units of the standard deviation beside it.
+/// The largest correction for the noise of the encoders, in units of the standard deviation beside it; zero where some
+/// parameters have nothing but noise to tell them apart, as they have in every band.
 fn largest_correction(observation: &Observation) -> f64 {
     if observation.noise_of_columns.is_none() {
         return 0.0;
     }
     let settings = EstimateSettings { r_sigma: None, block_sigmas: false, ..EstimateSettings::default() };
-    let ratios = estimate(observation, &settings).parameters.into_iter().filter_map(|p| {
+    let found = estimate(observation, &settings);
+    if found.warnings.contains(&Warning::NoisyColumns) {
+        return 0.0;
+    }
+    let ratios = found.parameters.into_iter().filter_map(|p| {
         let correction = p.correction?.abs();
         let beside = p.sigma?.powi(2) - (UNCERTAINTY * correction).powi(2);
         (beside > 0.0).then(|| correction / beside.sqrt())

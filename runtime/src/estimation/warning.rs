@@ -49,8 +49,7 @@ pub enum Warning {
     NoDeviations,
     /// Total least squares has no solution here; that of least squares is given.
     NoTotalSolution,
-    /// More than half of what tells some parameters apart is noise of the encoders: the parameters are not corrected
-    /// for it.
+    /// More than half of what tells some parameters apart is noise of the encoders: the parameters are corrected for half.
     NoisyColumns,
     /// The iteration of the weights had not converged.
     NotConverged {

@@ -78,10 +78,15 @@ pub enum AngleUnit {
     Degrees,
 }
 
+/// Gravity along the other axes of frame 0 and the other way.
+pub(super) fn other_gravities(robot: &Robot) -> impl Iterator<Item = Instead> {
+    table::other_gravities(robot).map(Instead::Gravity)
+}
+
 /// What may have been mistaken about the table, and about signs and units of single joints. The joint that was mistaken
 /// need not be the one that is explained worst: what it is coupled to is as wrong.
 pub(super) fn single_mistakes(robot: &Robot) -> Vec<Instead> {
-    let mut all: Vec<Instead> = table::other_gravities(robot).map(Instead::Gravity).collect();
+    let mut all: Vec<Instead> = other_gravities(robot).collect();
     if table::beyond_a_turn(robot) {
         all.push(Instead::TableAngles);
     }

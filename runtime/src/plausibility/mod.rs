@@ -14,11 +14,14 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use crate::estimation::observe::Observation;
 use crate::estimation::{Estimate, PhysicalFit, physical_fit};
 use crate::model::{JointIndex, Model};
-use instead::{POOR, mistakes, single_mistakes};
+use instead::{POOR, mistakes, other_gravities, single_mistakes};
 
 /// Strain from which the parameters are said not to be those of a real robot.
 const STRAINED: f64 = 1.1;
-/// A joint's error, and a strain, from which gravity, and signs and units of single joints are tried. That costs time
+/// A joint's error from which other directions of gravity are tried: parameters of several links can take over most of a
+/// gravity that points the other way.
+const GRAVITY: f64 = 0.05;
+/// A joint's error, and a strain, from which signs and units of single joints are tried as well. These limits cost time
 /// only: what is believed is decided by [`ROBOT`] and [`MISTAKE`].
 const DOUBTFUL: f64 = 0.125;
 const TENSE: f64 = 1.05;
@@ -107,6 +110,9 @@ pub fn judge(
     }
     if own.strain > TENSE || error > DOUBTFUL || table::beyond_a_turn(robot) {
         candidates.extend(single_mistakes(robot));
+    }
+    if candidates.is_empty() && error > GRAVITY {
+        candidates.extend(other_gravities(robot));
     }
     if own.strain > OVERSTRAINED || error > BAD {
         candidates.extend(mistakes(robot, &own));

@@ -39,7 +39,7 @@ impl Reduced {
         let solution = rows.solve();
         let of_active = |noise: &DMatrix<f64>| noise.select_rows(&active).select_columns(&active);
         let corrected =
-            self.noise.as_ref().and_then(|noise| given_back(of_active(noise), &rows, &solution.chi).ok());
+            self.noise.as_ref().and_then(|noise| given_back(of_active(noise), &rows, &solution.chi));
         let chi = corrected.as_ref().map_or(&solution.chi, |c| &c.chi);
         let residual_norm = rows.residual_norm(chi);
         let variance = residual_norm.powi(2) / solution.degrees_of_freedom.max(1) as f64;

@@ -84,15 +84,28 @@ impl Autoregression {
     /// For each innovation the weight that it has in the sum of `weights[t] * noise[t]`: the impulse response run
     /// backwards in time, with `before` innovations from before the first value, the earliest first.
     pub fn weights_of_innovations(&self, weights: &[f64], before: usize) -> Vec<f64> {
-        let coefficients = &self.predictors[self.order()];
         let mut z = vec![0.0; before + weights.len()];
-        for t in (0..z.len()).rev() {
-            let later: f64 = coefficients.iter().zip(z[t + 1..].iter()).map(|(a, x)| a * x).sum();
-            z[t] = later + if t >= before { weights[t - before] } else { 0.0 };
-        }
+        z[before..].copy_from_slice(weights);
+        self.run_backwards(&mut z);
         let deviation = self.deviation();
         z.iter_mut().for_each(|z| *z *= deviation);
         z
+    }
+
+    /// Solves z(t) = w(t) + sum of a(i) z(t + i) in the place of w.
+    pub fn run_backwards(&self, values: &mut [f64]) {
+        let coefficients = &self.predictors[self.order()];
+        for t in (0..values.len()).rev() {
+            let later: f64 = coefficients.iter().zip(values[t + 1..].iter()).map(|(a, x)| a * x).sum();
+            values[t] += later;
+        }
+    }
+
+    /// Variance of the sum of `slopes[i]` times the estimated coefficient i, times the number of values that it was
+    /// estimated from: variance of the innovations times the inverse of the covariance of as many values (Brockwell and
+    /// Davis 1991, theorem 8.1.1).
+    pub fn variance_of_coefficients(&self, slopes: &[f64]) -> f64 {
+        self.deviation().powi(2) * self.innovations(slopes).iter().map(|x| x * x).sum::<f64>()
     }
 
     /// Values after which an impulse has died out to a millionth of its squares, at most `most`.
@@ -162,6 +175,19 @@ mod tests {
         let left = [1.0, -0.5 - first, 2.0 + 0.6 * 0.5 - 0.2, 0.3 - 0.6 * 2.0 + 0.2 * 0.5];
         for (t, (found_at, left)) in found.innovations(&values).iter().zip(left).enumerate() {
             assert!((found_at - left / found.deviations[t.min(2)]).abs() < 1e-12, "{t}");
+        }
+    }
+
+    #[test]
+    fn coefficients_are_as_uncertain_as_in_large_samples() {
+        // Of second order the covariance is (1 - b^2, -a (1 + b)) (Brockwell and Davis 1991, example 8.1.1).
+        let found = Autoregression::of(&second_order(), 1000.0);
+        let (a, b) = (0.6, 0.2);
+        let (variance, covariance) = (1.0 - b * b, -a * (1.0 + b));
+        for slopes in [[1.0, 0.0], [0.0, 1.0], [1.0, 2.0]] {
+            let expected = variance * (slopes[0] * slopes[0] + slopes[1] * slopes[1])
+                + 2.0 * covariance * slopes[0] * slopes[1];
+            assert!((found.variance_of_coefficients(&slopes) - expected).abs() < 1e-9, "{slopes:?}");
         }
     }
 

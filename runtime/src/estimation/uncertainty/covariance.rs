@@ -1,8 +1,10 @@
 //! Standard deviations of parameters under noise that lasts.
 
 use super::between::{MotionPart, factors};
+use super::freedom::Known;
 use super::noise::{Noise, inverse};
 use super::series::Series;
+use super::variance_function;
 use crate::estimation::observe::{Equations, Observation};
 use nalgebra::{DMatrix, DVector};
 
@@ -37,28 +39,44 @@ pub(in crate::estimation) fn variances(solved: &Solved<'_>) -> Option<Vec<f64>> 
 ///
 /// The estimate solves ZT V W chi = ZT V Y with weights V, so that its error is (ZT V W)^-1 ZT V e with the covariance
 /// (ZT V W)^-1 ZT V C V Z (WT V Z)^-1, C that of the noise: an autoregression for each equation, with innovations that
-/// are correlated between equations ([`Noise`]). The innovations of a power have each their own variance. ZT V C V Z is never formed from C: each column of Z is turned into what
+/// are correlated between equations ([`Noise`]). The noise of a power is as large as the [`variance_function`] has it, and its
+/// innovations have each their own variance. ZT V C V Z is never formed from C: each column of Z is turned into what
 /// each innovation weighs in it.
 ///
-/// Where motions differ by more than that noise, the variances are as much larger ([`factors`]).
+/// Where motions differ by more than that noise, the variances are as much larger ([`factors`]). C is estimated, from few rows
+/// perhaps: the variances are those that make 1.96 standard deviations half an interval of 95 % ([`Known::student`]).
 ///
 /// `None` where the rows were not kept, or do not determine the unknowns.
 pub(in crate::estimation) fn covariance(solved: &Solved<'_>) -> Option<DMatrix<f64>> {
     let k = solved.unknowns.len();
     let series = Series::of(solved.observation, solved.unknowns, solved.errors)?;
-    let noise = Noise::of(&series, k)?;
+    // The noise of a power is that of the torques times the speeds.
+    let deviations = match solved.observation.equations {
+        Equations::Torque => None,
+        Equations::Power { .. } => Some(variance_function::deviations(&series, k)?),
+    };
+    let even: Option<Vec<Series>> =
+        deviations.as_ref().map(|all| series.iter().zip(all).map(|(s, d)| s.divided_by(d)).collect());
+    let even = even.as_ref().unwrap_or(&series);
+    let noise = Noise::of(even, k)?;
     let same = solved.unknowns == solved.instruments;
     let others =
         if same { None } else { Some(Series::of(solved.observation, solved.instruments, solved.errors)?) };
     let scores = others.as_ref().unwrap_or(&series);
     let trajectories = series.iter().map(|s| s.trajectory + 1).max().unwrap_or(0);
-    let parts: Vec<MotionPart> = (0..trajectories)
-        .filter_map(|t| {
-            let rows: Vec<_> = series.iter().zip(scores).filter(|(s, _)| s.trajectory == t).collect();
-            (!rows.is_empty()).then(|| of_motion(&rows, solved, &noise))
+    let motions: Vec<Vec<Innovations<'_>>> = (0..trajectories)
+        .map(|t| {
+            let of_motion = |p: &usize| series[*p].trajectory == t;
+            let of_series = |p: usize| {
+                let own = deviations.as_ref().map(|all| (&even[p], all[p].as_slice()));
+                Innovations::of(&series[p], &scores[p], own, solved, &noise)
+            };
+            (0..series.len()).filter(of_motion).map(of_series).collect()
         })
+        .filter(|motion: &Vec<_>| !motion.is_empty())
         .collect();
-    let factors = factors(&parts, k);
+    let parts: Vec<MotionPart> = motions.iter().map(|motion| of_motion(motion, k, &noise)).collect();
+    let between = factors(&parts, k);
     let zero = || DMatrix::<f64>::zeros(k, k);
     let mut information = parts.iter().fold(zero(), |sum, part| sum + &part.information);
     let spread = parts.iter().fold(zero(), |sum, part| sum + &part.spread);
@@ -67,40 +85,37 @@ pub(in crate::estimation) fn covariance(solved: &Solved<'_>) -> Option<DMatrix<f
     }
     let inverse = if same { inverse(&information)? } else { information.try_inverse()? };
     let all = &inverse * spread * inverse.transpose();
-    Some(DMatrix::from_fn(k, k, |i, l| (factors[i] * factors[l]).sqrt() * all[(i, l)]))
+    let mut known = Known::new(&noise, k);
+    motions.iter().for_each(|motion| known.add(motion, &inverse, &noise));
+    let student = known.student(&noise);
+    let factor = |i: usize| student[i] * between[i].sqrt();
+    Some(DMatrix::from_fn(k, k, |i, l| factor(i) * factor(l) * all[(i, l)]))
 }
 
-/// What one motion adds to the information and to the spread of the scores; `rows` are the series of its equations, each
-/// with that of the instruments.
-fn of_motion(rows: &[(&Series, &Series)], solved: &Solved<'_>, noise: &Noise) -> MotionPart {
-    let k = solved.unknowns.len();
-    let mut part = MotionPart {
-        information: DMatrix::zeros(k, k),
-        spread: DMatrix::zeros(k, k),
-        right: DVector::zeros(k),
-    };
-    let mut innovations = Vec::with_capacity(rows.len());
-    for &(w, z) in rows {
-        let weight = (solved.errors[w.group] / solved.weights[w.group]).powi(2);
-        add(&mut part.information, &z.places, &w.places, &(weight * (z.w.transpose() * &w.w)));
+/// What one motion adds to the information and to the spread of the scores.
+fn of_motion(equations: &[Innovations<'_>], unknowns: usize, noise: &Noise) -> MotionPart {
+    let zero = || DMatrix::zeros(unknowns, unknowns);
+    let mut part = MotionPart { information: zero(), spread: zero(), right: DVector::zeros(unknowns) };
+    for Innovations { w, z, weight, .. } in equations {
+        add(&mut part.information, &z.places, &w.places, &(*weight * (z.w.transpose() * &w.w)));
         for (column, &place) in z.w.column_iter().zip(&z.places) {
             part.right[place] += weight * column.iter().zip(&w.y).map(|(z, y)| z * y).sum::<f64>();
         }
-        innovations.push(Innovations::of(w, z, weight, solved, noise));
     }
-    for (l, x) in innovations.iter().enumerate() {
-        for (m, y) in innovations[..=l].iter().enumerate() {
+    let scaled: Vec<_> = equations.iter().map(Innovations::scaled).collect();
+    for (l, (x, of_x)) in equations.iter().zip(&scaled).enumerate() {
+        for (m, (y, of_y)) in equations[..=l].iter().zip(&scaled).enumerate() {
             let correlation = noise.correlation[(x.equation, y.equation)];
             if correlation == 0.0 {
                 continue;
             }
             // They end at the same time.
-            let last = x.weights.nrows().min(y.weights.nrows());
-            let end = |i: &Innovations<'_>| i.weights.rows(i.weights.nrows() - last, last).into_owned();
-            let product = correlation * (end(x).transpose() * end(y));
-            add(&mut part.spread, x.places, y.places, &product);
+            let last = of_x.nrows().min(of_y.nrows());
+            let end = |i: &DMatrix<f64>| i.rows(i.nrows() - last, last).into_owned();
+            let product = correlation * (end(of_x).transpose() * end(of_y));
+            add(&mut part.spread, &x.z.places, &y.z.places, &product);
             if m != l {
-                add(&mut part.spread, y.places, x.places, &product.transpose());
+                add(&mut part.spread, &y.z.places, &x.z.places, &product.transpose());
             }
         }
     }
@@ -108,29 +123,59 @@ fn of_motion(rows: &[(&Series, &Series)], solved: &Solved<'_>, noise: &Noise) ->
 }
 
 /// What each innovation of an equation's noise weighs in its scores.
-struct Innovations<'a> {
-    equation: usize,
-    /// The unknowns of the columns of `weights`.
-    places: &'a [usize],
+pub(super) struct Innovations<'a> {
+    pub equation: usize,
+    /// The rows, and those of the instruments.
+    w: &'a Series,
+    z: &'a Series,
+    /// Weight of a row, in units of that which the noise gives it.
+    weight: f64,
+    /// For innovations of variance 1, a column for each of `z`.
     weights: DMatrix<f64>,
+    /// Variance of each innovation, where it is not 1.
+    pub variances: Option<DVector<f64>>,
 }
 
 impl<'a> Innovations<'a> {
-    fn of(w: &Series, z: &'a Series, weight: f64, solved: &Solved<'_>, noise: &Noise) -> Self {
+    /// `uneven`: the rows over their standard deviations, and these, where they differ from row to row.
+    fn of(
+        w: &'a Series,
+        z: &'a Series,
+        uneven: Option<(&Series, &[f64])>,
+        solved: &Solved<'_>,
+        noise: &Noise,
+    ) -> Self {
+        let weight = (solved.errors[w.group] / solved.weights[w.group]).powi(2);
         let model = &noise.equations[w.equation];
         let before = model.memory(LONGEST_MEMORY);
         let mut weights = DMatrix::zeros(z.w.nrows() + before, z.places.len());
         for (column, mut out) in z.w.column_iter().zip(weights.column_iter_mut()) {
-            let column: Vec<f64> = column.iter().map(|x| weight * x).collect();
+            let mut column: Vec<f64> = column.iter().map(|x| weight * x).collect();
+            if let Some((_, deviations)) = uneven {
+                column.iter_mut().zip(deviations).for_each(|(x, deviation)| *x *= deviation);
+            }
             out.copy_from(&DVector::from_vec(model.weights_of_innovations(&column, before)));
         }
-        // The noise of a power is that of the torques times the speeds.
-        if solved.observation.equations != Equations::Torque {
-            for (t, square) in noise.own_squares(w).into_iter().enumerate() {
-                weights.row_mut(before + t).scale_mut(square.sqrt());
-            }
+        // What is left of the differences between rows each innovation tells by itself.
+        let variances = uneven.map(|(even, _)| {
+            let earlier = std::iter::repeat_n(1.0, before);
+            DVector::from_iterator(weights.nrows(), earlier.chain(noise.own_squares(even)))
+        });
+        Self { equation: w.equation, w, z, weight, weights, variances }
+    }
+
+    /// The weights of the innovations as they are.
+    fn scaled(&self) -> DMatrix<f64> {
+        let mut scaled = self.weights.clone();
+        if let Some(variances) = &self.variances {
+            scaled.row_iter_mut().zip(variances.iter()).for_each(|(mut row, v)| row.scale_mut(v.sqrt()));
         }
-        Self { equation: w.equation, places: &z.places, weights }
+        scaled
+    }
+
+    /// How much an innovation of variance 1 moves each unknown, which are `inverse` times the scores.
+    pub fn moves(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
+        &self.weights * inverse.select_columns(&self.z.places).transpose()
     }
 }
 

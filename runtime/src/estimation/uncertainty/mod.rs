@@ -3,7 +3,9 @@
 mod autoregression;
 mod between;
 mod covariance;
+mod freedom;
 mod noise;
 mod series;
+mod variance_function;
 
 pub(super) use covariance::{Solved, covariance, variances};

@@ -19,6 +19,8 @@ pub(super) struct Noise {
     pub equations: Vec<Autoregression>,
     /// Correlation of the innovations of the equations at the same time.
     pub correlation: DMatrix<f64>,
+    /// For each equation the degrees of freedom that the fit leaves in its rows.
+    pub freedom: Vec<f64>,
     fit: Fit,
 }
 
@@ -57,7 +59,13 @@ impl Noise {
             }
         }
         let correlation = innovations_in_common(all, &equations, &fit);
-        Some(Noise { equations, correlation, fit })
+        let mut freedom = vec![0.0; count];
+        for series in all {
+            let model = &equations[series.equation];
+            let leverages = fit.leverages(series, &whitened(series, model));
+            freedom[series.equation] += leverages.iter().map(|h| 1.0 - h).sum::<f64>();
+        }
+        Some(Noise { equations, correlation, freedom, fit })
     }
 
     /// For each row of a series the square of its own innovation in units of its variance (1 where a row is not used): what
@@ -68,15 +76,12 @@ impl Noise {
         let model = &self.equations[series.equation];
         let white = whitened(series, model);
         let last = series.places.len();
-        let part =
-            DMatrix::from_fn(last, last, |a, b| self.fit.covariance[(series.places[a], series.places[b])]);
-        let taken = white.columns(0, last) * part;
+        let leverages = self.fit.leverages(series, &white);
         let mut squares = vec![1.0; series.y.len()];
         let rows = series.segments.iter().flat_map(|s| s.clone());
-        for (row, t) in rows.enumerate() {
+        for ((row, t), leverage) in rows.enumerate().zip(leverages) {
             let columns = white.row(row);
             let predicted: f64 = (0..last).map(|c| columns[c] * self.fit.chi[series.places[c]]).sum();
-            let leverage: f64 = (0..last).map(|c| columns[c] * taken[(row, c)]).sum();
             squares[t] = ((columns[last] - predicted) / (1.0 - leverage).max(f64::EPSILON)).powi(2);
         }
         squares
@@ -85,14 +90,14 @@ impl Noise {
 
 /// The generalised least-squares fit for a given noise.
 #[derive(Debug)]
-struct Fit {
-    chi: Vec<f64>,
+pub(super) struct Fit {
+    pub chi: Vec<f64>,
     /// A^-1.
     covariance: DMatrix<f64>,
 }
 
 impl Fit {
-    fn of(all: &[Series], noise: &[Autoregression], unknowns: usize) -> Option<Fit> {
+    pub fn of(all: &[Series], noise: &[Autoregression], unknowns: usize) -> Option<Fit> {
         let mut information = DMatrix::<f64>::zeros(unknowns, unknowns);
         let mut right = DVector::<f64>::zeros(unknowns);
         for series in all {
@@ -110,6 +115,13 @@ impl Fit {
         let chi = (&covariance * right).as_slice().to_vec();
         Some(Fit { chi, covariance })
     }
+
+    /// What of each used row the fit takes: the diagonal of the hat matrix, from the innovations of [W Y].
+    pub fn leverages(&self, series: &Series, white: &DMatrix<f64>) -> Vec<f64> {
+        let columns = white.columns(0, series.places.len());
+        let taken = columns * self.covariance.select_rows(&series.places).select_columns(&series.places);
+        taken.row_iter().zip(columns.row_iter()).map(|(taken, row)| taken.dot(&row)).collect()
+    }
 }
 
 /// The inverse of a positive definite matrix, by way of one with a unit diagonal.
@@ -122,7 +134,7 @@ pub(super) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 }
 
 /// The used rows of [W Y] as innovations, stretch by stretch.
-fn whitened(series: &Series, noise: &Autoregression) -> DMatrix<f64> {
+pub(super) fn whitened(series: &Series, noise: &Autoregression) -> DMatrix<f64> {
     let rows: usize = series.segments.iter().map(|s| s.len()).sum();
     let width = series.places.len() + 1;
     let mut white = DMatrix::zeros(rows, width);

@@ -6,7 +6,7 @@ use super::super::observe::{Observation, Rows};
 use nalgebra::DMatrix;
 
 /// The rows of one equation in one motion, on their grid, each divided by the error of its group.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Series {
     /// Place of the group in the observation.
     pub group: usize,
@@ -65,6 +65,14 @@ impl Series {
             used: rows.used.clone(),
             segments,
         }
+    }
+
+    /// The same rows, each divided by a number.
+    pub fn divided_by(&self, divisors: &[f64]) -> Series {
+        let mut even = self.clone();
+        even.w.row_iter_mut().zip(divisors).for_each(|(mut row, d)| row /= *d);
+        even.y.iter_mut().zip(divisors).for_each(|(y, d)| *y /= d);
+        even
     }
 
     /// Y - W chi at the used rows, zero elsewhere; `chi` of all unknowns that are solved for.
