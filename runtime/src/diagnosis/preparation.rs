@@ -68,7 +68,10 @@ impl Prepared {
             && let Some(factor) = factor(model, &fitted.motions, (&fitted.aligned, &fitted.fit))?
         {
             let wrong = WrongRate::new(factor, &fitted.aligned, &fitted.fit)?;
-            return Self::at_the_right_rate(model, trajectories, settings, wrong);
+            // A rate at which nothing can be made of the motion is not the right one.
+            if let Ok(corrected) = Self::at_the_right_rate(model, trajectories, settings, wrong) {
+                return Ok(corrected);
+            }
         }
         Self::judged(model, fitted)
     }
