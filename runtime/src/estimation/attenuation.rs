@@ -26,6 +26,14 @@ pub(super) struct Attenuation {
 /// the mean 1 and this standard deviation.
 pub(super) const UNCERTAINTY: f64 = 0.577_350_269_189_625_8;
 
+impl Attenuation {
+    /// Standard deviation of the correction, as a share of it: all of one that is bounded, which may be none or twice
+    /// as much.
+    pub fn uncertainty(&self) -> f64 {
+        if self.drowned { 1.0 } else { UNCERTAINTY }
+    }
+}
+
 /// The parameters of least squares corrected for noise of known size in the columns (Fuller 1987, Measurement Error
 /// Models, section 2.2): WT W is expected to be that of the true columns plus that of the noise, N, which pulls
 /// parameters towards zero, so that (WT W - N) chi = WT Y.
@@ -160,7 +168,7 @@ mod tests {
         let stacked = stack(&observation, &sigma);
         let chi = stacked.solve().chi;
         let found = corrected(&observation, &[0, 1], &sigma, &stacked, &chi).expect("known noise");
-        assert!(found.drowned);
+        assert!(found.drowned && found.uncertainty() == 1.0);
         assert!((found.chi[0] / chi[0] - 2.0).abs() < 0.01, "{chi:?} {:?}", found.chi);
         assert!((found.chi[1] - chi[1]).abs() < 0.1);
     }

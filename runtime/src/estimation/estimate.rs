@@ -151,7 +151,7 @@ fn deviations_of(
         white: solution.variance.iter().map(|v| (noise * v).sqrt()).collect(),
         blocks: if settings.block_sigmas { block_sigmas(counted, active, &weights.sigma, chi) } else { None },
         lasting: lasting.map(|all| all.diagonal().iter().map(|v| v.sqrt()).collect()),
-        corrections: attenuation.as_ref().map(|a| a.missing.clone()),
+        attenuation: attenuation.clone(),
     }
 }
 
