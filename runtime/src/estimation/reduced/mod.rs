@@ -17,7 +17,6 @@ use super::Factor;
 use super::attenuation::UNCERTAINTY;
 use super::observe::Observation;
 use super::outcome::Estimate;
-use super::warning::Warning;
 use crate::model::Robot;
 use crate::model_file::fingerprint;
 
@@ -177,8 +176,7 @@ fn add_noise(all: &mut DMatrix<f64>, own: &DMatrix<f64>, columns: &[usize], sigm
 fn inflation(estimate: &Estimate, l: usize) -> Option<f64> {
     let parameter = estimate.parameters.get(l)?;
     let (sigma, white) = (parameter.sigma?, parameter.sigma_white.filter(|white| *white > 0.0)?);
-    let bounded = estimate.warnings.contains(&Warning::NoisyColumns);
-    let of_correction = if bounded { 1.0 } else { UNCERTAINTY } * parameter.correction.unwrap_or(0.0);
+    let of_correction = UNCERTAINTY * parameter.correction.unwrap_or(0.0);
     let variance = (sigma.powi(2) - of_correction.powi(2)).max(0.0);
     Some(variance / white.powi(2)).filter(|inflation| inflation.is_finite())
 }
