@@ -19,7 +19,7 @@ mod table;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use cases::{Case, Noise, ROBOTS, SHAPES};
+use cases::{Case, Noise, ROBOTS, SHAPES, USUAL_SHAPES};
 use table::Tally;
 
 /// A list in the environment, or what is usual.
@@ -39,10 +39,9 @@ fn number<T: std::str::FromStr>(name: &str) -> Option<T> {
 fn intervals_contain_the_truth_as_often_as_they_say() {
     let seeds: u64 = number("COVERAGE_SEEDS").unwrap_or(40);
     let band: Option<f64> = number("COVERAGE_BAND");
-    let shapes: Vec<&str> = SHAPES.iter().map(|s| s.name).collect();
     let wanted = (
         listed("COVERAGE_ROBOTS", &ROBOTS),
-        listed("COVERAGE_SHAPES", &shapes),
+        listed("COVERAGE_SHAPES", &USUAL_SHAPES),
         listed("COVERAGE_NOISE", &Noise::USUAL),
         listed("COVERAGE_METHODS", &methods::NAMES),
     );

@@ -24,11 +24,15 @@ pub struct Shape {
     period: f64,
 }
 
-pub const SHAPES: [Shape; 3] = [
+pub const SHAPES: [Shape; 4] = [
     Shape { name: "1x5s", motions: 1, period: 5.0 },
     Shape { name: "3x8s", motions: 3, period: 8.0 },
     Shape { name: "20x1.5s", motions: 20, period: 1.5 },
+    // More rows than are kept; on demand only.
+    Shape { name: "14x8s", motions: 14, period: 8.0 },
 ];
+/// Those of the table.
+pub const USUAL_SHAPES: [&str; 3] = ["1x5s", "3x8s", "20x1.5s"];
 
 /// What is wrong with the measurements.
 #[derive(Clone, Copy, PartialEq, Eq)]

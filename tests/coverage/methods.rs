@@ -1,10 +1,11 @@
 //! What is made of a recording: every method, as the command line runs it.
 
-use dynid_runtime::estimation::observe::{Equations, ObserveSettings, observe};
+use dynid_runtime::estimation::observe::{Equations, Observation, ObserveSettings, observe};
 use dynid_runtime::estimation::{
-    EstimateSettings, Instruments, Method, RecordedSettings, estimate, instrumental_variables,
-    observe_trajectories,
+    EstimateSettings, Instruments, Method, PIECE, Piecewise, RecordedSettings, estimate,
+    instrumental_variables, observe_trajectories,
 };
+use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::{DidimSettings, Experiment, didim, simulated_motions};
 
 use super::cases::{Case, Recording};
@@ -32,12 +33,7 @@ pub fn all(case: &Case<'_>, recording: &Recording, band: Option<f64>, wanted: &[
             continue;
         }
         let equations = if power { Equations::Power { closed_form: false } } else { Equations::Torque };
-        let observed =
-            observe_trajectories(&recording.trajectories, case.model, &[equations], &settings, None).unwrap();
-        let observation = &observed.observations[0];
-        if std::env::var_os("COVERAGE_BANDS").is_some() {
-            println!("{} Hz", observed.settings.band);
-        }
+        let observation = &observed(case, &recording.trajectories, equations, &settings);
         for method in methods {
             let settings = EstimateSettings { r_sigma: None, ..EstimateSettings::for_method(method) };
             let found = estimate(observation, &settings);
@@ -50,6 +46,30 @@ pub fn all(case: &Case<'_>, recording: &Recording, band: Option<f64>, wanted: &[
         outcomes.extend(with_simulated_states(case, recording, &settings, &simulated));
     }
     outcomes
+}
+
+/// The equations as `dynid identify` has them: of a recording with more rows than are kept, piece by piece.
+fn observed(
+    case: &Case<'_>,
+    trajectories: &[Trajectory],
+    equations: Equations,
+    settings: &RecordedSettings,
+) -> Observation {
+    let mut rows = 0;
+    let longer = |t: &Trajectory| {
+        rows += t.time.len();
+        rows > PIECE
+    };
+    let Some(last) = trajectories.iter().position(longer) else {
+        let whole = observe_trajectories(trajectories, case.model, &[equations], settings, None).unwrap();
+        return whole.observations.into_iter().next().unwrap();
+    };
+    let (first, others) = trajectories.split_at(last + 1);
+    let (preparation, rows) = settings.chosen(first).unwrap();
+    let equations = [equations];
+    let (mut all, _) = Piecewise::new(case.model, &equations, first.to_vec(), preparation, rows).unwrap();
+    others.iter().for_each(|piece| all.add(piece).unwrap());
+    all.finish().unwrap().0.into_iter().next().unwrap()
 }
 
 /// Instrumental variables and DIDIM: both simulate the motions that were planned, from the parameters of IDIM-WLS.

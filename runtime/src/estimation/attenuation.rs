@@ -13,8 +13,8 @@ pub(super) struct Attenuation {
     pub chi: Vec<f64>,
     /// What that added to each.
     pub missing: Vec<f64>,
-    /// More than half of what tells some parameters apart is noise: what it hides of them is given back only in part.
-    pub drowned: bool,
+    /// Of each parameter the part in directions of which more than half is noise, which nothing was added for.
+    pub unresolved: Vec<f64>,
 }
 
 /// Standard deviation of a correction, as a share of it.
@@ -26,12 +26,29 @@ pub(super) struct Attenuation {
 /// the mean 1 and this standard deviation.
 pub(super) const UNCERTAINTY: f64 = 0.577_350_269_189_625_8;
 
+/// Share of a direction's information that noise may be for it to be corrected.
+const MOST: f64 = 0.5;
+
+impl Attenuation {
+    /// Standard deviation of a parameter that is due to the noise in the columns: that of its correction, and that of what
+    /// the estimate has of it in directions that noise hides, which is as likely nothing as twice as much.
+    pub fn deviation(&self, place: usize) -> f64 {
+        UNCERTAINTY * self.missing[place].hypot(self.unresolved[place])
+    }
+
+    /// Whether noise hides some directions: parameters that it alone tells apart.
+    pub fn hides_some(&self) -> bool {
+        self.unresolved.iter().any(|&x| x != 0.0)
+    }
+}
+
 /// The parameters of least squares corrected for noise of known size in the columns (Fuller 1987, Measurement Error
 /// Models, section 2.2): WT W is expected to be that of the true columns plus that of the noise, N, which pulls
 /// parameters towards zero, so that (WT W - N) chi = WT Y.
 ///
 /// `stacked` has the unknowns `active`, whose weighted least-squares solution is `chi`; `sigma` are the errors of the
-/// groups. `None` where no noise is known. In directions where noise is more than half of WT W, half of it is taken away.
+/// groups. `None` where no noise is known. Nothing is added in directions of which noise is more
+/// than half.
 pub(super) fn corrected(
     observation: &Observation,
     active: &[usize],
@@ -67,30 +84,43 @@ pub(super) fn given_back(of_information: DMatrix<f64>, stacked: &Factor, chi: &[
     let scale = information.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
     let scaled = |matrix: &DMatrix<f64>| DMatrix::from_fn(k, k, |i, l| scale[i] * matrix[(i, l)] * scale[l]);
     let drowned = Cholesky::new(scaled(&(&information - 2.0 * &of_information))).is_none();
-    let of_information = if drowned {
-        let most = at_most_half(&scaled(&information), &scaled(&of_information))?;
-        DMatrix::from_fn(k, k, |i, l| most[(i, l)] / (scale[i] * scale[l]))
+    let (of_information, unresolved) = if drowned {
+        let estimate = DVector::from_column_slice(chi).component_div(&scale);
+        let parted = parted(&scaled(&information), &scaled(&of_information), &estimate)?;
+        let noise = DMatrix::from_fn(k, k, |i, l| parted.noise[(i, l)] / (scale[i] * scale[l]));
+        (noise, parted.unresolved.component_mul(&scale))
     } else {
-        of_information
+        (of_information, DVector::zeros(k))
     };
     let pull = (&of_information * DVector::from_column_slice(chi)).component_mul(&scale);
     let left = Cholesky::new(scaled(&(&information - &of_information)))?;
     let missing = left.solve(&pull).component_mul(&scale);
     let missing = missing.as_slice().to_vec();
     let chi = chi.iter().zip(&missing).map(|(x, d)| x + d).collect();
-    Some(Attenuation { of_information, chi, missing, drowned })
+    Some(Attenuation { of_information, chi, missing, unresolved: unresolved.as_slice().to_vec() })
 }
 
-/// The noise of which no direction has more than half of the information.
+/// The directions in which there is more than noise, and the others.
+struct Parted {
+    /// The noise in the former.
+    noise: DMatrix<f64>,
+    /// The part of the estimate in the latter.
+    unresolved: DVector<f64>,
+}
+
+/// Parts the directions by whether noise is at most half of their information.
 ///
-/// Where all that there is in a direction is noise, the noise that is expected is as likely more than what there is: its
-/// correction has no moments, and is bounded (Fuller 1987, section 2.5).
-fn at_most_half(information: &DMatrix<f64>, noise: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let half = Cholesky::new(information.clone())?.l();
-    let inverse = half.clone().try_inverse()?;
+/// Where all that there is in a direction is noise, the noise that is expected is as likely more than what there is: a
+/// correction has no moments there (Fuller 1987, section 2.5).
+fn parted(information: &DMatrix<f64>, noise: &DMatrix<f64>, estimate: &DVector<f64>) -> Option<Parted> {
+    let root = Cholesky::new(information.clone())?.l();
+    let inverse = root.clone().try_inverse()?;
     let mut of_unit = SymmetricEigen::new(&inverse * noise * inverse.transpose());
-    of_unit.eigenvalues.apply(|share| *share = share.min(0.5));
-    Some(&half * of_unit.recompose() * half.transpose())
+    let hidden = of_unit.eigenvalues.map(|share| if share > MOST { 1.0 } else { 0.0 });
+    of_unit.eigenvalues.zip_apply(&hidden, |share, hidden| *share *= 1.0 - hidden);
+    let turned = of_unit.eigenvectors.tr_mul(&root.tr_mul(estimate));
+    let unresolved = inverse.tr_mul(&(&of_unit.eigenvectors * turned.component_mul(&hidden)));
+    Some(Parted { noise: &root * of_unit.recompose() * root.transpose(), unresolved })
 }
 
 #[cfg(test)]
@@ -154,14 +184,15 @@ mod tests {
     }
 
     #[test]
-    fn what_noise_drowns_is_at_most_doubled() {
+    fn what_noise_drowns_is_left_as_it_is_and_is_anything_up_to_twice_as_much() {
         let observation = observed(3.0, 9.0);
         let sigma = equal(&observation).sigma;
         let stacked = stack(&observation, &sigma);
         let chi = stacked.solve().chi;
         let found = corrected(&observation, &[0, 1], &sigma, &stacked, &chi).expect("known noise");
-        assert!(found.drowned);
-        assert!((found.chi[0] / chi[0] - 2.0).abs() < 0.01, "{chi:?} {:?}", found.chi);
-        assert!((found.chi[1] - chi[1]).abs() < 0.1);
+        assert!(found.hides_some());
+        assert!((found.chi[0] / chi[0] - 1.0).abs() < 0.01, "{chi:?} {:?}", found.chi);
+        assert!((found.deviation(0) / (UNCERTAINTY * chi[0]) - 1.0).abs() < 0.01);
+        assert!(found.deviation(1) < 0.1 * chi[1]);
     }
 }

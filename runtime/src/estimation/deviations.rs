@@ -1,6 +1,6 @@
 //! The standard deviations of an estimate, and its parameters with them. Equation numbers are those of Gautier and Briot.
 
-use super::attenuation::{Attenuation, UNCERTAINTY};
+use super::attenuation::Attenuation;
 use super::observe::Observation;
 use super::outcome::ParameterEstimate;
 use super::uncertainty::{Solved, covariance};
@@ -20,7 +20,7 @@ pub(super) struct Deviations {
     /// How the errors go together: a covariance, whatever its scale.
     pub together: DMatrix<f64>,
     /// What was added for noise in the columns.
-    pub corrections: Option<Vec<f64>>,
+    pub attenuation: Option<Attenuation>,
 }
 
 impl Deviations {
@@ -29,7 +29,7 @@ impl Deviations {
     fn headline(&self, place: usize) -> f64 {
         let of = |all: &Option<Vec<f64>>| all.as_ref().map(|all| all[place]);
         let noise = of(&self.lasting).or(of(&self.blocks)).unwrap_or(self.white[place]);
-        noise.hypot(UNCERTAINTY * of(&self.corrections).unwrap_or(0.0))
+        noise.hypot(self.attenuation.as_ref().map_or(0.0, |a| a.deviation(place)))
     }
 
     /// By how much that is more than for noise that is independent from row to row.
@@ -77,7 +77,7 @@ pub(super) fn described(
     for (place, &l) in active.iter().enumerate() {
         let parameter = &mut parameters[l];
         parameter.value = chi[place];
-        parameter.correction = deviations.corrections.as_ref().map(|c| c[place]);
+        parameter.correction = deviations.attenuation.as_ref().map(|a| a.missing[place]);
         if !deviations.known {
             continue;
         }

@@ -100,7 +100,7 @@ pub(super) fn simplified(
         together: DMatrix::zeros(0, 0),
         white,
         blocks: None,
-        corrections: attenuation.map(|a| a.missing),
+        attenuation,
     };
     let all = described(observation, kept, &values, &deviations);
     Essential {

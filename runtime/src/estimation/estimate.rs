@@ -121,7 +121,7 @@ fn solve(observation: &Observation, settings: &EstimateSettings, warnings: &mut 
         warnings.push(Warning::NoDeviations);
     } else {
         attenuation = corrected(counted, &active, &weights.sigma, &rows, &solution.chi);
-        if attenuation.as_ref().is_some_and(|a| a.drowned) {
+        if attenuation.as_ref().is_some_and(Attenuation::hides_some) {
             warnings.push(Warning::NoisyColumns);
         }
     }
@@ -151,7 +151,7 @@ fn deviations_of(
         white: solution.variance.iter().map(|v| (noise * v).sqrt()).collect(),
         blocks: if settings.block_sigmas { block_sigmas(counted, active, &weights.sigma, chi) } else { None },
         lasting: lasting.map(|all| all.diagonal().iter().map(|v| v.sqrt()).collect()),
-        corrections: attenuation.as_ref().map(|a| a.missing.clone()),
+        attenuation: attenuation.clone(),
     }
 }
 

@@ -49,7 +49,8 @@ pub enum Warning {
     NoDeviations,
     /// Total least squares has no solution here; that of least squares is given.
     NoTotalSolution,
-    /// More than half of what tells some parameters apart is noise of the encoders: the parameters are corrected for half.
+    /// More than half of what tells some parameters apart is noise of the encoders: that part of them may be
+    /// anything between nothing and twice as much, which their standard deviations say.
     NoisyColumns,
     /// The iteration of the weights had not converged.
     NotConverged {

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Reduced;
-use crate::estimation::attenuation::{UNCERTAINTY, given_back};
+use crate::estimation::attenuation::given_back;
 use crate::estimation::outcome::ParameterEstimate;
 use crate::estimation::solve::inverse_gram;
 
@@ -54,7 +54,8 @@ impl Reduced {
             inflations.push(inflation);
             let white = (variance * solution.variance[place]).sqrt();
             let correction = corrected.as_ref().map(|c| c.missing[place]);
-            let sigma = (white * inflation.sqrt()).hypot(UNCERTAINTY * correction.unwrap_or(0.0));
+            let of_correction = corrected.as_ref().map_or(0.0, |c| c.deviation(place));
+            let sigma = (white * inflation.sqrt()).hypot(of_correction);
             let value = chi[place];
             parameters[l] = ParameterEstimate {
                 value,
