@@ -48,6 +48,19 @@ pub fn check(
             );
             Err(refused(path, robot, &words))
         }
+        Verdict::OverPosition { joints } => {
+            warnings.extend(joints.iter().map(|&(joint, [before, after])| {
+                format!(
+                    "the torque of joint {} depends on its position as that of no rigid robot does (a spring, a balancer, a \
+                     cable): the best parameters that a robot can have leave {} of it unexplained, with such a torque {}. \
+                     It is not in this model, and its parameters are off by what they make of it: `dynid diagnose` adds it",
+                    robot.joint_number(joint),
+                    percent(before),
+                    percent(after)
+                )
+            }));
+            Ok(warnings)
+        }
         Verdict::Strained { possible, free } => {
             warnings.push(format!(
             "some parameters are none that a robot can have (a negative inertia, friction that drives): the best possible \

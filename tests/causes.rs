@@ -216,6 +216,27 @@ fn gravity_along_another_axis_or_the_other_way_is_named() {
 }
 
 #[test]
+fn a_spring_that_moves_a_joint_is_no_mistake() {
+    for own in RECORDINGS.iter().filter(|own| own.model.robot().name == "planar_2r") {
+        let torques: Vec<f64> = own.motions.iter().flat_map(|m| m.torque[1].clone()).collect();
+        let rms = (torques.iter().map(|t| t * t).sum::<f64>() / torques.len() as f64).sqrt();
+        // It pushes away from the middle of its travel, which no friction and no inertia does.
+        let motions = changed(&own.motions, |m| {
+            for (t, q) in m.torque[1].iter_mut().zip(&m.q[1]) {
+                *t -= 6.0 * rms * q;
+            }
+        });
+        match judged(own.model, &motions, &own.rows) {
+            Verdict::OverPosition { joints } => {
+                let [(JointIndex(1), [before, after])] = joints[..] else { panic!("{joints:?}") };
+                assert!(2.0 * after <= before, "{before} {after}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
 fn degrees_in_a_table_of_radians_are_named() {
     let Some(own) = RECORDINGS.last() else { return };
     let robot = own.model.robot();

@@ -384,7 +384,7 @@ fn a_reference_is_taken_with_its_motions_where_they_are_as_they_were() {
         words_of(&said)
     };
     let said = against();
-    assert!(said.contains("Compared with a model and the motions that it is from"), "{said}");
+    assert!(said.contains("Compared with the motions from before"), "{said}");
     // A data file that is another is not what the model is from.
     folder.write("before/motion.csv", &moving(1501));
     let said = against();

@@ -4,8 +4,8 @@
 //! not. Where there is a test recording, each finding is therefore held against it: the part of it that is there
 //! ([`OnTest`]) must be more than one half, or its joints are predicted worse with it; it must be told from nothing where
 //! the motion could have shown it; it must not certainly make the other joints worse; and a factor must be the same. What
-//! fails is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by it: of a finding that
-//! stays, only that it did not fail is known from it.
+//! fails is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by
+//! it: of a finding that stays, only that it did not fail is known from it.
 
 mod slope;
 
@@ -120,18 +120,16 @@ fn held_against_test(
         // By the parameters that joints share it may show, or do harm, on others.
         let on_all = Slope::of(&evaluation, [which, 0], None);
         let own = slope.judgement();
+        let harms_others = own == Judgement::Stands && on_all.as_ref().is_some_and(Slope::certainly_harms);
+        let is_another = finding.term.effect.properties().is_factor && slope.certainly_differs();
         let fails = match own {
-            Judgement::Stands if finding.term.effect.properties().is_factor && slope.certainly_differs() => {
-                true
-            }
-            Judgement::Stands => on_all.is_some_and(|s| s.certainly_harms()),
+            Judgement::Stands => harms_others || is_another,
             Judgement::Harms => true,
             Judgement::NotSeen => on_all.is_none_or(|s| s.judgement() != Judgement::Stands),
         };
         if fails {
             let [test_before, test_after] = [which, 0].map(|m| error_on(model, finding, &evaluation, m));
             let (effect, joints) = (finding.effect.clone(), finding.joints.clone());
-            let harms_others = own == Judgement::Stands && on_all.is_some_and(|s| s.certainly_harms());
             failing.push((*k, Refuted { effect, joints, test_before, test_after, on_test, harms_others }));
         }
     }

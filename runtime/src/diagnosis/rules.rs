@@ -199,6 +199,8 @@ pub(super) const LEAST_FRICTION_CHANGE: f64 = 0.05;
 /// Displacement, as a fraction of a joint's travel, over which friction builds up after a reversal in the nuisance
 /// column: the shortest of the grid of the law itself. Mechanics.
 pub(super) const PRESLIDING_NUISANCE: f64 = 0.002;
+/// Standard deviation of the gain of a drive about what its data sheet says: makers give tolerances of a tenth, twice this.
+pub(super) const GAIN_DEVIATION: f64 = 0.05;
 /// Where the parts of the acceleration begin that may be noise of the encoder, as a fraction of the rate of the rows:
 /// octaves below the highest frequency that they show. Statistics.
 pub(super) const NOISE_OCTAVES: [f64; 3] = [0.0625, 0.125, 0.25];

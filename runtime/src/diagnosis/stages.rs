@@ -10,6 +10,7 @@ use super::outcome::{Diagnosis, Finding, Sampling};
 use super::preparation::{Prepared, nothing_moves};
 use super::pushes::Pushes;
 use super::rate::LAW;
+use super::reference::Reference;
 use super::rows::fit::Fit;
 use super::search::extended_model::ExtendedModel;
 use super::search::report::SearchReport;
@@ -18,6 +19,7 @@ use super::settings::{Progress, Settings};
 use crate::effects::{EffectKind, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
+use std::sync::Arc;
 
 /// What is diagnosed, and the same robot before it changed.
 pub(super) struct Recordings<'a> {
@@ -39,6 +41,14 @@ pub(super) fn run(
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Diagnosis, DiagnosisError> {
+    // 0. What was missing before already is no change.
+    let before =
+        known.is_none().then(|| known_before(model, recordings.baseline, settings, progress)).flatten();
+    let with_reference = before.map(|reference| Settings { reference: Some(reference), ..settings.clone() });
+    let settings = with_reference.as_ref().unwrap_or(settings);
+    let progress =
+        &Part { of: progress, from: if with_reference.is_some() { BASELINE } else { 0.0 }, to: 1.0 };
+
     // 1. Band, motions, checks, skew.
     progress.at(0.0, "signals");
     let prepared = Prepared::new(model, recordings.trajectories, recordings.baseline, settings)?;
@@ -61,6 +71,39 @@ pub(super) fn run(
             return Ok(diagnosis);
         }
     }
+}
+
+/// Share of a diagnosis that its baseline takes.
+const BASELINE: f64 = 0.4;
+
+/// A part of what is told of the progress of the whole.
+struct Part<'p> {
+    of: &'p dyn Progress,
+    from: f64,
+    to: f64,
+}
+
+impl Progress for Part<'_> {
+    fn at(&self, done: f64, what: &str) {
+        self.of.at(self.from + (self.to - self.from) * done, what);
+    }
+}
+
+/// The model that a diagnosis of the baseline ends with, laws that are missing there too; `None` without a baseline, where a
+/// model is known already, and where the baseline alone supports no diagnosis.
+fn known_before(
+    model: &dyn Model,
+    baseline: &[Trajectory],
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Option<Arc<Reference>> {
+    if baseline.is_empty() || settings.reference.is_some() {
+        return None;
+    }
+    let progress = Part { of: progress, from: 0.0, to: BASELINE };
+    let recordings = Recordings { trajectories: baseline, baseline: &[] };
+    let before = run(model, recordings, None, None, settings, &progress).ok()?;
+    Reference::of(&before).map(Arc::new)
 }
 
 /// What does not change in the course of a diagnosis.

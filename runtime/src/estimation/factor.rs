@@ -130,6 +130,22 @@ impl Factor {
         selected
     }
 
+    /// What the first `known` columns leave of the others and of Y: that many rows less.
+    ///
+    /// # Panics
+    /// If there are fewer columns.
+    pub fn beyond(&self, known: usize) -> Factor {
+        assert!(known <= self.unknowns);
+        let mut left = Factor::new(self.unknowns - known);
+        let rows = left.unknowns + 1;
+        for l in 0..rows {
+            let at = (l + known) * (self.unknowns + 1) + known;
+            left.r[l * rows..][..=l].copy_from_slice(&self.r[at..=at + l]);
+        }
+        left.rows = self.rows.saturating_sub(known);
+        left
+    }
+
     /// The factor of the same rows with Y replaced by Y - sum of value * column, and those columns left out:
     /// parameters that are held at known values.
     pub fn hold(&self, held: &[(usize, f64)]) -> Factor {

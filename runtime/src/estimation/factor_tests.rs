@@ -97,6 +97,22 @@ fn solution_and_variance_are_those_of_the_textbook() {
 }
 
 #[test]
+fn what_columns_leave_of_the_others_is_their_residual_on_them() {
+    let rows = random(60, 6, 4);
+    let left = factor_of(&rows, &[60]).beyond(2);
+    let known = rows.columns(0, 2).into_owned();
+    let hat = &known * (known.transpose() * &known).try_inverse().unwrap() * known.transpose();
+    let others = rows.columns(2, 4).into_owned();
+    let residual = factor_of(&(&others - hat * &others), &[60]);
+    assert_eq!((left.unknowns(), left.rows()), (3, 58));
+    for l in 0..=3 {
+        for i in 0..=l {
+            assert!((left.r(i, l).abs() - residual.r(i, l).abs()).abs() < 1e-11);
+        }
+    }
+}
+
+#[test]
 fn columns_that_cannot_be_told_apart_are_named_and_not_inverted() {
     let mut rows = random(100, 7, 5);
     let sum = rows.column(1) * 2.0 - rows.column(4);

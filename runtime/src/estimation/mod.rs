@@ -96,3 +96,4 @@ pub use settings::EstimateSettings;
 pub(crate) use solve::ROUNDING;
 pub use solve::{RANK_TOLERANCE, Solution};
 pub use warning::Warning;
+pub(crate) use weights::residual_norm;

@@ -46,7 +46,8 @@ pub(super) fn equal(observation: &Observation) -> Weights {
 pub(super) fn from_own_fits(observation: &Observation) -> Weights {
     let mut weights = equal(observation);
     let mut found = vec![Variance::of_squares(0.0, 0.0); observation.groups.len()];
-    for own in by_equation(observation) {
+    let equations = by_equation(observation);
+    for own in &equations {
         let Some((&first, others)) = own.split_first() else { continue };
         let mut all = observation.groups[first].factor.clone();
         for &g in others {
@@ -62,13 +63,13 @@ pub(super) fn from_own_fits(observation: &Observation) -> Weights {
         }
         let places: Vec<(usize, usize)> =
             independent.iter().enumerate().map(|(place, &l)| (l, place)).collect();
-        for g in own {
+        for &g in own {
             let factor = &observation.groups[g].factor;
             let leverage = leverage(&gram(factor), &places, &inverse);
             found[g] = squares(factor, factor.residual_norm(&chi), leverage);
         }
     }
-    settle(observation, &by_equation(observation), &found, &mut weights);
+    settle(observation, &equations, &found, &mut weights);
     weights
 }
 
@@ -130,7 +131,7 @@ pub(super) fn solve_active(observation: &Observation, active: &[usize], sigma: &
 }
 
 /// ||Y - W chi|| of a group, for all unknowns of the observation.
-pub(super) fn residual_norm(group: &EquationFactor, chi: &[f64]) -> f64 {
+pub(crate) fn residual_norm(group: &EquationFactor, chi: &[f64]) -> f64 {
     let own: Vec<f64> = group.columns.iter().map(|&u| chi[u]).collect();
     group.factor.residual_norm(&own)
 }

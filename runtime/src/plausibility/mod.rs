@@ -3,6 +3,7 @@
 mod channels;
 mod instead;
 mod judged;
+mod position;
 mod table;
 
 pub use channels::{ChannelFault, faulty_channel};
@@ -13,8 +14,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use crate::estimation::observe::Observation;
 use crate::estimation::{Estimate, PhysicalFit, physical_fit};
-use crate::model::{JointIndex, Model};
+use crate::model::{JointIndex, Model, Robot};
 use instead::{POOR, mistakes, other_gravities, single_mistakes};
+use position::with_torques_over_position;
 
 /// Strain from which the parameters are said not to be those of a real robot.
 const STRAINED: f64 = 1.1;
@@ -70,6 +72,11 @@ pub enum Verdict {
         /// that are as good.
         instead: Vec<(Instead, f64)>,
     },
+    /// The torques of some joints depend on their own positions as those of no rigid robot do: a spring, a cable.
+    OverPosition {
+        /// Which joints, each with its error with the best parameters that a robot can have, and with such a torque too.
+        joints: Vec<(JointIndex, [f64; 2])>,
+    },
     /// No such robot can have made it, and nothing that was tried explains it.
     Impossible {
         /// The joint of which physics takes most away.
@@ -101,6 +108,30 @@ pub fn judge(
     let errors = errors_of(&own.per_equation);
     let Some(worst) = largest(errors.len(), |j| errors[j]) else { return Verdict::Plausible };
     let error = errors[worst];
+    let instead = if estimated.rows_per_parameter() < ENOUGH_ROWS {
+        Vec::new()
+    } else {
+        better(judged, others, candidates(robot, others, &own, error), &own)
+    };
+    if !instead.is_empty() {
+        let worst = (JointIndex(worst), error);
+        return Verdict::Better { own: overall, worst, instead };
+    }
+    if let Some(&joint) = impossible(&errors, estimated).first() {
+        return over_position(judged, estimated, &errors)
+            .map_or(Verdict::Impossible { joint, error: errors[joint.0] }, |joints| Verdict::OverPosition {
+                joints,
+            });
+    }
+    if own.strain > STRAINED {
+        return Verdict::Strained { possible: overall, free };
+    }
+    Verdict::Plausible
+}
+
+/// What is tried instead of what was declared: the more, the worse the best parameters of a real robot do. `error` is that
+/// of the joint that they explain worst.
+fn candidates(robot: &Robot, others: &[&dyn Model], own: &PhysicalFit, error: f64) -> Vec<Instead> {
     let mut candidates = Vec::new();
     if own.strain > STRAINED || error > POOR {
         let kinds = robot.joint_kinds();
@@ -115,32 +146,33 @@ pub fn judge(
         candidates.extend(other_gravities(robot));
     }
     if own.strain > OVERSTRAINED || error > BAD {
-        candidates.extend(mistakes(robot, &own));
+        candidates.extend(mistakes(robot, own));
     }
-    if estimated.rows_per_parameter() < ENOUGH_ROWS {
-        candidates.clear();
-    }
-    let instead = better(judged, others, candidates, &own);
-    if !instead.is_empty() {
-        let worst = (JointIndex(worst), error);
-        return Verdict::Better { own: overall, worst, instead };
-    }
-    if let Some(joint) = impossible(&own, estimated) {
-        return Verdict::Impossible { joint: JointIndex(joint), error: errors[joint] };
-    }
-    if own.strain > STRAINED {
-        return Verdict::Strained { possible: overall, free };
-    }
-    Verdict::Plausible
+    candidates
 }
 
-/// The joint of which physics takes most away, where that is more than a quarter of its squared torque and leaves less
-/// than half of it explained.
-fn impossible(own: &PhysicalFit, free: &Estimate) -> Option<usize> {
-    let [own, free] = [&own.per_equation, &free.per_equation].map(|errors| errors_of(errors));
-    let taken = |j: usize| own[j].powi(2) - free[j].powi(2);
-    let joint = largest(own.len(), taken)?;
-    (own[joint] > HALF && taken(joint) > 0.25).then_some(joint)
+/// Joints of which physics takes more than a quarter of the squared torque and leaves less than half of it explained, the
+/// one of which it takes most first. `errors` are those with the best parameters that a robot can have.
+fn impossible(errors: &[f64], free: &Estimate) -> Vec<JointIndex> {
+    let free = errors_of(&free.per_equation);
+    let taken = |j: usize| errors[j].powi(2) - free[j].powi(2);
+    let mut joints: Vec<usize> = (0..errors.len()).filter(|&j| errors[j] > HALF && taken(j) > 0.25).collect();
+    joints.sort_by(|&a, &b| taken(b).total_cmp(&taken(a)));
+    joints.into_iter().map(JointIndex).collect()
+}
+
+/// Impossible joints whose errors a torque over their own position lowers as much as a mistake must that is believed, where
+/// that leaves no impossible joint: each with its errors before and after.
+fn over_position(
+    judged: &Judged<'_>,
+    free: &Estimate,
+    before: &[f64],
+) -> Option<Vec<(JointIndex, [f64; 2])>> {
+    let joints = impossible(before, free);
+    let after = with_torques_over_position(judged, &joints)?;
+    let explained = joints.iter().all(|j| MISTAKE * after[j.0] <= before[j.0]);
+    (explained && impossible(&after, free).is_empty())
+        .then(|| joints.into_iter().map(|j| (j, [before[j.0], after[j.0]])).collect())
 }
 
 /// Relative errors, 0 for a joint without torque: nothing of it is left unexplained.

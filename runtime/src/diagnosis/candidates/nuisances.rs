@@ -5,8 +5,9 @@ use crate::diagnosis::candidates::trial::{delay_columns, dense_columns, term_col
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::PRESLIDING_NUISANCE;
-use crate::effects::{EffectKind, Place};
+use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::signal::{Stencil, central_difference};
+use std::ops::Range;
 
 /// Columns of the skew of the torques, the first of them.
 pub(in crate::diagnosis) const SKEW_COLUMNS: usize = 1;
@@ -39,6 +40,18 @@ pub(in crate::diagnosis) fn always_there(
 fn standing_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
     let Some(reference) = &context.reference else { return Vec::new() };
     reference.standing().flat_map(|term| term_columns(context, design, term)).collect()
+}
+
+/// Columns of a design that are curves of a reference, see [`Design::shrunk`].
+pub(in crate::diagnosis) fn standing_curves(context: &Context<'_>, design: &Design) -> Vec<Range<usize>> {
+    let mut next = design.parameters + standing_from(design.joints);
+    let standing = context.reference.iter().flat_map(|reference| reference.standing());
+    let of = |term: &EffectTerm| {
+        let columns = next..next + term.amplitude.len();
+        next = columns.end;
+        term.effect.form().is_curve().then_some(columns)
+    };
+    standing.filter_map(of).collect()
 }
 
 /// Torque that the laws of a reference have beyond the one that was taken out of the recorded torques, on all rows: joints that

@@ -178,7 +178,7 @@ pub(in crate::diagnosis) fn not_judged(joints: &[NotJudged]) -> Option<String> {
 /// What a comparison with a reference rests on, `alone` or beside the motions that it is from.
 pub(in crate::diagnosis) fn of_reference(reference: &Reference, alone: bool) -> String {
     if !alone {
-        return "Compared with a model and the motions that it is from: a change is judged against how much these differ."
+        return "Compared with the motions from before: a change is judged against how much these differ."
             .to_owned();
     }
     let judged = "Compared with a model: a change is judged against how much this recording varies from stretch to stretch";

@@ -73,8 +73,7 @@ pub(in crate::diagnosis) fn calibrate(
     let change = units.change();
     let found = if change {
         let fresh = sum(&products.files, |f| units.is_target(f));
-        let old = sum(&products.files, |f| !units.is_target(f));
-        Wald::of(&(&old + &fresh), &fresh, (p, k), common)?
+        Wald::of(&all_files(&products, regressors, p + k), &fresh, (p, k), common)?
     } else {
         Wald::of(&all(&products, regressors, p + k), &sum(&products.units, |_| true), (p, k), false)?
     };
@@ -107,7 +106,8 @@ pub(in crate::diagnosis) fn calibrate(
     let own = Variance { value: 1.0 + (variance.value - 1.0).max(0.0) * longer, ..variance };
     let known = between_motions(regressors, law).filter(|between| between.value > own.value);
     let Variance { value: lambda, freedom } = known.unwrap_or(own);
-    let whole = if change { sum(&products.files, |_| true) } else { all(&products, regressors, p + k) };
+    let whole =
+        if change { all_files(&products, regressors, p + k) } else { all(&products, regressors, p + k) };
     let target: Vec<&DMatrix<f64>> =
         products.units.iter().zip(&units.units).filter(|(_, u)| u.target).map(|(m, _)| m).collect();
     let carrying = carrying(&whole, &target, p, k);
@@ -137,7 +137,7 @@ pub(in crate::diagnosis) fn beside(
     let products = background.with(units, regressors, &both, law.residual);
     let (mut whole, part) = if units.change() {
         let fresh = sum(&products.files, |f| units.is_target(f));
-        (sum(&products.files, |f| !units.is_target(f)) + &fresh, fresh)
+        (all_files(&products, regressors, p + o + k), fresh)
     } else {
         (all(&products, regressors, p + o + k), sum(&products.units, |_| true))
     };
@@ -178,7 +178,15 @@ fn sum(list: &[DMatrix<f64>], taken: impl Fn(usize) -> bool) -> DMatrix<f64> {
 /// Inner products of a recording without a baseline, with what is known of its columns beforehand; `y` is the column of the
 /// torque.
 fn all(products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
-    let mut whole = sum(&products.units, |_| true);
+    with_prior(sum(&products.units, |_| true), regressors, y)
+}
+
+/// The same of a recording and a baseline, motion by motion.
+fn all_files(products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
+    with_prior(sum(&products.files, |_| true), regressors, y)
+}
+
+fn with_prior(mut whole: DMatrix<f64>, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
     if let Some(prior) = regressors.prior {
         prior.add_to_products(&mut whole, y);
     }

@@ -6,7 +6,9 @@ use crate::diagnosis::judging::folds::{Fold, folds};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
+use crate::diagnosis::rows::prior::Prior;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Rows and columns with their fit, their folds, and the noise of each joint. What is asked of all four is asked here:
 /// to judge a candidate, to predict held-out motion, to tell how sure a gain is (the other files of this room).
@@ -26,10 +28,25 @@ pub(in crate::diagnosis) struct Regression {
     pub(super) target_squares: Vec<f64>,
     /// Columns of each term; empty where its amplitude is fixed.
     pub term_columns: Vec<Range<usize>>,
+    /// Columns of the gains that bodies show.
+    pub gains: Range<usize>,
     /// y without any term of fixed amplitude.
     measured: Vec<f64>,
     /// Columns that are always there: base parameters and nuisances.
     fixed_columns: usize,
+    /// What is known of these beforehand.
+    known: Option<Arc<Prior>>,
+    /// Those of curves among them.
+    curves: Vec<Range<usize>>,
+}
+
+/// What is fitted or taken out beside the terms.
+pub(in crate::diagnosis) struct Besides {
+    /// A torque on all rows that is known.
+    pub known: Option<Vec<f64>>,
+    /// Columns that are zero within a standard deviation.
+    pub gains: Vec<Vec<f64>>,
+    pub deviation: f64,
 }
 
 /// The columns of a term on the rows, and its amplitude where the law leaves none free.
@@ -41,7 +58,7 @@ pub(in crate::diagnosis) struct TermColumns {
 }
 
 impl Regression {
-    /// Without any term; `nuisances` are columns that are always fitted along.
+    /// Without any term; `nuisances` are columns that are always fitted along. Curves among these are `shrunk` already.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
@@ -57,6 +74,7 @@ impl Regression {
         let held_out_squares = held_out_squares(&design, &fit, &folds);
         let residual_products = residual_products(&design, &fit);
         let target_squares = target_squares(&design, &fit);
+        let (known, curves) = (design.prior.clone(), design.shrunk.clone());
         Ok(Self {
             design,
             sigma,
@@ -66,27 +84,37 @@ impl Regression {
             residual_products,
             target_squares,
             term_columns: Vec::new(),
+            gains: fixed_columns..fixed_columns,
             measured,
             fixed_columns,
+            known,
+            curves,
         })
     }
 
-    /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again; `known` is a torque on
-    /// all rows that is known beside them.
+    /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
     pub fn set_terms(
         &mut self,
         count: usize,
-        known: Option<&[f64]>,
+        besides: Besides,
         columns: impl Fn(&Design, usize) -> TermColumns,
     ) -> Result<(), SingularDesign> {
         self.design.columns.truncate(self.fixed_columns);
         self.design.y.clone_from(&self.measured);
-        self.design.y.iter_mut().zip(known.unwrap_or_default()).for_each(|(y, known)| *y -= known);
-        self.design.shrunk.clear();
+        let known = besides.known.unwrap_or_default();
+        self.design.y.iter_mut().zip(known).for_each(|(y, known)| *y -= known);
+        self.design.shrunk.clone_from(&self.curves);
         self.term_columns.clear();
+        self.gains = self.fixed_columns..self.fixed_columns + besides.gains.len();
+        self.design.prior.clone_from(&self.known);
+        if !besides.gains.is_empty() {
+            let prior = Prior::with_zeros(self.known.as_deref(), self.gains.clone(), besides.deviation);
+            self.design.prior = Some(Arc::new(prior));
+        }
+        besides.gains.into_iter().for_each(|column| self.design.push(column));
         for k in 0..count {
             let term = columns(&self.design, k);
             let start = self.design.columns.len();
@@ -117,7 +145,8 @@ impl Regression {
             self.design.columns[column].fill(0.0);
         }
         self.design.columns.truncate(self.fixed_columns);
-        self.design.shrunk.clear();
+        self.design.shrunk.clone_from(&self.curves);
+        self.design.prior.clone_from(&self.known);
         self.design.refresh();
     }
 

@@ -147,6 +147,15 @@ impl<'a> Context<'a> {
         chi
     }
 
+    /// Torques, `[j][t]`, of the bodies that were not there in the baseline.
+    pub fn of_new_bodies(&self, signal: usize) -> Vec<Vec<f64>> {
+        let mut chi = vec![0.0; self.chi.len()];
+        for body in self.carried.iter().filter(|body| !body.in_baseline) {
+            chi.iter_mut().zip(&body.chi).for_each(|(x, more)| *x += more);
+        }
+        ModelTorques::new(self.model, &chi, &self.signals[signal]).rigid
+    }
+
     pub fn tables(&self) -> &[Link<f64>] {
         &self.tables
     }

@@ -1,6 +1,7 @@
 //! What is known of columns beforehand, as the inner products of rows that nobody has kept.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use std::ops::Range;
 
 /// Information on some columns of a design, in units of the noise variance.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,20 @@ impl Prior {
         let information = DMatrix::from_fn(k, k, |i, l| inverse[(i, l)] * scale[i] * scale[l]);
         let right = &information * DVector::from_vec(mean);
         right.iter().all(|x| x.is_finite()).then_some(Self { columns, information, right })
+    }
+
+    /// The same, and that these columns are zero within a standard deviation, each for itself.
+    pub fn with_zeros(before: Option<&Self>, columns: Range<usize>, deviation: f64) -> Self {
+        let old = before.map_or(0, |before| before.columns.len());
+        let all = old + columns.len();
+        let mut information = DMatrix::from_diagonal_element(all, all, 1.0 / (deviation * deviation));
+        let mut right = DVector::zeros(all);
+        if let Some(before) = before {
+            information.view_mut((0, 0), (old, old)).copy_from(&before.information);
+            right.rows_mut(0, old).copy_from(&before.right);
+        }
+        let before = before.map(|before| before.columns.clone()).unwrap_or_default();
+        Self { columns: before.into_iter().chain(columns).collect(), information, right }
     }
 
     /// The same, so many times less certain of every value.
@@ -110,6 +125,18 @@ mod tests {
         assert!(parameters(1e9) < 1e-6);
         // Eigenvalues 1/4 and 1/9 beside 1, were they not correlated.
         assert!((0.2..0.4).contains(&parameters(1.0)), "{}", parameters(1.0));
+    }
+
+    #[test]
+    fn columns_that_are_nearly_zero_are_drawn_to_it_beside_what_was_known_before() {
+        let covariance = DMatrix::from_row_slice(1, 1, &[4.0]);
+        let prior = Prior::of_covariance(&covariance, vec![1.0], vec![0]).expect("it is positive");
+        let both = Prior::with_zeros(Some(&prior), 2..4, 0.5);
+        let (mut g, mut v) = (DMatrix::identity(4, 4), DVector::from_element(4, 1.0));
+        both.add_to(&mut g, &mut v);
+        let x = g.try_inverse().expect("rows tell all of them") * v;
+        // (1 + 1/4) over itself, 1, and 1 over 1 + 4.
+        approx::assert_relative_eq!(x, DVector::from_vec(vec![1.0, 1.0, 0.2, 0.2]), max_relative = 1e-12);
     }
 
     #[test]

@@ -1,15 +1,16 @@
 //! The standard model with accepted effects, fitted on the rows of both smoothing windows.
 
 use crate::diagnosis::candidates::companions::companions;
+use crate::diagnosis::candidates::gains::{deviation_of_gains, gain_columns};
 use crate::diagnosis::candidates::nuisances::{
-    NUISANCES, SKEW_COLUMNS, always_there, more_of_standing_laws, standing_from,
+    NUISANCES, SKEW_COLUMNS, always_there, more_of_standing_laws, standing_curves, standing_from,
 };
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::regression::{Regression, TermColumns};
+use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::rows::context::{Carried, Context};
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
+use crate::diagnosis::rules::{GAIN_DEVIATION, LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
@@ -42,6 +43,7 @@ impl<'a> ExtendedModel<'a> {
     ) -> Result<Self, SingularDesign> {
         let regression = |mut design: Design| {
             let nuisances = always_there(&context, &design, change);
+            design.shrunk = standing_curves(&context, &design);
             // Beside a baseline its rows say as much.
             if let Some(reference) = context.reference.as_ref().filter(|_| context.is_alone()) {
                 let first = design.parameters + standing_from(design.joints);
@@ -76,9 +78,11 @@ impl<'a> ExtendedModel<'a> {
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
+        let mut deviation = GAIN_DEVIATION;
         let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
         for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
-            put_terms(&mut self.slow, &self.context, &self.terms, self.change)?;
+            self.put_terms(deviation)?;
+            deviation = self.deviation_of_gains(deviation);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi, self.carried());
             // An error that is not small bends its own column: derivatives are taken along the way to it.
@@ -91,8 +95,25 @@ impl<'a> ExtendedModel<'a> {
                 }
             }
         }
-        put_terms(&mut self.slow, &self.context, &self.terms, self.change)?;
-        put_terms(&mut self.fast, &self.context, &self.terms, self.change)
+        self.put_terms(deviation)?;
+        put_terms(&mut self.fast, &self.context, (&self.terms, deviation), self.change)
+    }
+
+    /// Puts the terms into the regression on the slow rows.
+    fn put_terms(&mut self, deviation: f64) -> Result<(), SingularDesign> {
+        put_terms(&mut self.slow, &self.context, (&self.terms, deviation), self.change)
+    }
+
+    /// How much the gains differ that bodies show.
+    fn deviation_of_gains(&self, before: f64) -> f64 {
+        let Regression { design, fit, gains, .. } = &self.slow;
+        if gains.is_empty() {
+            return before;
+        }
+        let variances = fit.variances();
+        let shown = gains.clone().filter(|&c| design.columns[c].iter().any(|x| *x != 0.0));
+        let of: Vec<(f64, f64)> = shown.map(|c| (fit.chi[c], variances[c])).collect();
+        deviation_of_gains(&of, before)
     }
 
     /// Bodies that the robot carries: those of a reference, and those among the terms, with what the slow rows say of them. A
@@ -156,6 +177,9 @@ impl<'a> ExtendedModel<'a> {
         if let Some(more) = more_of_standing_laws(&self.context, design) {
             subtract(&more, 1.0);
         }
+        for (c, column) in self.slow.gains.clone().zip(gain_columns(&self.context, design)) {
+            subtract(&column, chi[c]);
+        }
         for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
             for (k, column) in self.columns_of(design, term).iter().enumerate() {
                 subtract(column, term.fixed.unwrap_or_else(|| chi[range.start + k]));
@@ -169,11 +193,12 @@ impl<'a> ExtendedModel<'a> {
 fn put_terms(
     regression: &mut Regression,
     context: &Context<'_>,
-    terms: &[Accepted],
+    (terms, deviation): (&[Accepted], f64),
     change: bool,
 ) -> Result<(), SingularDesign> {
-    let more = more_of_standing_laws(context, &regression.design);
-    regression.set_terms(terms.len(), more.as_deref(), |design, k| {
+    let known = more_of_standing_laws(context, &regression.design);
+    let besides = Besides { known, gains: gain_columns(context, &regression.design), deviation };
+    regression.set_terms(terms.len(), besides, |design, k| {
         let term = &terms[k];
         let columns = dense_columns(context, design, term.effect, term.place, &term.shape, change);
         TermColumns { columns, fixed: term.fixed, is_curve: term.effect.form().is_curve() }

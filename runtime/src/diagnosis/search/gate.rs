@@ -7,12 +7,12 @@ use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::judging::calibration::{Calibrated, Law, calibrate};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::white_products::Background;
-use crate::diagnosis::rules::{LEAST_CARRYING_UNITS, MOST_COMPARED};
+use crate::diagnosis::rules::{LEAST_CARRYING_UNITS, LINE_COVERED, MOST_COMPARED};
 use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow, UserLaw};
+use crate::effects::{Abscissa, EffectKind, Form, Place, SmoothingWindow, UserLaw};
 use crate::parallel;
 use std::sync::OnceLock;
 
@@ -122,6 +122,9 @@ impl Search<'_> {
 
     fn work_out(&self, against: &RoundEvidence, ranked: &Ranked) -> Option<Gate> {
         let (regression, candidate) = self.of(ranked);
+        if self.stands_already(candidate, &candidate.trials[ranked.verdict.trial].shape) {
+            return None;
+        }
         let (bench, design) = (self.model.bench(ranked.window), &regression.design);
         let OwnPart { gain, change, left } = own_part(regression, candidate, ranked.verdict.trial)?;
         let columns = self.columns(ranked);
@@ -137,6 +140,21 @@ impl Search<'_> {
         }
         let size = bench.largest_size(design, &ranked.verdict.shows_on, &change, &left)?;
         Some(Gate { gain, calibrated, size, left })
+    }
+
+    /// Whether a law repeats itself with its shape, as waves do, and the reference has it. The phase of a wave of a motor may
+    /// be another one after each start, so that it looks new.
+    fn stands_already(&self, candidate: &Candidate, shape: &[f64]) -> bool {
+        let (Form::Joint(law), Some(joint)) = (candidate.effect.form(), candidate.place.joint()) else {
+            return false;
+        };
+        let near = LINE_COVERED as f64 * self.lines[joint].resolution;
+        let standing = self.model.context.reference.iter().flat_map(|reference| reference.effects());
+        law.repeats_its_shape()
+            && standing
+                .filter(|term| term.effect == candidate.effect && term.place == candidate.place)
+                .flat_map(|term| &term.shape)
+                .any(|order| shape.iter().any(|own| (own - order).abs() <= near))
     }
 
     /// A candidate of a round as columns over all rows, those of a baseline too.

@@ -137,7 +137,7 @@ impl Search<'_> {
         least_confidence: f64,
     ) -> bool {
         let left = self.left_beside(round, candidate, own, rival);
-        left.is_some_and(|left| left.evidence.evidence().confidence(self.tries()) >= least_confidence)
+        left.is_some_and(|left| self.is_certain(&left, least_confidence))
     }
 
     /// Whether it also is much the same law there. Two laws that share what they explain may leave a difference that is as
@@ -151,9 +151,11 @@ impl Search<'_> {
         least_confidence: f64,
     ) -> bool {
         let left = self.left_beside(round, candidate, own, rival);
-        left.is_some_and(|left| {
-            left.kept >= LEAST_KEPT && left.evidence.evidence().confidence(self.tries()) >= least_confidence
-        })
+        left.is_some_and(|left| left.kept >= LEAST_KEPT && self.is_certain(&left, least_confidence))
+    }
+
+    fn is_certain(&self, left: &Beside, least_confidence: f64) -> bool {
+        left.evidence.evidence().confidence(self.tries()) >= least_confidence
     }
 
     /// The evidence for a candidate beside a rival, given as columns over all rows.
