@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     recording: Source,
     #[command(flatten)]
     sampling: DiagnosisOptions,
-    /// A recording of the same robot before it changed: only what changed is looked for
+    /// A recording of the same robot before it changed: it is diagnosed first, and only what changed since is looked for
     #[arg(long)]
     baseline: Option<PathBuf>,
     /// A model of the same robot before it changed, saved by `identify` or `diagnose`: its parameters and laws, as well as

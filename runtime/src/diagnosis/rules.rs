@@ -194,6 +194,9 @@ pub(super) const MOST_COMPARED: usize = 6;
 /// Least part of a law's torque that a rival in the model leaves, for the two to explain different things. Statistics: where
 /// less than half of it stays, most of what it explained is the rival's as well.
 pub(super) const LEAST_KEPT: f64 = 0.5;
+/// Part of a wave's amplitude that rows must let through for its law to be judged on them: where most of it is smoothed away,
+/// what is left of it depends on the smoothing. Judgement; torque_ripple in `docs/concealment.md`.
+pub(super) const WAVE_SEEN: f64 = 0.5;
 /// Least change of a joint's friction torque that is named, as a share of it. Judgement: a user acts on no less.
 pub(super) const LEAST_FRICTION_CHANGE: f64 = 0.05;
 /// Displacement, as a fraction of a joint's travel, over which friction builds up after a reversal in the nuisance

@@ -7,7 +7,8 @@ use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::judging::calibration::{Calibrated, Law, calibrate};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::white_products::Background;
-use crate::diagnosis::rules::{LEAST_CARRYING_UNITS, LINE_COVERED, MOST_COMPARED};
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::{LEAST_CARRYING_UNITS, LINE_COVERED, MOST_COMPARED, WAVE_SEEN};
 use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
@@ -20,6 +21,20 @@ use std::sync::OnceLock;
 fn is_trend(candidate: &Candidate) -> bool {
     candidate.effect.properties().abscissa == Abscissa::Time
         || candidate.place.law().is_some_and(UserLaw::is_of_time)
+}
+
+/// Whether rows let a law through. What repeats itself with its shape, as waves do, may be faster than the rows are: what is
+/// left of it depends on where the joint happens to be slow, and any small torque there asks for a giant wave.
+fn is_seen(candidate: &Candidate, design: &Design, columns: &[Vec<f64>]) -> bool {
+    let (Form::Joint(law), Some(joint)) = (candidate.effect.form(), candidate.place.joint()) else {
+        return true;
+    };
+    let rows = design.of_joint(joint);
+    let acts = rows.clone().filter(|&r| columns.iter().any(|c| c[r] != 0.0)).count();
+    // Sine and cosine of each wave: at the full rate their squares are one together.
+    let squares: f64 = columns.iter().flat_map(|c| &c[rows.clone()]).map(|x| x * x).sum();
+    let whole = acts as f64 * columns.len() as f64 / 2.0;
+    !law.repeats_its_shape() || squares >= WAVE_SEEN * WAVE_SEEN * whole
 }
 
 /// What a law's evidence and size say.
@@ -128,6 +143,9 @@ impl Search<'_> {
         let (bench, design) = (self.model.bench(ranked.window), &regression.design);
         let OwnPart { gain, change, left } = own_part(regression, candidate, ranked.verdict.trial)?;
         let columns = self.columns(ranked);
+        if !is_seen(candidate, design, &columns) {
+            return None;
+        }
         let regressors = bench.regressors(design);
         let background = against
             .of(ranked.window)
