@@ -115,3 +115,22 @@ fn a_law_that_follows_the_load_feels_the_body_that_was_found() {
     let largest = |x: &[f64]| x.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     assert!(largest(&felt[0]) > 1.5 * largest(&unloaded[0]));
 }
+
+#[test]
+fn gains_of_drives_that_a_body_shows_are_no_news() {
+    let robot = common::planar();
+    let gains: fn(&mut Trajectory) = |motion| {
+        motion.torque[0].iter_mut().for_each(|x| *x *= 1.04);
+        motion.torque[1].iter_mut().for_each(|x| *x *= 0.97);
+    };
+    let with_gains = |hidden: Hidden| Hidden { distort: gains, ..hidden };
+    let baseline = robot.record(&robot.motions(3, 4.5, 51), &with_gains(Hidden::nothing()), 51);
+    let mass = 0.6;
+    let hidden = with_gains(body(1, point(mass, 0.3)));
+    let found = diagnosed(&robot.record(&robot.motions(3, 4.5, 1), &hidden, 1), &baseline);
+    let named: Vec<&str> = found.findings.iter().map(|f| f.effect.as_str()).collect();
+    assert_eq!(named, ["payload"]);
+    let told = &found.findings[0].parameters["mass"];
+    assert!(told.sigma > 0.005 * mass && told.sigma < 0.05 * mass, "{told:?}");
+    assert!((told.value - mass).abs() < 3.0 * told.sigma, "{told:?}");
+}

@@ -298,6 +298,26 @@ fn friction_that_grew_since_the_baseline_is_a_level_change() {
 }
 
 #[test]
+fn what_was_missing_before_is_listed_once_and_is_no_change() {
+    let robot = planar();
+    let friction = || common::term(EffectKind::LoadDependentFriction, Place::Joint(0), &[], &[0.15]);
+    let before = Hidden::in_robot(move |world| world.put(&friction()));
+    let baseline =
+        robot.robot.record(&robot.robot.motions(MOTIONS, LENGTH, BASELINE_SEED), &before, BASELINE_SEED);
+    let spring = || common::term(EffectKind::Spring, Place::Joint(1), &[], &[3.0]);
+    let now = Hidden::in_robot(move |world| {
+        world.put(&friction());
+        world.put(&spring());
+    });
+    let diagnosis = run(robot, &now, &baseline);
+    assert_only(&diagnosis, EffectKind::Spring, &[2]);
+    let standing: Vec<_> =
+        diagnosis.standing.iter().map(|s| (s.effect.as_str(), s.joints.as_slice())).collect();
+    assert_eq!(standing, [("load_dependent_friction", &[1][..])]);
+    assert!(diagnosis.verdict.iter().any(|v| v.contains("from before")), "{:?}", diagnosis.verdict);
+}
+
+#[test]
 fn a_torque_constant_that_is_wrong_since_the_baseline_is_named() {
     let robot = planar();
     let wrong = |motion: &mut Trajectory| motion.torque[0].iter_mut().for_each(|x| *x *= 1.1);
