@@ -113,8 +113,8 @@ pub(super) const AIC_PENALTY: f64 = 2.0;
 /// The fitted fraction must be this part of the held-out one that is asked for: a gain in prediction without one in
 /// the fit is an accident of extrapolation. Judgement; false namings.
 pub(super) const FITTED_TO_HELD_OUT: f64 = 0.5;
-/// A single motion is cut at these eighths: what comes before is fitted and predicts what comes after. Judgement: most
-/// of a motion is needed to determine the standard parameters; `docs/concealment_short.md`.
+/// For a trend a single motion is cut at these eighths: what comes before is fitted and predicts what comes after.
+/// Judgement: most of a motion is needed to determine the standard parameters; `docs/concealment_short.md`.
 pub(super) const FORWARD_CUTS: [usize; 2] = [5, 6];
 /// Of the stretches of few motions, one in so many may lose: an effect may leave some of them untouched. Judgement.
 pub(super) const STRETCHES_PER_LOSS: usize = 4;

@@ -3,7 +3,7 @@
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::effects::{EffectKind, Place, SmoothingWindow, UserLaw};
+use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow, UserLaw};
 use crate::parallel;
 
 /// An effect at a place.
@@ -19,6 +19,14 @@ pub(in crate::diagnosis) struct Candidate {
     pub fixed: Option<f64>,
     /// Whether a negative amplitude is something else.
     pub only_positive: bool,
+}
+
+impl Candidate {
+    /// Whether it is a number of the model that changes with time, of one joint or of all.
+    pub fn is_trend(&self) -> bool {
+        self.effect.properties().abscissa == Abscissa::Time
+            || self.place.law().is_some_and(UserLaw::is_of_time)
+    }
 }
 
 /// An effect at a place with the shapes to try.

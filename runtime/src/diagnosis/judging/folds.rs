@@ -31,3 +31,15 @@ pub(in crate::diagnosis) fn folds(design: &Design, sigma: &[f64]) -> Result<Vec<
 pub(in crate::diagnosis) fn forward_cuts(segments: usize) -> [usize; 2] {
     FORWARD_CUTS.map(|eighths| (segments * eighths / 8).max(1))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::forward_cuts;
+
+    #[test]
+    fn a_single_motion_is_cut_at_five_and_six_eighths() {
+        assert_eq!(forward_cuts(8), [5, 6]);
+        assert_eq!(forward_cuts(4), [2, 3]);
+        assert_eq!(forward_cuts(1), [1, 1]);
+    }
+}

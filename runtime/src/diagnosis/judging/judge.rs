@@ -150,13 +150,14 @@ impl Regression {
         self.target_squares[joint] / (self.sigma[joint] * self.sigma[joint])
     }
 
-    /// Whether a candidate improves later time of a single motion when everything, standard parameters included, is
-    /// fitted to the time before, on the joints that it `shows_on`. (The others see it only through parameters that they
-    /// share, whose extrapolation from a part of a motion is noise.)
+    /// Whether a candidate improves motion that it was not fitted to, where there is a single one: each stretch, with
+    /// everything, standard parameters included, fitted to the others, on the joints that it `shows_on`. (The others see it
+    /// only through parameters that they share, whose extrapolation from a part of a motion is noise.) A trend, or a curve of
+    /// many numbers, goes on between stretches that were fitted whatever it is: it must hold forward in time.
     ///
     /// # Errors
     /// [`SingularDesign`] where the time before has no fit.
-    pub fn holds_forward(
+    pub fn predicts_rest_of_motion(
         &self,
         candidate: &Candidate,
         trial: usize,
@@ -164,19 +165,26 @@ impl Regression {
     ) -> Result<bool, SingularDesign> {
         let segments = self.design.segments.len();
         let trial = &candidate.trials[trial];
-        let mut gain = 0.0;
-        for cut in forward_cuts(segments) {
-            let fit = Fit::new(&self.design, &self.sigma, (0..segments).map(|g| g < cut).collect())?;
-            let Some(part) = fit.project_out(trial) else { return Ok(false) };
-            let Some((amplitude, _)) = part.solve(candidate) else { return Ok(false) };
-            let prediction = Prediction::new(&fit, trial, &part, amplitude);
-            for &j in shows_on {
-                let weight = 1.0 / (self.sigma[j] * self.sigma[j]);
-                for g in cut..segments {
-                    gain += weight * prediction.gain(&self.design, j, g);
-                }
+        let gain = |fit: &Fit, is_held: &dyn Fn(usize) -> bool| {
+            let part = fit.project_out(trial)?;
+            let (amplitude, _) = part.solve(candidate)?;
+            let prediction = Prediction::new(fit, trial, &part, amplitude);
+            let of_joint = |&j: &usize| {
+                let held = (0..segments).filter(|&g| is_held(g));
+                let gone: f64 = held.map(|g| prediction.gain(&self.design, j, g)).sum();
+                gone / (self.sigma[j] * self.sigma[j])
+            };
+            Some(shows_on.iter().map(of_joint).sum::<f64>())
+        };
+        let mut gains = Vec::new();
+        if candidate.is_trend() || candidate.effect.form().is_curve() {
+            for cut in forward_cuts(segments) {
+                let before = (0..segments).map(|g| g < cut).collect();
+                gains.push(gain(&Fit::new(&self.design, &self.sigma, before)?, &|g| g >= cut));
             }
+        } else {
+            gains.extend(self.folds.iter().map(|fold| gain(&fold.fit, &|g| fold.test[g])));
         }
-        Ok(gain > 0.0)
+        Ok(gains.into_iter().sum::<Option<f64>>().is_some_and(|gain| gain > 0.0))
     }
 }

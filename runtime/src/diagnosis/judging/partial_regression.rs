@@ -4,7 +4,7 @@
 //! what W makes of it. M Z itself is never formed; Gram matrices are enough.
 
 use crate::diagnosis::candidates::candidate::Candidate;
-use crate::diagnosis::candidates::trial::Trial;
+use crate::diagnosis::candidates::trial::{Products, Trial};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
@@ -64,6 +64,23 @@ impl Fit {
 }
 
 impl Residualised {
+    /// Per joint Zᵀ M Z_j a: what a part of the trial's torque, that with these amplitudes on this joint alone, says of the
+    /// amplitudes; by the weights of the fit that it was residualised in.
+    pub fn of_each_joint(&self, fit: &Fit, trial: &Trial, amplitude: &DVector<f64>) -> Vec<DVector<f64>> {
+        let k = amplitude.len();
+        let of_joint = |(products, s): (&Vec<Products>, &f64)| {
+            let (mut with, mut own) = (DMatrix::zeros(fit.chi.len(), k), DMatrix::zeros(k, k));
+            for product in products.iter().zip(&fit.train).filter_map(|(p, train)| train.then_some(p)) {
+                with += &product.with;
+                own += &product.own;
+            }
+            let mut said = (own - self.coefficients.transpose() * with) * amplitude / (s * s);
+            (0..k).filter(|&a| self.squares[(a, a)] == 0.0).for_each(|a| said[a] = 0.0);
+            said
+        };
+        trial.products.iter().zip(&fit.sigma).map(of_joint).collect()
+    }
+
     /// M Z on all rows.
     pub fn columns(&self, design: &Design, trial: &Trial) -> Vec<Vec<f64>> {
         let mut columns = trial.dense(design);

@@ -13,15 +13,9 @@ use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Abscissa, EffectKind, Form, Place, SmoothingWindow, UserLaw};
+use crate::effects::{EffectKind, Form, Place, SmoothingWindow};
 use crate::parallel;
 use std::sync::OnceLock;
-
-/// Whether a law is a number of the model that changes with time, of one joint or of all.
-fn is_trend(candidate: &Candidate) -> bool {
-    candidate.effect.properties().abscissa == Abscissa::Time
-        || candidate.place.law().is_some_and(UserLaw::is_of_time)
-}
 
 /// Whether rows let a law through. What repeats itself with its shape, as waves do, may be faster than the rows are: what is
 /// left of it depends on where the joint happens to be slow, and any small torque there asks for a giant wave.
@@ -153,7 +147,7 @@ impl Search<'_> {
         let law = self.law(ranked, &columns, &left);
         let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
         // A law of time that shows in few units is an event: whatever else happened then is not told from it.
-        if is_trend(candidate) && !self.model.change && calibrated.carrying < LEAST_CARRYING_UNITS {
+        if candidate.is_trend() && !self.model.change && calibrated.carrying < LEAST_CARRYING_UNITS {
             return None;
         }
         let size = bench.largest_size(design, &ranked.verdict.shows_on, &change, &left)?;
@@ -191,7 +185,7 @@ impl Search<'_> {
             columns,
             residual,
             common: self.model.change && properties.standing_friction,
-            trend_of: if is_trend(candidate) && candidate.own.len() == 1 { LEVELS } else { 0 },
+            trend_of: if candidate.is_trend() && candidate.own.len() == 1 { LEVELS } else { 0 },
         }
     }
 

@@ -174,7 +174,7 @@ impl Search<'_> {
             .judge(&candidate)
             .is_some_and(|v| v.explained_fraction >= KEPT_FRACTION * settings.least_share && v.total() > 0.0);
         let better = if regression.design.is_single_motion() {
-            regression.holds_forward(&candidate, 0, &term.shows_on)?
+            regression.predicts_rest_of_motion(&candidate, 0, &term.shows_on)?
         } else {
             with < without
         };

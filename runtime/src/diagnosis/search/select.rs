@@ -1,6 +1,7 @@
 //! Which candidate of a round holds.
 
 use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::candidates::gains::weighed_with_gains;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
@@ -53,7 +54,7 @@ impl Search<'_> {
             let verdict = &ranked[k].verdict;
             let Some(most) = self.waveform_confidence(&ranked[k], rounds, settings) else { continue };
             if regression.design.is_single_motion()
-                && !regression.holds_forward(candidate, verdict.trial, &verdict.shows_on)?
+                && !regression.predicts_rest_of_motion(candidate, verdict.trial, &verdict.shows_on)?
             {
                 continue;
             }
@@ -131,7 +132,13 @@ impl Search<'_> {
             return false;
         };
         part.solve(candidate).is_some_and(|(amplitude, _)| {
-            let fitted = (part.information(), &amplitude);
+            let mut information = part.information().clone();
+            if self.model.change && matches!(candidate.effect.form(), Form::Body(_)) {
+                let trial = &candidate.trials[ranked.verdict.trial];
+                let of_each_joint = part.of_each_joint(&regression.fit, trial, &amplitude);
+                information = weighed_with_gains(&information, &of_each_joint);
+            }
+            let fitted = (&information, &amplitude);
             body::can_be(&self.model.context, candidate.effect.form(), fitted, inflation)
         })
     }
