@@ -7,7 +7,7 @@ use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::prediction::Prediction;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rules::AIC_PENALTY;
+use crate::diagnosis::rules::{AIC_PENALTY, MOST_OF_WHAT_IS_OPEN};
 use nalgebra::DVector;
 
 /// The verdict on a candidate.
@@ -152,16 +152,17 @@ impl Regression {
 
     /// Whether a candidate improves motion that it was not fitted to, where there is a single one: each stretch, with
     /// everything, standard parameters included, fitted to the others, on the joints that it `shows_on`. (The others see it
-    /// only through parameters that they share, whose extrapolation from a part of a motion is noise.) A trend, or a curve of
-    /// many numbers, goes on between stretches that were fitted whatever it is: it must hold forward in time.
+    /// only through parameters that they share, whose extrapolation from a part of a motion is noise.) A law that explains less
+    /// than most of what is open must also hold forward in time, where parameters are extrapolated; so must a trend and a
+    /// curve of many numbers, which go on between stretches that were fitted whatever they are.
     ///
     /// # Errors
     /// [`SingularDesign`] where the time before has no fit.
     pub fn predicts_rest_of_motion(
         &self,
         candidate: &Candidate,
-        trial: usize,
-        shows_on: &[usize],
+        (trial, shows_on): (usize, &[usize]),
+        explained_fraction: f64,
     ) -> Result<bool, SingularDesign> {
         let segments = self.design.segments.len();
         let trial = &candidate.trials[trial];
@@ -177,7 +178,8 @@ impl Regression {
             Some(shows_on.iter().map(of_joint).sum::<f64>())
         };
         let mut gains = Vec::new();
-        if candidate.is_trend() || candidate.effect.form().is_curve() {
+        let goes_on = candidate.is_trend() || candidate.effect.form().is_curve();
+        if goes_on || explained_fraction < MOST_OF_WHAT_IS_OPEN {
             for cut in forward_cuts(segments) {
                 let before = (0..segments).map(|g| g < cut).collect();
                 gains.push(gain(&Fit::new(&self.design, &self.sigma, before)?, &|g| g >= cut));

@@ -170,11 +170,12 @@ impl Search<'_> {
         let shape = std::slice::from_ref(&term.shape);
         let candidate =
             make(&model.context, &regression.design, term.effect, term.place, shape, model.change);
-        let worth = regression
-            .judge(&candidate)
-            .is_some_and(|v| v.explained_fraction >= KEPT_FRACTION * settings.least_share && v.total() > 0.0);
+        let Some(verdict) = regression.judge(&candidate) else { return Ok(false) };
+        let worth =
+            verdict.explained_fraction >= KEPT_FRACTION * settings.least_share && verdict.total() > 0.0;
         let better = if regression.design.is_single_motion() {
-            regression.predicts_rest_of_motion(&candidate, 0, &term.shows_on)?
+            let seen = (0, &term.shows_on[..]);
+            regression.predicts_rest_of_motion(&candidate, seen, verdict.explained_fraction)?
         } else {
             with < without
         };

@@ -54,7 +54,11 @@ impl Search<'_> {
             let verdict = &ranked[k].verdict;
             let Some(most) = self.waveform_confidence(&ranked[k], rounds, settings) else { continue };
             if regression.design.is_single_motion()
-                && !regression.predicts_rest_of_motion(candidate, verdict.trial, &verdict.shows_on)?
+                && !regression.predicts_rest_of_motion(
+                    candidate,
+                    (verdict.trial, &verdict.shows_on),
+                    verdict.explained_fraction,
+                )?
             {
                 continue;
             }
