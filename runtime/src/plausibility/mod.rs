@@ -113,15 +113,19 @@ pub fn judge(
     } else {
         better(judged, others, candidates(robot, others, &own, error), &own)
     };
+    let impossible = impossible(&errors, estimated);
+    let best = instead.first().map_or(f64::INFINITY, |(_, error)| *error);
+    if let Some((joints, error)) = over_position(judged, estimated, &errors, &impossible)
+        && error < best
+    {
+        return Verdict::OverPosition { joints };
+    }
     if !instead.is_empty() {
         let worst = (JointIndex(worst), error);
         return Verdict::Better { own: overall, worst, instead };
     }
-    if let Some(&joint) = impossible(&errors, estimated).first() {
-        return over_position(judged, estimated, &errors)
-            .map_or(Verdict::Impossible { joint, error: errors[joint.0] }, |joints| Verdict::OverPosition {
-                joints,
-            });
+    if let Some(&joint) = impossible.first() {
+        return Verdict::Impossible { joint, error: errors[joint.0] };
     }
     if own.strain > STRAINED {
         return Verdict::Strained { possible: overall, free };
@@ -162,18 +166,24 @@ fn impossible(errors: &[f64], free: &Estimate) -> Vec<JointIndex> {
 }
 
 /// Impossible joints whose errors a torque over their own position lowers as much as a mistake must that is believed, where
-/// that leaves no impossible joint: each with its errors before and after.
+/// that leaves no impossible joint: each with its errors before and after, and that of all joints after.
 fn over_position(
     judged: &Judged<'_>,
     free: &Estimate,
     before: &[f64],
-) -> Option<Vec<(JointIndex, [f64; 2])>> {
-    let joints = impossible(before, free);
-    let after = with_torques_over_position(judged, &joints)?;
+    joints: &[JointIndex],
+) -> Option<(Vec<OfJoint>, f64)> {
+    if joints.is_empty() {
+        return None;
+    }
+    let (after, overall) = with_torques_over_position(judged, joints)?;
     let explained = joints.iter().all(|j| MISTAKE * after[j.0] <= before[j.0]);
-    (explained && impossible(&after, free).is_empty())
-        .then(|| joints.into_iter().map(|j| (j, [before[j.0], after[j.0]])).collect())
+    let all = || joints.iter().map(|&j| (j, [before[j.0], after[j.0]])).collect();
+    (explained && impossible(&after, free).is_empty()).then(|| (all(), overall))
 }
+
+/// A joint with its errors before and after.
+type OfJoint = (JointIndex, [f64; 2]);
 
 /// Relative errors, 0 for a joint without torque: nothing of it is left unexplained.
 fn errors_of(per_equation: &[Option<f64>]) -> Vec<f64> {

@@ -66,9 +66,12 @@ impl ExtraColumns for Powers {
     }
 }
 
-/// Relative error of each joint with the best parameters that a robot can have and a torque over their own position on
-/// `joints`; `None` where there is no such fit.
-pub(super) fn with_torques_over_position(judged: &Judged<'_>, joints: &[JointIndex]) -> Option<Vec<f64>> {
+/// Relative error of each joint, and of all together, with the best parameters that a robot can have and a torque over their
+/// own position on `joints`; `None` where there is no such fit.
+pub(super) fn with_torques_over_position(
+    judged: &Judged<'_>,
+    joints: &[JointIndex],
+) -> Option<(Vec<f64>, f64)> {
     let robot = judged.model.robot();
     let powers = Powers::of(joints, judged.motions, robot.base.len(), robot.joints());
     let observed =
@@ -84,8 +87,9 @@ pub(super) fn with_torques_over_position(judged: &Judged<'_>, joints: &[JointInd
     };
     let fit = physical_fit(robot, &beyond, &estimate(&beyond, &settings))?;
     let left = squares(&beyond, robot.joints(), |group| residual_norm(group, &fit.chi));
-    let error = |(left, all): (&f64, &f64)| if *all > 0.0 { (left / all).sqrt() } else { 0.0 };
-    Some(left.iter().zip(&torques).map(error).collect())
+    let error = |left: f64, all: f64| if all > 0.0 { (left / all).sqrt() } else { 0.0 };
+    let of_joints = left.iter().zip(&torques).map(|(left, all)| error(*left, *all)).collect();
+    Some((of_joints, error(left.iter().sum(), torques.iter().sum())))
 }
 
 /// Sum of the squares of a norm of each joint's groups.
