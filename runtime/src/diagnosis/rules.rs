@@ -186,8 +186,8 @@ pub(super) const FREED: f64 = 0.01;
 /// Directions of a law with less than this part of its squares are rounding. Numerics.
 pub(super) const LEAST_EIGENVALUE: f64 = 1e-6;
 /// Torques of a joint repeat to this share of their root mean square from one day to another, where nothing shows that
-/// they repeat better: a law must be larger, and a change since a baseline. Mechanics: temperature and load change
-/// friction by as much (Bittencourt and Axelsson 2014).
+/// they repeat better: a change since a baseline must be larger. Mechanics: temperature and load change friction by as
+/// much (Bittencourt and Axelsson 2014).
 pub(super) const REPEATS: f64 = 0.02;
 /// A law on another joint is a rival from this share of a candidate's gain on. Judgement: saves time; a rival with
 /// less cannot come ahead by what whitening changes. Not measured.

@@ -79,24 +79,17 @@ impl Bench {
     fn size(&self, design: &Design, j: usize, change: &[f64], left: &[f64]) -> Size {
         let segments = design.target_segments().into_iter();
         let rows: Vec<usize> = segments.flat_map(|g| design.ranges[j][g].clone()).collect();
-        let known = |size: Size| Size { needed: size.needed.max(f64::MIN_POSITIVE), ..size };
-        let repeated = known(self.as_torques_repeat(design, &rows, j, [change, left]));
-        if self.units.change() {
-            return repeated;
-        }
-        let acting = known(where_it_acts(&rows, change, left));
-        if acting.prominence() < repeated.prominence() { acting } else { repeated }
+        let size = if self.units.change() {
+            self.since_baseline(design, &rows, j, [change, left])
+        } else {
+            where_it_acts(&rows, change, left)
+        };
+        Size { needed: size.needed.max(f64::MIN_POSITIVE), ..size }
     }
 
     /// Against what the torques repeat to from day to day, or where this shows that they repeat better, to what is left
     /// that is no noise: what is the same two rows later, whose windows do not overlap.
-    fn as_torques_repeat(
-        &self,
-        design: &Design,
-        rows: &[usize],
-        j: usize,
-        [change, left]: [&[f64]; 2],
-    ) -> Size {
+    fn since_baseline(&self, design: &Design, rows: &[usize], j: usize, [change, left]: [&[f64]; 2]) -> Size {
         let count = rows.len().max(1) as f64;
         let rms = |x: &dyn Fn(usize) -> f64| (rows.iter().map(|&r| x(r) * x(r)).sum::<f64>() / count).sqrt();
         let units = &self.units;
@@ -125,7 +118,7 @@ impl Bench {
         left: &[f64],
     ) -> Option<Size> {
         let sizes = joints.iter().map(|&j| self.size(design, j, change, left));
-        sizes.max_by(|a, b| a.prominence().total_cmp(&b.prominence()))
+        sizes.max_by(|a, b| (a.law / a.needed).total_cmp(&(b.law / b.needed)))
     }
 }
 
@@ -152,18 +145,11 @@ fn where_it_acts(rows: &[usize], change: &[f64], left: &[f64]) -> Size {
 /// How large a law is on the joint where it stands out most, N.m or N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::diagnosis) struct Size {
-    /// Root mean square of what nothing else can make of it, of all rows or of where it acts.
+    /// Root mean square of what nothing else can make of it; without a baseline where it acts.
     pub law: f64,
-    /// How large it must be to be named: what the joint's torques repeat to; without a baseline also what stays of them where
-    /// the law acts.
+    /// How large it must be to be named: what the joint's torques repeat to; without a baseline what stays of them where the
+    /// law acts.
     pub needed: f64,
-}
-
-impl Size {
-    /// 1 where it is just large enough.
-    fn prominence(&self) -> f64 {
-        self.law / self.needed
-    }
 }
 
 #[cfg(test)]

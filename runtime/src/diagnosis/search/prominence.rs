@@ -3,8 +3,8 @@
 //! Where more of a joint's torque stays unexplained than a law explains, physics of that size may be there which no law of
 //! the catalogue describes. Some of them always resemble it: the best of many columns takes a share of whatever is left.
 //! Such a law may pass every test and come back in other motion, because what it resembles does. And a law that is
-//! smaller than noise, where it acts, changes what is predicted by less than that. One that is smaller than what torques
-//! repeat to from day to day will not be found again on another. All are told as small, with how large they had to be.
+//! smaller than noise, where it acts, changes what is predicted by less than that. Both are told as small, with how large
+//! they had to be.
 
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
