@@ -113,12 +113,12 @@ pub(super) const AIC_PENALTY: f64 = 2.0;
 /// The fitted fraction must be this part of the held-out one that is asked for: a gain in prediction without one in
 /// the fit is an accident of extrapolation. Judgement; false namings.
 pub(super) const FITTED_TO_HELD_OUT: f64 = 0.5;
-/// For a trend a single motion is cut at these eighths: what comes before is fitted and predicts what comes after.
+/// A single motion is cut at these eighths: what comes before is fitted and predicts what comes after.
 /// Judgement: most of a motion is needed to determine the standard parameters; `docs/concealment_short.md`.
 pub(super) const FORWARD_CUTS: [usize; 2] = [5, 6];
 /// Share of what held-out stretches leave open from which on a law need not hold forward in time: without it the parameters
 /// that are extrapolated are no model of the motion. Judgement.
-pub(super) const MOST_OF_WHAT_IS_OPEN: f64 = 0.5;
+pub(super) const MOST_OF_WHAT_IS_OPEN: f64 = 0.75;
 /// Of the stretches of few motions, one in so many may lose: an effect may leave some of them untouched. Judgement.
 pub(super) const STRETCHES_PER_LOSS: usize = 4;
 /// Of whole motions, one in so many may lose. Judgement.

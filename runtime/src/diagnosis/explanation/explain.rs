@@ -283,7 +283,7 @@ fn how(model: &ExtendedModel<'_>) -> String {
     } else if model.change {
         "every new motion predicted from the baseline and the other new motions".into()
     } else if design.is_single_motion() {
-        "every stretch predicted from the others".into()
+        "forward in time".into()
     } else {
         "every motion predicted from the others".into()
     }

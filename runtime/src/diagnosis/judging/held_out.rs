@@ -1,6 +1,7 @@
 //! Errors on motion that was held out.
 
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::folds::forward_cuts;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::outcome::Errors;
 use crate::diagnosis::rows::design::Design;
@@ -20,8 +21,8 @@ pub(in crate::diagnosis) struct HeldOutSquares {
 type Split = (Vec<bool>, Vec<usize>);
 
 impl HeldOutSquares {
-    /// Predicts held-out motion with the columns of a design: every motion once from the others; of a single motion every
-    /// stretch from the others; where `from_baseline` is set, the new motion from the baseline alone.
+    /// Predicts held-out motion with the columns of a design: every motion once from the others; a single motion
+    /// forward in time, from two instants on; where `from_baseline` is set, the new motion from the baseline alone.
     ///
     /// # Errors
     /// [`SingularDesign`] where a split has no fit.
@@ -84,6 +85,8 @@ fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {
     motions.dedup();
     if from_baseline {
         vec![(design.segments.iter().map(|s| !s.is_target).collect(), targets)]
+    } else if design.is_single_motion() && targets.len() > 1 {
+        forward_cuts(targets.len()).map(|cut| without(&|g| targets[cut..].contains(&g))).to_vec()
     } else if motions.len() > 1 {
         motions.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
     } else {
@@ -119,11 +122,12 @@ mod tests {
     }
 
     #[test]
-    fn of_a_single_motion_each_stretch_is_predicted_from_the_others() {
+    fn a_single_motion_is_predicted_forward_in_time() {
+        // Three stretches come after the first cut, two of them after the second.
         let held =
-            HeldOutSquares::of(&design(&[(0, true); 4]), &[1.0], false).expect("a small problem is regular");
+            HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false).expect("a small problem is regular");
         let segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
-        assert_eq!(segments, [0, 1, 2, 3]);
+        assert_eq!(segments, [5, 6, 7, 6, 7]);
     }
 
     #[test]

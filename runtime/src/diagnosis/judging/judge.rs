@@ -153,7 +153,7 @@ impl Regression {
     /// Whether a candidate improves motion that it was not fitted to, where there is a single one: each stretch, with
     /// everything, standard parameters included, fitted to the others, on the joints that it `shows_on`. (The others see it
     /// only through parameters that they share, whose extrapolation from a part of a motion is noise.) A law that explains less
-    /// than most of what is open must also hold forward in time, where parameters are extrapolated; so must a trend and a
+    /// than most of what is open must hold forward in time, where parameters are extrapolated; so must a trend and a
     /// curve of many numbers, which go on between stretches that were fitted whatever they are.
     ///
     /// # Errors
