@@ -165,7 +165,7 @@ impl PyDiagnosis {
 /// Finds out which physics the standard model of a recording leaves out, and whether it holds on held-out motion.
 ///
 /// ``recordings`` is a recording or a list of them; no parameter is fitted to ``test``, which tells how much of each
-/// finding is there; with ``baseline``, recordings from before something changed, only what changed is looked for; with
+/// finding is there; with ``baseline``, recordings from before something changed, which are diagnosed first, only what is new; with
 /// ``reference``, a :class:`Fit` or the path of a saved model from before, its parameters and laws are no news, nor is what differs
 /// anyway between the motions of a file that it names, where these are as they were. ``laws`` are
 /// tried beside those of the catalogue: the path of a YAML, or a list of dictionaries with id, joint, law, and where needed
