@@ -93,6 +93,7 @@ pub use recorded::{
 pub use reduced::{Reduced, ReducedError, ReducedEstimate};
 pub use residuals::{per_equation, relative_error};
 pub use settings::EstimateSettings;
+#[cfg(feature = "diagnosis")]
 pub(crate) use solve::ROUNDING;
 pub use solve::{RANK_TOLERANCE, Solution};
 pub use warning::Warning;
