@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
-use super::judged::Judged;
+use super::judged::{Judged, free_estimate};
 use super::table::{self, Table};
 use crate::estimation::observe::{Equations, observe};
-use crate::estimation::{EstimateSettings, PhysicalFit, estimate, physical_fit};
+use crate::estimation::{PhysicalFit, physical_fit};
 use crate::model::{Drive, JointIndex, JointKind, Model, Robot};
 use crate::recording::regear;
 use crate::signal::Motion;
@@ -169,13 +169,7 @@ impl Instead {
         };
         let motions = judged.motions.iter().map(changed).collect::<Option<Vec<Motion>>>()?;
         let observation = observe(model, &motions, Equations::Torque, None, judged.settings, None).ok()?;
-        let settings = EstimateSettings {
-            r_sigma: None,
-            block_sigmas: false,
-            lasting_noise: false,
-            ..EstimateSettings::default()
-        };
-        let free = estimate(&observation, &settings);
+        let free = free_estimate(&observation);
         if !promising(&free.per_equation) {
             return None;
         }

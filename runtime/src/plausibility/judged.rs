@@ -1,6 +1,7 @@
 //! What is judged.
 
-use crate::estimation::observe::ObserveSettings;
+use crate::estimation::observe::{Observation, ObserveSettings};
+use crate::estimation::{Estimate, EstimateSettings, estimate};
 use crate::model::Model;
 use crate::signal::Motion;
 
@@ -15,4 +16,15 @@ pub struct Judged<'a> {
     pub settings: &'a ObserveSettings,
     /// Whether it was recorded on the motors' side of the gear.
     pub motor_side: bool,
+}
+
+/// The free weighted estimate that another explanation of the recording is judged by: values and errors alone.
+pub(super) fn free_estimate(observation: &Observation) -> Estimate {
+    let settings = EstimateSettings {
+        r_sigma: None,
+        block_sigmas: false,
+        lasting_noise: false,
+        ..EstimateSettings::default()
+    };
+    estimate(observation, &settings)
 }

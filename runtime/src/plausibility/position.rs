@@ -3,9 +3,9 @@
 
 use std::ops::Range;
 
-use super::judged::Judged;
+use super::judged::{Judged, free_estimate};
 use crate::estimation::observe::{EquationFactor, Equations, ExtraColumns, Observation, observe};
-use crate::estimation::{EstimateSettings, estimate, physical_fit, residual_norm};
+use crate::estimation::{physical_fit, residual_norm};
 use crate::model::JointIndex;
 use crate::signal::Motion;
 
@@ -79,13 +79,7 @@ pub(super) fn with_torques_over_position(
             .ok()?;
     let torques = squares(&observed, robot.joints(), |group| group.factor.norm_y());
     let beyond = beyond_powers(observed, robot.base.len());
-    let settings = EstimateSettings {
-        r_sigma: None,
-        block_sigmas: false,
-        lasting_noise: false,
-        ..EstimateSettings::default()
-    };
-    let fit = physical_fit(robot, &beyond, &estimate(&beyond, &settings))?;
+    let fit = physical_fit(robot, &beyond, &free_estimate(&beyond))?;
     let left = squares(&beyond, robot.joints(), |group| residual_norm(group, &fit.chi));
     let error = |left: f64, all: f64| if all > 0.0 { (left / all).sqrt() } else { 0.0 };
     let of_joints = left.iter().zip(&torques).map(|(left, all)| error(*left, *all)).collect();

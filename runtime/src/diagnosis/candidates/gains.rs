@@ -5,6 +5,7 @@
 //! 2014). Beside a body that was not there before, the body's torque on each joint may therefore differ by a factor that is
 //! known to be near one: it is fitted and never named.
 
+use crate::diagnosis::candidates::trial::{dense, gathered};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::GAIN_DEVIATION;
@@ -16,16 +17,12 @@ pub(in crate::diagnosis) fn gain_columns(context: &Context<'_>, design: &Design)
     if context.carried().iter().all(|body| body.in_baseline) {
         return Vec::new();
     }
-    let mut out = vec![vec![0.0; design.rows.len()]; design.joints];
-    for k in (0..context.signals.len()).filter(|&k| context.signals[k].is_target) {
-        let torques = context.of_new_bodies(k);
-        for (j, column) in out.iter_mut().enumerate() {
-            for r in design.of_signal(j, k).into_iter().flat_map(|(range, _)| range) {
-                column[r] = design.smooth(k, &torques[j], design.rows[r].centre);
-            }
-        }
-    }
-    out
+    let of_motion = |k: usize| {
+        let torques = context.of_new_bodies(k).into_iter().enumerate();
+        torques.map(|of_joint| vec![of_joint]).collect()
+    };
+    let silent = |k: usize| !context.signals[k].is_target;
+    gathered(context, design, silent, of_motion).iter().map(|column| dense(design, column)).collect()
 }
 
 /// Information on amplitudes of a body where each joint weighs it with its own gain; `of_each_joint` is what the torque of

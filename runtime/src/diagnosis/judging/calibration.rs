@@ -71,15 +71,15 @@ pub(in crate::diagnosis) fn calibrate(
     let products = background.with(units, regressors, law.columns, law.residual);
     let (p, k, common) = (regressors.shared.len(), law.columns.len(), law.common);
     let change = units.change();
+    let whole = whole(units, &products, regressors, p + k);
     let found = if change {
-        let fresh = sum(&products.files, |f| units.is_target(f));
-        Wald::of(&all_files(&products, regressors, p + k), &fresh, (p, k), common)?
+        Wald::of(&whole, &sum(&products.files, |f| units.is_target(f)), (p, k), common)?
     } else {
-        Wald::of(&all(&products, regressors, p + k), &sum(&products.units, |_| true), (p, k), false)?
+        Wald::of(&whole, &sum(&products.units, |_| true), (p, k), false)?
     };
     // Without a baseline the law is in all units, and in each it may be another.
     let common = common || !change;
-    let compared = compared(units, &products, all(&products, regressors, p + k));
+    let compared = compared(units, &products, &whole);
     let own: Vec<f64> = compared
         .iter()
         .flat_map(|c| c.units.iter().map(|&u| Wald::of(&c.whole, &products.units[u], (p, k), common)))
@@ -106,8 +106,6 @@ pub(in crate::diagnosis) fn calibrate(
     let own = Variance { value: 1.0 + (variance.value - 1.0).max(0.0) * longer, ..variance };
     let known = between_motions(regressors, law).filter(|between| between.value > own.value);
     let Variance { value: lambda, freedom } = known.unwrap_or(own);
-    let whole =
-        if change { all_files(&products, regressors, p + k) } else { all(&products, regressors, p + k) };
     let target: Vec<&DMatrix<f64>> =
         products.units.iter().zip(&units.units).filter(|(_, u)| u.target).map(|(m, _)| m).collect();
     let carrying = carrying(&whole, &target, p, k);
@@ -135,11 +133,11 @@ pub(in crate::diagnosis) fn beside(
     let (p, k, o) = (regressors.shared.len(), law.columns.len(), other.len());
     let both: Vec<Vec<f64>> = other.iter().chain(law.columns).cloned().collect();
     let products = background.with(units, regressors, &both, law.residual);
-    let (mut whole, part) = if units.change() {
-        let fresh = sum(&products.files, |f| units.is_target(f));
-        (all_files(&products, regressors, p + o + k), fresh)
+    let mut whole = whole(units, &products, regressors, p + o + k);
+    let part = if units.change() {
+        sum(&products.files, |f| units.is_target(f))
     } else {
-        (all(&products, regressors, p + o + k), sum(&products.units, |_| true))
+        sum(&products.units, |_| true)
     };
     let alone: Vec<usize> = (0..whole.nrows()).filter(|i| !(p..p + o).contains(i)).collect();
     let without = |m: &DMatrix<f64>| m.select_rows(&alone).select_columns(&alone);
@@ -175,18 +173,11 @@ fn sum(list: &[DMatrix<f64>], taken: impl Fn(usize) -> bool) -> DMatrix<f64> {
     taken.fold(DMatrix::zeros(width, width), |sum, m| sum + m)
 }
 
-/// Inner products of a recording without a baseline, with what is known of its columns beforehand; `y` is the column of the
-/// torque.
-fn all(products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
-    with_prior(sum(&products.units, |_| true), regressors, y)
-}
-
-/// The same of a recording and a baseline, motion by motion.
-fn all_files(products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
-    with_prior(sum(&products.files, |_| true), regressors, y)
-}
-
-fn with_prior(mut whole: DMatrix<f64>, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
+/// Inner products of all motion, with what is known of its columns beforehand; `y` is the column of the torque. What is free
+/// in every motion is so in each whole one where there is a baseline.
+fn whole(units: &Units, products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
+    let parts = if units.change() { &products.files } else { &products.units };
+    let mut whole = sum(parts, |_| true);
     if let Some(prior) = regressors.prior {
         prior.add_to_products(&mut whole, y);
     }
@@ -202,10 +193,10 @@ fn between_motions(regressors: &Regressors<'_>, law: &Law<'_>) -> Option<Varianc
 
 /// The units in which nothing has changed, each with what it is compared with: against a baseline its other motions, or
 /// its other units where it is one motion; without one, the whole recording `all`.
-fn compared(units: &Units, products: &Products, all: DMatrix<f64>) -> Vec<Compared> {
+fn compared(units: &Units, products: &Products, all: &DMatrix<f64>) -> Vec<Compared> {
     let count = units.units.len();
     if !units.change() {
-        return vec![Compared { whole: all, units: (0..count).collect() }];
+        return vec![Compared { whole: all.clone(), units: (0..count).collect() }];
     }
     if let Some(others) = with_other_motions(units, products, |f| !units.is_target(f)) {
         return others;
