@@ -350,6 +350,18 @@ fn losses_that_differ_by_direction_are_an_efficiency_and_equal_ones_are_friction
 }
 
 #[test]
+fn a_drive_that_loses_only_where_it_drives_is_no_friction_beside_a_wrong_torque_constant() {
+    // The other loss is zero, and as often as not its estimate is a little less.
+    for loss in [0.1, 0.15] {
+        let hidden = Hidden::effect(EffectKind::DriveEfficiency, Place::Joint(0), &[1.0], &[loss, 0.0]);
+        let diagnosis = diagnosed(planar(), &hidden);
+        assert_only(&diagnosis, EffectKind::DriveEfficiency, &[1]);
+        assert_factor(&diagnosis, "efficiency_driving", 1.0 / (1.0 + loss));
+        assert_factor(&diagnosis, "efficiency_driven", 1.0);
+    }
+}
+
+#[test]
 fn motors_that_warm_up_together_are_one_drift_of_the_whole_robot() {
     let robot = planar();
     let hidden = Hidden::effect(EffectKind::TorqueConstantDrift, Place::Robot, &[3.0, LENGTH], &[0.15]);

@@ -33,16 +33,22 @@ pub struct EffectTerm {
     pub wrenches: Vec<ContactForce>,
 }
 
+/// What an effect with a shape is called at a place: a curve over nothing but the position of its joint by the effect that says
+/// so, every other by itself.
+pub(crate) fn named(effect: EffectKind, place: Place, shape: &[f64]) -> EffectKind {
+    match (effect.form(), place.joint()) {
+        (Form::Free, Some(j)) if FreeLaw::is_over_position_of(shape, j) => {
+            EffectKind::PositionDependentTorque
+        }
+        _ => effect,
+    }
+}
+
 impl EffectTerm {
     /// Its name in the JSON: that of the effect, or of the user's law. A curve over nothing but the position of its joint has
     /// the name of the effect that says so.
     pub fn id(&self) -> &'static str {
-        match (self.effect.form(), self.place.joint()) {
-            (Form::Free, Some(j)) if FreeLaw::is_over_position_of(&self.shape, j) => {
-                EffectKind::PositionDependentTorque.id()
-            }
-            _ => self.effect.id_at(self.place),
-        }
+        named(self.effect, self.place, &self.shape).id_at(self.place)
     }
 
     /// What is wrong with a recording, where the term is that and nothing of the robot.

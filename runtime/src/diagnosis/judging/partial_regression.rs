@@ -9,7 +9,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
-use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, OWN_FRACTION};
+use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, KEPT_BESIDE, OWN_FRACTION};
 use nalgebra::{DMatrix, DVector};
 
 /// A trial with the columns of a design projected out.
@@ -93,7 +93,8 @@ impl Residualised {
         columns
     }
 
-    /// Amplitudes and in-sample gain; `None` where an amplitude has a sign that the law does not have.
+    /// Amplitudes and in-sample gain. Those of a law that has one sign are not negative: one of several that noise alone makes
+    /// negative is 0; `None` where they then explain much less, or nothing.
     pub fn solve(&self, candidate: &Candidate) -> Option<(DVector<f64>, f64)> {
         let (s, b) = (&self.squares, &self.with_residual);
         if let Some(value) = candidate.fixed {
@@ -110,12 +111,15 @@ impl Residualised {
         let m = DMatrix::from_fn(k, k, |i, j| {
             s[(i, j)] * scale[i] * scale[j] + if i == j { ridge(i) } else { 0.0 }
         });
-        let a = m.cholesky()?.solve(&b.component_mul(&scale)).component_mul(&scale);
-        if candidate.only_positive && a.iter().any(|x| *x < 0.0) {
-            return None;
+        let of_any_sign = m.clone().cholesky()?.solve(&b.component_mul(&scale));
+        let a = of_any_sign.component_mul(&scale);
+        if !candidate.only_positive || a.iter().all(|x| *x >= 0.0) {
+            let gain = self.gain(&a);
+            return Some((a, gain));
         }
-        let gain = self.gain(&a);
-        Some((a, gain))
+        let positive = non_negative(m, b.component_mul(&scale), of_any_sign)?.component_mul(&scale);
+        let gain = self.gain(&positive);
+        (gain >= KEPT_BESIDE * self.gain(&a)).then_some((positive, gain))
     }
 
     /// Information on the amplitudes, in units of the residual variance; zero where the design makes a column itself.
@@ -221,6 +225,35 @@ impl Regression {
         }
         (s, b)
     }
+}
+
+/// The amplitudes that are not negative of the normal equations M a = b, from their solution of any sign: each that comes out
+/// negative is 0, and the others are found anew. `None` where none is left.
+fn non_negative(mut m: DMatrix<f64>, mut b: DVector<f64>, of_any_sign: DVector<f64>) -> Option<DVector<f64>> {
+    let mut a = of_any_sign;
+    while let Some(negative) = (0..a.len()).find(|&i| a[i] < 0.0) {
+        m.row_mut(negative).fill(0.0);
+        m.column_mut(negative).fill(0.0);
+        m[(negative, negative)] = 1.0;
+        b[negative] = 0.0;
+        a = m.clone().cholesky()?.solve(&b);
+    }
+    a.iter().any(|x| *x > 0.0).then_some(a)
+}
+
+/// Whether amplitudes with this information explain nearly as much where none of them may be negative: of several one may be
+/// zero, and then noise makes it negative in half of all cases.
+pub(in crate::diagnosis) fn holds_without_negative(
+    information: DMatrix<f64>,
+    amplitudes: DVector<f64>,
+) -> bool {
+    if amplitudes.iter().all(|a| *a >= 0.0) {
+        return true;
+    }
+    let with_residual = &information * &amplitudes;
+    let gain = |a: &DVector<f64>| 2.0 * a.dot(&with_residual) - a.dot(&(&information * a));
+    let whole = KEPT_BESIDE * gain(&amplitudes);
+    non_negative(information.clone(), with_residual.clone(), amplitudes).is_some_and(|a| gain(&a) >= whole)
 }
 
 /// Inner products of a residualised trial on the rows of each joint in each segment, unweighted.

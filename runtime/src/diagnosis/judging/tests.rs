@@ -97,6 +97,50 @@ fn amplitudes_and_gain_are_those_of_one_regression_on_all_columns() {
 }
 
 #[test]
+fn amplitudes_of_one_sign_are_the_best_of_that_sign() {
+    let (mut at_zero, mut refused) = (0, 0);
+    for seed in 0..40 {
+        let (regression, mut candidate) = random(seed);
+        // The second amplitude is nearly nothing, and small next to the noise of y.
+        let add = 0.4 * (seed as f64 - 20.0) / 200.0 + 0.4;
+        let mut design = regression.design.clone();
+        let own = candidate.trials[0].dense(&design);
+        design.y.iter_mut().zip(&own[1]).for_each(|(y, c)| *y += add * c);
+        let columns: Vec<_> = own
+            .iter()
+            .map(|c| (0..JOINTS).map(|j| (j, c[j * ALL / JOINTS..(j + 1) * ALL / JOINTS].to_vec())).collect())
+            .collect();
+        candidate.trials = vec![Trial::new(&design, vec![1.0], columns)];
+        let regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
+        let part = regression.fit.project_out(&candidate.trials[0]).expect("a small problem is regular");
+        let (any_sign, gain) = part.solve(&candidate).expect("a small problem is regular");
+        candidate.only_positive = true;
+        let (one_sign, less) = part.solve(&candidate).expect("the first amplitude is clearly positive");
+        if any_sign[1] >= 0.0 {
+            assert_eq!(one_sign, any_sign, "seed {seed}");
+            continue;
+        }
+        at_zero += 1;
+        assert!(one_sign[0] > 0.0 && one_sign[1] == 0.0, "seed {seed}: {one_sign}");
+        assert!(less <= gain && less > 0.9 * gain, "seed {seed}: {less} of {gain}");
+        // Beside the first column alone the amplitude is the same.
+        let mut columns = regression.design.columns.clone();
+        columns.push(candidate.trials[0].dense(&regression.design)[0].clone());
+        let (expected, _) = explicit(&regression, &columns, &regression.design.y, &[true; 3]);
+        assert!((one_sign[0] - expected[4]).abs() < 1e-5, "seed {seed}: {one_sign} {}", expected[4]);
+    }
+    assert!(at_zero > 5, "{at_zero}");
+    // One that is clearly negative is something else.
+    for seed in 0..5 {
+        let (regression, mut candidate) = random(seed);
+        candidate.only_positive = true;
+        let part = regression.fit.project_out(&candidate.trials[0]).expect("a small problem is regular");
+        refused += usize::from(part.solve(&candidate).is_none());
+    }
+    assert_eq!(refused, 5);
+}
+
+#[test]
 fn a_prediction_gains_what_the_squares_of_the_held_out_rows_fall_by() {
     let (regression, candidate) = random(7);
     let (design, trial) = (&regression.design, &candidate.trials[0]);

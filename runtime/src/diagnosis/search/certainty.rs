@@ -4,6 +4,7 @@
 //! over all motion, its amplitudes may be known worse than that: nobody bets on a law whose own interval holds zero.
 
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::partial_regression::holds_without_negative;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
@@ -69,11 +70,14 @@ impl Search<'_> {
         if columns.is_empty() {
             return 1.0;
         }
-        let negative = columns.clone().any(|c| regression.fit.chi[c] < 0.0);
-        if negative && term.effect.form().only_positive() {
+        let (fit, design) = (&regression.fit, &regression.design);
+        let amplitudes = fit.chi.rows_range(columns.clone()).into_owned();
+        if term.effect.form().only_positive()
+            && !fit.information(columns.clone()).is_some_and(|s| holds_without_negative(s, amplitudes))
+        {
             return 0.0;
         }
-        of_amplitudes(&regression.fit, &regression.design, columns, term.inflation)
+        of_amplitudes(fit, design, columns, term.inflation)
     }
 }
 

@@ -7,6 +7,7 @@ pub(in crate::diagnosis) mod extended_model;
 pub(in crate::diagnosis) mod free_form;
 pub(in crate::diagnosis) mod friction_change;
 pub(in crate::diagnosis) mod gate;
+mod generalise;
 pub(in crate::diagnosis) mod line;
 pub(in crate::diagnosis) mod pair;
 pub(in crate::diagnosis) mod prominence;

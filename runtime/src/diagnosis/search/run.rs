@@ -35,21 +35,23 @@ impl Search<'_> {
                 self.rejected.clear();
                 continue;
             }
-            // 2. Backward: what does not hold beside the others is taken out, for good.
+            // 2. Cases of one more general law were found one after the other.
+            self.generalise(settings)?;
+            // 3. Backward: what does not hold beside the others is taken out, for good.
             progress.at(0.87, "pruning");
             let rejected = self.prune(settings)?;
             if rejected.is_empty() {
-                // 4. Shapes were found one law after the other.
+                // 5. Shapes were found one law after the other.
                 self.model.sharpen()?;
-                // 5. What is no larger than what nothing explains may be a part of that.
+                // 6. What is no larger than what nothing explains may be a part of that.
                 self.take_out_small()?;
-                // 6. Nor is anything named whose own numbers may be zero.
+                // 7. Nor is anything named whose own numbers may be zero.
                 self.take_out_uncertain(settings)?;
-                // 7. Last, friction that has changed: it is free from the start, and no evidence for anything else.
+                // 8. Last, friction that has changed: it is free from the start, and no evidence for anything else.
                 self.name_friction_changes(settings)?;
                 return Ok(SearchReport { stop, removed: self.rejected.clone() });
             }
-            // 3. What is left may now be explained by something else.
+            // 4. What is left may now be explained by something else.
             self.rejected.extend(rejected);
             self.refit_and_update()?;
         }

@@ -194,7 +194,7 @@ impl Search<'_> {
     }
 
     /// Other explanations of the joints of a candidate.
-    fn rivals(&self, ranked: &[Ranked], winner: usize, settings: &Settings) -> Vec<Rival> {
+    pub(super) fn rivals(&self, ranked: &[Ranked], winner: usize, settings: &Settings) -> Vec<Rival> {
         let winner = &ranked[winner];
         let (regression, candidate) = self.of(winner);
         let rivals = ranked.iter().filter(|r| {
