@@ -178,7 +178,8 @@ pub(super) const UNITS_WANTED: f64 = 10.0;
 /// Relative ridge of the regressions on white rows. Numerics.
 pub(super) const CALIBRATION_RIDGE: f64 = 1e-10;
 /// A law that keeps this part of the squares that only it explains when another joins the model, on other joints, was not
-/// imitating that one. Judgement: two laws that share a tenth of their squares are told apart; saves time.
+/// imitating that one. A law that keeps it with amplitudes of its own sign may have these; one that explains it of what two
+/// of its cases do takes their place. Judgement: two laws that share a tenth of their squares are told apart; saves time.
 pub(super) const KEPT_BESIDE: f64 = 0.9;
 /// A law that takes away this part of the squares of another joint's residual has changed what is noise there.
 /// Judgement: below it, the noise is the same as before; saves time.
