@@ -119,6 +119,13 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// The confidence that a law needs to stay, less than to be taken: its variation is estimated anew in each round.
+    pub(super) fn confidence_to_stay(&self) -> f64 {
+        1.0 - (rules::LEVEL_TO_STAY * (1.0 - self.least_confidence)).min(0.5)
+    }
+}
+
 /// Told how far a diagnosis is.
 pub trait Progress: Sync {
     /// `done` in 0..=1 of the whole, and what is being done.

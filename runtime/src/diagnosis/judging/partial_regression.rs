@@ -111,15 +111,16 @@ impl Residualised {
         let m = DMatrix::from_fn(k, k, |i, j| {
             s[(i, j)] * scale[i] * scale[j] + if i == j { ridge(i) } else { 0.0 }
         });
-        let of_any_sign = m.clone().cholesky()?.solve(&b.component_mul(&scale));
-        let a = of_any_sign.component_mul(&scale);
-        if !candidate.only_positive || a.iter().all(|x| *x >= 0.0) {
-            let gain = self.gain(&a);
-            return Some((a, gain));
+        let right = b.component_mul(&scale);
+        let for_one_sign = candidate.only_positive.then(|| m.clone());
+        let of_any_sign = m.cholesky()?.solve(&right);
+        let a = match for_one_sign {
+            Some(m) => of_one_sign(m, right, of_any_sign)?,
+            None => of_any_sign,
         }
-        let positive = non_negative(m, b.component_mul(&scale), of_any_sign)?.component_mul(&scale);
-        let gain = self.gain(&positive);
-        (gain >= KEPT_BESIDE * self.gain(&a)).then_some((positive, gain))
+        .component_mul(&scale);
+        let gain = self.gain(&a);
+        Some((a, gain))
     }
 
     /// Information on the amplitudes, in units of the residual variance; zero where the design makes a column itself.
@@ -241,19 +242,20 @@ fn non_negative(mut m: DMatrix<f64>, mut b: DVector<f64>, of_any_sign: DVector<f
     a.iter().any(|x| *x > 0.0).then_some(a)
 }
 
-/// Whether amplitudes with this information explain nearly as much where none of them may be negative: of several one may be
-/// zero, and then noise makes it negative in half of all cases.
-pub(in crate::diagnosis) fn holds_without_negative(
-    information: DMatrix<f64>,
-    amplitudes: DVector<f64>,
-) -> bool {
-    if amplitudes.iter().all(|a| *a >= 0.0) {
-        return true;
+/// The amplitudes of one sign in place of `of_any_sign`, the solution of M a = b: itself where none is negative, else those
+/// that are not negative. Of several one may be zero, and then noise makes it negative in half of all cases; `None` where
+/// these explain much less, or nothing.
+pub(in crate::diagnosis) fn of_one_sign(
+    m: DMatrix<f64>,
+    b: DVector<f64>,
+    of_any_sign: DVector<f64>,
+) -> Option<DVector<f64>> {
+    if of_any_sign.iter().all(|a| *a >= 0.0) {
+        return Some(of_any_sign);
     }
-    let with_residual = &information * &amplitudes;
-    let gain = |a: &DVector<f64>| 2.0 * a.dot(&with_residual) - a.dot(&(&information * a));
-    let whole = KEPT_BESIDE * gain(&amplitudes);
-    non_negative(information.clone(), with_residual.clone(), amplitudes).is_some_and(|a| gain(&a) >= whole)
+    let gain = |a: &DVector<f64>| 2.0 * a.dot(&b) - a.dot(&(&m * a));
+    let least = KEPT_BESIDE * gain(&of_any_sign);
+    non_negative(m.clone(), b.clone(), of_any_sign).filter(|a| gain(a) >= least)
 }
 
 /// Inner products of a residualised trial on the rows of each joint in each segment, unweighted.

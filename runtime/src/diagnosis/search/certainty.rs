@@ -4,7 +4,7 @@
 //! over all motion, its amplitudes may be known worse than that: nobody bets on a law whose own interval holds zero.
 
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::partial_regression::holds_without_negative;
+use crate::diagnosis::judging::partial_regression::of_one_sign;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
@@ -12,6 +12,7 @@ use crate::diagnosis::rules::LONGEST_BLOCK;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
+use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// One minus the probability that amplitudes of these columns come as far from zero by accident: with the noise that
@@ -72,9 +73,8 @@ impl Search<'_> {
         }
         let (fit, design) = (&regression.fit, &regression.design);
         let amplitudes = fit.chi.rows_range(columns.clone()).into_owned();
-        if term.effect.form().only_positive()
-            && !fit.information(columns.clone()).is_some_and(|s| holds_without_negative(s, amplitudes))
-        {
+        let holds = |s: DMatrix<f64>| of_one_sign(s.clone(), s * &amplitudes, amplitudes.clone()).is_some();
+        if term.effect.form().only_positive() && !fit.information(columns.clone()).is_some_and(holds) {
             return 0.0;
         }
         of_amplitudes(fit, design, columns, term.inflation)

@@ -8,9 +8,7 @@
 use crate::diagnosis::candidates::free_form::{Judged, Screened, screen};
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::Regression;
-use crate::diagnosis::rules::{
-    FREE_FORM_SHARE, LEVEL_TO_STAY, NEARLY_AS_MUCH, RIVALS, SLOW_PART_OF_REMAINS, TOLD_APART,
-};
+use crate::diagnosis::rules::{FREE_FORM_SHARE, NEARLY_AS_MUCH, RIVALS, SLOW_PART_OF_REMAINS, TOLD_APART};
 use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
@@ -99,8 +97,7 @@ impl Search<'_> {
         &mut self,
         settings: &Settings,
     ) -> Result<(), SingularDesign> {
-        let doubt = (LEVEL_TO_STAY * (1.0 - settings.least_confidence)).min(0.5);
-        let lenient = Settings { least_confidence: 1.0 - doubt, ..settings.clone() };
+        let lenient = Settings { least_confidence: settings.confidence_to_stay(), ..settings.clone() };
         let mut k = 0;
         while k + 1 < self.model.terms.len() {
             let joint = self.model.terms[self.model.terms.len() - 1].own[0];

@@ -5,7 +5,7 @@
 //! a wrong torque constant. One law that explains what its cases explain together is named in their place.
 
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::rules::{KEPT_BESIDE, LEVEL_TO_STAY};
+use crate::diagnosis::rules::KEPT_BESIDE;
 use crate::diagnosis::search::gate::{Outcome, RoundEvidence};
 use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
@@ -19,9 +19,12 @@ impl Search<'_> {
     /// # Errors
     /// [`SingularDesign`] where a model on the way has no fit.
     pub(in crate::diagnosis) fn generalise(&mut self, settings: &Settings) -> Result<(), SingularDesign> {
-        for general in EffectKind::ALL {
+        for general in EffectKind::ALL.into_iter().filter(|e| e.special_cases().next().is_some()) {
             let places: Vec<Place> = self.model.terms.iter().map(|t| t.place).collect();
-            for place in places {
+            for (i, &place) in places.iter().enumerate() {
+                if places[..i].contains(&place) {
+                    continue;
+                }
                 let is_case = |t: &Accepted| {
                     let effect = named(t.effect, t.place, &t.shape);
                     let one_of = effect == general || general.special_cases().any(|s| s == effect);
@@ -74,7 +77,7 @@ impl Search<'_> {
             let candidate = self.of(r).1;
             (candidate.effect, candidate.place) == law
         })?;
-        let least_confidence = 1.0 - (LEVEL_TO_STAY * (1.0 - settings.least_confidence)).min(0.5);
+        let least_confidence = settings.confidence_to_stay();
         let round = RoundEvidence::new(ranked.len());
         let Outcome::Passes { confidence, significance, inflation } =
             self.judged_by_gate(&round, &ranked, k, least_confidence)

@@ -4,7 +4,7 @@
 //! lost a part of its squares to it, is taken out, and the best explanation of its joints is put in its place.
 
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::rules::{KEPT_BESIDE, LEVEL_TO_STAY};
+use crate::diagnosis::rules::KEPT_BESIDE;
 use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
@@ -93,8 +93,7 @@ impl Search<'_> {
         self.model.refit()?;
         self.update(joint);
         // What was certain when it joined stays up to a higher level: its variation is estimated anew in each round.
-        let doubt = (LEVEL_TO_STAY * (1.0 - settings.least_confidence)).min(0.5);
-        let lenient = Settings { least_confidence: 1.0 - doubt, ..settings.clone() };
+        let lenient = Settings { least_confidence: settings.confidence_to_stay(), ..settings.clone() };
         let same = |w: &Winner| {
             let candidate = &self.candidates(w.window)[w.index];
             candidate.effect == old.effect && candidate.place == old.place
