@@ -49,7 +49,7 @@ impl WrongRate {
             chi: fit.chi.iter().take(p).copied().collect(),
             sigma: fit.variances().iter().take(p).map(|v| v.max(0.0).sqrt()).collect(),
         };
-        let errors = HeldOutSquares::of(design, &fit.sigma, false)?.errors();
+        let errors = HeldOutSquares::of(design, &fit.sigma, false, &[])?.errors();
         Ok(Self { logarithm: factor.ln(), sigma: 0.0, declared, errors, refined: 0 })
     }
 

@@ -166,6 +166,20 @@ impl Form {
         matches!(self, Self::Free)
     }
 
+    /// Whether it says nothing of values of its variables that no motion has passed.
+    pub fn holds_only_where_seen(self) -> bool {
+        match self {
+            Self::Joint(law) | Self::Heard(law) => law.holds_only_where_seen(),
+            Self::Free => true,
+            Self::Sensitivity(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::User => false,
+        }
+    }
+
     /// Whether it rings or bursts faster than any motion, so that only rows that hold such frequencies show it.
     pub fn is_fast_only(self) -> bool {
         match self {

@@ -112,6 +112,11 @@ pub trait JointLaw: Sync {
     /// Whether only a positive amplitude is this effect: a negative one is something else.
     fn only_positive(&self) -> bool;
 
+    /// Whether it is a curve that says nothing of positions that no motion has passed.
+    fn holds_only_where_seen(&self) -> bool {
+        false
+    }
+
     /// Values of the columns at an instant.
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, memory: f64, out: &mut [f64]);
 

@@ -14,7 +14,7 @@ use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{LONGEST_BLOCK, NAMED_DELAY, NAMED_DELAY_SAMPLES};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, EffectTerm, Place};
+use crate::effects::{EffectKind, EffectTerm, Place, SmoothingWindow};
 use std::collections::BTreeSet;
 
 /// Skew of the torques behind the positions in a design, s.
@@ -48,8 +48,9 @@ pub(in crate::diagnosis) fn finding(
     }
     let slow = &model.slow;
     let p = slow.design.parameters;
-    let with = slow.held_out(false)?;
-    let unaware = HeldOutSquares::of(&with_skew(slow, skew), &slow.sigma, false)?;
+    let seen = model.curves(SmoothingWindow::Slow);
+    let with = slow.held_out(false, &seen)?;
+    let unaware = HeldOutSquares::of(&with_skew(slow, skew), &slow.sigma, false, &seen)?;
     let all: Vec<usize> = (0..slow.design.joints).collect();
     let weigh =
         |h: &HeldOutSquares| -> f64 { h.left.iter().zip(&slow.sigma).map(|(l, s)| l / (s * s)).sum() };
@@ -87,11 +88,12 @@ pub(in crate::diagnosis) fn unaware(
     model: &ExtendedModel<'_>,
     skew: f64,
 ) -> Result<HeldOutSquares, DiagnosisError> {
+    let seen = model.curves(SmoothingWindow::Fast);
     let mut standard = model.clone();
     standard.terms.clear();
     standard.refit()?;
     let fast = &standard.fast;
-    Ok(HeldOutSquares::of(&with_skew(fast, skew), &fast.sigma, model.change)?)
+    Ok(HeldOutSquares::of(&with_skew(fast, skew), &fast.sigma, model.change, &seen)?)
 }
 
 /// The rows as they would be with the skew left in the torques: the torque's own rate of change, as much of it as the

@@ -9,6 +9,7 @@ use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated,
 use crate::diagnosis::explanation::{covariance, curves, delay, free_form, line, rate, standing, words};
 use crate::diagnosis::judging::between_motions::between_motions;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
+use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::outcome::{
     BetweenMotions, CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed,
     Sampling, SearchOutcome, Small,
@@ -128,19 +129,26 @@ fn found(
     findings.extend(late);
     // Pushes and a wrong rate are looked for on slow rows, and what was there before them was predicted on these.
     let slow = ended.contacts.is_some() || ended.rate.is_some();
-    let (regression, standard, band) = if slow {
-        (&model.slow, &ended.standard.held_slow, ended.sampling.slow_band)
+    let (window, standard, band) = if slow {
+        (SmoothingWindow::Slow, &ended.standard.held_slow, ended.sampling.slow_band)
     } else {
-        (&model.fast, &ended.standard.held, ended.sampling.band)
+        (SmoothingWindow::Fast, &ended.standard.held, ended.sampling.band)
     };
-    let held = regression.held_out(false)?;
+    let (regression, curves) = (model.regression(window), model.curves(window));
+    let held = regression.held_out(false, &curves)?;
     findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
-    let before = before(model, ended, named_skew)?;
+    // Both are told of the same rows.
+    let standard_where_seen = match curves.is_empty() {
+        true => None,
+        false => Some(standard_where_seen(model, window, &curves)?),
+    };
+    let standard = standard_where_seen.as_ref().unwrap_or(standard);
+    let before = before(model, ended, (standard, named_skew))?;
     // Without a finding the model is the standard one.
     let held = if findings.is_empty() { standard } else { &held };
     let after = held.errors();
     let held_out = HeldOut {
-        how: how(model),
+        how: how(model) + &of_curves(robot, &curves),
         band,
         before: before.relative_error.unwrap_or_default(),
         after: after.relative_error.unwrap_or_default(),
@@ -149,6 +157,18 @@ fn found(
         by_motion: by_motion(model, &regression.design, [standard, held]),
     };
     Ok((findings, held_out))
+}
+
+/// Errors of the standard model where the curves of a model say something.
+fn standard_where_seen(
+    model: &ExtendedModel<'_>,
+    window: SmoothingWindow,
+    curves: &[Curve],
+) -> Result<HeldOutSquares, DiagnosisError> {
+    let mut standard = model.clone();
+    standard.terms.clear();
+    standard.refit()?;
+    Ok(standard.regression(window).held_out(model.change, curves)?)
 }
 
 /// What was there before, and how all that the model has varies together.
@@ -255,7 +275,7 @@ pub(in crate::diagnosis) fn small(search: &Search<'_>, settings: &Settings) -> V
 fn before(
     model: &ExtendedModel<'_>,
     ended: &Ended<'_>,
-    named_skew: Option<f64>,
+    (standard, named_skew): (&HeldOutSquares, Option<f64>),
 ) -> Result<Errors, DiagnosisError> {
     if let Some(wrong) = ended.rate {
         return Ok(wrong.errors.clone());
@@ -265,7 +285,22 @@ fn before(
     }
     match named_skew {
         Some(skew) => Ok(delay::unaware(model, skew)?.errors()),
-        None => Ok(ended.standard.held.errors()),
+        None => Ok(standard.errors()),
+    }
+}
+
+/// Where motion is left out of held-out errors.
+fn of_curves(robot: &Robot, curves: &[Curve]) -> String {
+    let mut joints: Vec<usize> = curves.iter().map(|c| robot.joint_number(JointIndex(c.joint)).0).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    match joints.as_slice() {
+        [] => String::new(),
+        [one] => format!("; joint {one} only where its curve was fitted"),
+        several => {
+            let list: Vec<String> = several.iter().map(usize::to_string).collect();
+            format!("; joints {} only where their curves were fitted", list.join(" and "))
+        }
     }
 }
 

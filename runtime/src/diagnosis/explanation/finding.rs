@@ -52,8 +52,9 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     let deviations = uncertainty(model, k, &amplitude)?;
     let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
     let reduced = model.without(k)?;
-    let after = regression.held_out(false)?.error_on(&accepted.shows_on);
-    let before = reduced.regression(window).held_out(false)?.error_on(&accepted.shows_on);
+    let seen = model.curves(window);
+    let after = regression.held_out(false, &seen)?.error_on(&accepted.shows_on);
+    let before = reduced.regression(window).held_out(false, &seen)?.error_on(&accepted.shows_on);
     let mut finding = Finding {
         confidence: told(accepted.confidence),
         significance: accepted.significance,

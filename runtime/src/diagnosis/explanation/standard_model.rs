@@ -34,12 +34,12 @@ impl StandardModelFit {
         let residual = fast.residual();
         Ok(Self {
             in_sample: in_sample(fast),
-            held: fast.held_out(model.change)?,
+            held: fast.held_out(model.change, &[])?,
             estimated: estimated(slow),
             residual_slow: slow.residual(),
-            held_slow: slow.held_out(model.change)?,
+            held_slow: slow.held_out(model.change, &[])?,
             fitted_fast: residual.iter().enumerate().map(|(row, r)| fast.design.torque(row) - r).collect(),
-            held_with_windows: HeldOutSquares::of(aligned, &sigma, model.change)?.errors(),
+            held_with_windows: HeldOutSquares::of(aligned, &sigma, model.change, &[])?.errors(),
         })
     }
 }

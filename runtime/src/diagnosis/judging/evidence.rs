@@ -2,6 +2,7 @@
 
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::judging::autocorrelation::{Places, decorrelation_lag};
+use crate::diagnosis::judging::hull::{Beyond, Curve};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::significance::{Block, Evidence, mean_root};
 use crate::diagnosis::rows::gram::dot;
@@ -29,12 +30,12 @@ impl Regression {
     }
 
     /// Probability that a law which gains more than its rival on held-out motion does so by accident: their gains are
-    /// compared block by block.
+    /// compared block by block, on rows that both say something of.
     pub fn difference_p_value(&self, law: Law<'_>, rival: Law<'_>) -> f64 {
         let per_block = self.rows_per_block(&law.0.own);
-        let (Some(law), Some(rival)) = (self.blocks(law, per_block), self.blocks(rival, per_block)) else {
-            return 0.0;
-        };
+        let curves = [law, rival].map(|(candidate, trial)| Curve::of(candidate, &candidate.trials[trial]));
+        let blocks = |law| self.blocks(law, &curves, per_block);
+        let (Some(law), Some(rival)) = (blocks(law), blocks(rival)) else { return 0.0 };
         let ahead: Vec<f64> =
             law.iter().map(|(k, b)| b.gain() - rival.get(k).map_or(0.0, Block::gain)).collect();
         mean_root(&ahead).p_value
@@ -44,6 +45,7 @@ impl Regression {
     fn blocks(
         &self,
         (candidate, trial): Law<'_>,
+        curves: &[Option<Curve>],
         per_block: usize,
     ) -> Option<BTreeMap<(usize, usize), Block>> {
         let trial = &candidate.trials[trial];
@@ -59,18 +61,13 @@ impl Regression {
                 }
                 None => self.predict_from_others(candidate, trial, fold)?,
             };
+            let beyond: Vec<Beyond> =
+                curves.iter().flatten().map(|curve| Beyond::of(design, curve, &fold.fit.train)).collect();
             for (j, &s) in self.sigma.iter().enumerate() {
                 for g in (0..design.segments.len()).filter(|&g| fold.test[g]) {
-                    for r in design.ranges[j][g].clone() {
-                        let mut residual = design.y[r];
-                        let mut change = 0.0;
-                        for (k, column) in design.columns.iter().enumerate() {
-                            residual -= column[r] * prediction.fit.chi[k];
-                            change += column[r] * prediction.shift[k];
-                        }
-                        for (k, column) in dense.iter().enumerate() {
-                            change += column[r] * prediction.amplitude[k];
-                        }
+                    let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
+                    for r in design.ranges[j][g].clone().filter(seen) {
+                        let (residual, change) = prediction.at(design, r, dense.iter().map(|c| c[r]));
                         let block = blocks.entry(design.block(design.rows[r], per_block)).or_default();
                         block.with_residual += change * residual / (s * s);
                         block.squares += change * change / (s * s);

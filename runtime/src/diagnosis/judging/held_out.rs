@@ -2,6 +2,7 @@
 
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::forward_cuts;
+use crate::diagnosis::judging::hull::{Beyond, Curve};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::outcome::Errors;
 use crate::diagnosis::rows::design::Design;
@@ -22,28 +23,47 @@ type Split = (Vec<bool>, Vec<usize>);
 
 impl HeldOutSquares {
     /// Predicts held-out motion with the columns of a design: every motion once from the others; a single motion
-    /// forward in time, from two instants on; where `from_baseline` is set, the new motion from the baseline alone.
+    /// forward in time, from two instants on; where `from_baseline` is set, the new motion from the baseline alone. Rows
+    /// of which one of the `curves` says nothing are left out, whether it is in the design or not.
     ///
     /// # Errors
     /// [`SingularDesign`] where a split has no fit.
-    pub fn of(design: &Design, sigma: &[f64], from_baseline: bool) -> Result<Self, SingularDesign> {
+    pub fn of(
+        design: &Design,
+        sigma: &[f64],
+        from_baseline: bool,
+        curves: &[Curve],
+    ) -> Result<Self, SingularDesign> {
         let n = design.joints;
         let mut out = Self { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
         for (train, test) in splits(design, from_baseline) {
+            // A curve that is a change says nothing where only the baseline is fitted: its rows are those that it is judged on.
+            let beyond = (!from_baseline).then(|| beyond(design, curves, &train));
             let fit = Fit::new(design, sigma, train)?;
             for g in test {
-                out.add(design, &fit, g);
+                let of_segment = || {
+                    let (train, _) = splits(design, false).into_iter().find(|(_, test)| test.contains(&g))?;
+                    Some(self::beyond(design, curves, &train))
+                };
+                let beyond = beyond.clone().or_else(of_segment).unwrap_or_default();
+                out.add(design, &fit, g, &beyond);
             }
         }
         Ok(out)
     }
 
-    fn add(&mut self, design: &Design, fit: &Fit, segment: usize) {
+    fn add(&mut self, design: &Design, fit: &Fit, segment: usize, beyond: &[(usize, Beyond)]) {
         let (mut left, mut whole) = (0.0, 0.0);
         for j in 0..design.joints {
-            let squares = fit.squares(design, j, segment);
             // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
-            let torque = design.torque_squares(j, segment);
+            let (squares, torque) = if beyond.iter().any(|(joint, _)| *joint == j) {
+                let seen = |r: &usize| !beyond.iter().any(|(_, beyond)| beyond.contains(*r));
+                let rows = || design.ranges[j][segment].clone().filter(seen);
+                let squares = rows().map(|r| fit.residual_at(design, r).powi(2)).sum();
+                (squares, rows().map(|r| design.torque(r).powi(2)).sum())
+            } else {
+                (fit.squares(design, j, segment), design.torque_squares(j, segment))
+            };
             self.left[j] += squares;
             self.whole[j] += torque;
             left += squares;
@@ -65,13 +85,18 @@ impl HeldOutSquares {
 }
 
 impl Regression {
-    /// Errors on held-out motion with everything that is in the regression.
+    /// Errors on held-out motion with everything that is in the regression, on rows that these curves say something of.
     ///
     /// # Errors
     /// As [`HeldOutSquares::of`].
-    pub fn held_out(&self, from_baseline: bool) -> Result<HeldOutSquares, SingularDesign> {
-        HeldOutSquares::of(&self.design, &self.sigma, from_baseline)
+    pub fn held_out(&self, from_baseline: bool, curves: &[Curve]) -> Result<HeldOutSquares, SingularDesign> {
+        HeldOutSquares::of(&self.design, &self.sigma, from_baseline, curves)
     }
+}
+
+/// Rows that curves say nothing of where these segments are fitted, with the joint of each.
+fn beyond(design: &Design, curves: &[Curve], train: &[bool]) -> Vec<(usize, Beyond)> {
+    curves.iter().map(|curve| (curve.joint, Beyond::of(design, curve, train))).collect()
 }
 
 fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {
@@ -125,14 +150,14 @@ mod tests {
     fn a_single_motion_is_predicted_forward_in_time() {
         // Three stretches come after the first cut, two of them after the second.
         let held =
-            HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false).expect("a small problem is regular");
+            HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false, &[]).expect("a small problem is regular");
         let segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
         assert_eq!(segments, [5, 6, 7, 6, 7]);
     }
 
     #[test]
     fn of_several_motions_each_is_predicted_from_the_others() {
-        let held = HeldOutSquares::of(&design(&[(0, true), (0, true), (1, true)]), &[1.0], false)
+        let held = HeldOutSquares::of(&design(&[(0, true), (0, true), (1, true)]), &[1.0], false, &[])
             .expect("a small problem is regular");
         let mut segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
         segments.sort_unstable();
@@ -142,7 +167,7 @@ mod tests {
 
     #[test]
     fn from_a_baseline_alone_all_of_the_recording_is_predicted() {
-        let held = HeldOutSquares::of(&design(&[(0, false), (1, true), (2, true)]), &[1.0], true)
+        let held = HeldOutSquares::of(&design(&[(0, false), (1, true), (2, true)]), &[1.0], true, &[])
             .expect("a small problem is regular");
         assert_eq!(held.by_segment.iter().map(|s| s.0).collect::<Vec<_>>(), [1, 2]);
     }

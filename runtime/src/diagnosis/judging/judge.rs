@@ -3,6 +3,7 @@
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::{Fold, forward_cuts};
+use crate::diagnosis::judging::hull::{Beyond, Curve};
 use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::prediction::Prediction;
 use crate::diagnosis::judging::regression::Regression;
@@ -81,18 +82,29 @@ impl Regression {
             .then(|| self.by_segment(&best.part, &candidate.trials[best.trial]));
         for (fold, left) in self.folds.iter().zip(&self.held_out_squares) {
             let prediction = self.predict(candidate, (&best, parts.as_ref()), fold)?;
+            let held = || (0..fold.test.len()).filter(|&g| fold.test[g]);
+            let seen = match &prediction {
+                Predicted::FromOthers(prediction) => self.where_seen(candidate, prediction, fold),
+                Predicted::FromRest(_, amplitude) => {
+                    let (trial, amplitude) = (&candidate.trials[best.trial], amplitude.clone());
+                    let prediction = Prediction::new(&self.fit, trial, &best.part, amplitude);
+                    self.where_seen(candidate, &prediction, fold)
+                }
+            };
             let mut sum = 0.0;
             for (j, &s) in self.sigma.iter().enumerate() {
                 let w = 1.0 / (s * s);
-                of_joint[j].1 += w * left[j];
-                for (g, _) in fold.test.iter().enumerate().filter(|(_, t)| **t) {
-                    let gain = w * match &prediction {
-                        Predicted::FromOthers(prediction) => prediction.gain(&self.design, j, g),
-                        Predicted::FromRest(parts, amplitude) => parts.gain(amplitude, j, g),
-                    };
-                    sum += gain;
-                    of_joint[j].0 += gain;
-                }
+                let gain = |g: usize| match &prediction {
+                    Predicted::FromOthers(prediction) => prediction.gain(&self.design, j, g),
+                    Predicted::FromRest(parts, amplitude) => parts.gain(amplitude, j, g),
+                };
+                let [gone, left] = match seen {
+                    Some((joint, seen)) if joint == j => seen,
+                    _ => [held().map(gain).sum(), left[j]],
+                };
+                sum += w * gone;
+                of_joint[j].0 += w * gone;
+                of_joint[j].1 += w * left;
             }
             held_out.push(sum);
         }
@@ -145,6 +157,21 @@ impl Regression {
         Some(Predicted::FromOthers(Prediction::new(&fold.fit, trial, &own.part, own.amplitude)))
     }
 
+    /// Of a curve its joint, and there the squares of the held-out residual that are gone and that there were, on rows whose
+    /// values the fitted motion has passed; `None` for every other law, which says something of all of them.
+    fn where_seen(
+        &self,
+        candidate: &Candidate,
+        prediction: &Prediction<'_>,
+        fold: &Fold,
+    ) -> Option<(usize, [f64; 2])> {
+        let curve = Curve::of(candidate, prediction.trial)?;
+        let beyond = Beyond::of(&self.design, &curve, &fold.fit.train);
+        let held = (0..fold.test.len()).filter(|&g| fold.test[g]);
+        let rows = held.flat_map(|g| beyond.seen(self.design.ranges[curve.joint][g].clone()));
+        Some((curve.joint, prediction.gain_on(&self.design, &curve, rows)))
+    }
+
     /// Squared residual of a joint in the recording that is diagnosed, in units of its variance.
     fn target_squares(&self, joint: usize) -> f64 {
         self.target_squares[joint] / (self.sigma[joint] * self.sigma[joint])
@@ -166,13 +193,21 @@ impl Regression {
     ) -> Result<bool, SingularDesign> {
         let segments = self.design.segments.len();
         let trial = &candidate.trials[trial];
+        let curve = Curve::of(candidate, trial);
         let gain = |fit: &Fit, is_held: &dyn Fn(usize) -> bool| {
             let part = fit.project_out(trial)?;
             let (amplitude, _) = part.solve(candidate)?;
             let prediction = Prediction::new(fit, trial, &part, amplitude);
+            let held = || (0..segments).filter(|&g| is_held(g));
             let of_joint = |&j: &usize| {
-                let held = (0..segments).filter(|&g| is_held(g));
-                let gone: f64 = held.map(|g| prediction.gain(&self.design, j, g)).sum();
+                let gone = match curve.as_ref().filter(|curve| curve.joint == j) {
+                    Some(curve) => {
+                        let beyond = Beyond::of(&self.design, curve, &fit.train);
+                        let rows = held().flat_map(|g| beyond.seen(self.design.ranges[j][g].clone()));
+                        prediction.gain_on(&self.design, curve, rows)[0]
+                    }
+                    None => held().map(|g| prediction.gain(&self.design, j, g)).sum(),
+                };
                 gone / (self.sigma[j] * self.sigma[j])
             };
             Some(shows_on.iter().map(of_joint).sum::<f64>())

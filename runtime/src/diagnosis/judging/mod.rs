@@ -7,6 +7,7 @@ pub(in crate::diagnosis) mod calibration;
 pub(in crate::diagnosis) mod evidence;
 pub(in crate::diagnosis) mod folds;
 pub(in crate::diagnosis) mod held_out;
+pub(in crate::diagnosis) mod hull;
 pub(in crate::diagnosis) mod judge;
 pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;

@@ -3,6 +3,7 @@
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::judging::folds::Fold;
+use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
@@ -55,6 +56,27 @@ impl<'a> Prediction<'a> {
             }
         }
         2.0 * linear - square
+    }
+
+    /// At one row, given the values of the trial's columns there: the residual of the fit without the trial, and what the trial
+    /// changes.
+    pub fn at(&self, design: &Design, row: usize, law: impl Iterator<Item = f64>) -> (f64, f64) {
+        let mut residual = design.y[row];
+        let mut change: f64 = law.zip(self.amplitude.iter()).map(|(c, a)| a * c).sum();
+        for (k, column) in design.columns.iter().enumerate() {
+            residual -= column[row] * self.fit.chi[k];
+            change += column[row] * self.shift[k];
+        }
+        (residual, change)
+    }
+
+    /// On some rows of a curve's joint: squares of the residual that are gone, and those of the residual without the trial.
+    pub fn gain_on(&self, design: &Design, curve: &Curve, rows: impl Iterator<Item = usize>) -> [f64; 2] {
+        let first = design.of_joint(curve.joint).start;
+        rows.fold([0.0, 0.0], |[gone, squares], r| {
+            let (residual, change) = self.at(design, r, curve.columns.iter().map(|c| c[r - first]));
+            [gone + change * (2.0 * residual - change), squares + residual * residual]
+        })
     }
 }
 

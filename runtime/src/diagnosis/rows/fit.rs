@@ -155,6 +155,12 @@ impl Fit {
         r
     }
 
+    /// Residual of one row.
+    pub fn residual_at(&self, design: &Design, row: usize) -> f64 {
+        let fitted = design.columns.iter().zip(self.chi.iter()).map(|(c, x)| c[row] * x);
+        design.y[row] - fitted.sum::<f64>()
+    }
+
     /// Squares, in units of the residual variance, that only these columns explain: Wald's statistic. Nothing where they
     /// are not determined.
     pub fn wald(&self, columns: Range<usize>) -> Option<f64> {

@@ -7,6 +7,7 @@ use crate::diagnosis::candidates::nuisances::{
 };
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::rows::context::{Carried, Context};
 use crate::diagnosis::rows::design::Design;
@@ -153,6 +154,17 @@ impl<'a> ExtendedModel<'a> {
         }
         copy.refit()?;
         Ok(copy)
+    }
+
+    /// Curves among the terms, on the rows of a window: where they say nothing, motion is no evidence.
+    pub fn curves(&self, window: SmoothingWindow) -> Vec<Curve> {
+        let Regression { design, term_columns, .. } = self.regression(window);
+        let of_term = |(term, columns): (&Accepted, &Range<usize>)| {
+            let joint = *term.own.first().filter(|_| term.effect.form().holds_only_where_seen())?;
+            let on_joint = |k: usize| design.columns[k][design.of_joint(joint)].to_vec();
+            Some(Curve { joint, columns: columns.clone().map(on_joint).collect() })
+        };
+        self.terms.iter().zip(term_columns).filter_map(of_term).collect()
     }
 
     /// The columns of a law on all rows of a design of the same motions, one per amplitude.

@@ -126,12 +126,12 @@ impl Search<'_> {
 
     /// Whether term `k` alone explains nearly as much of a joint's held-out motion as it and the last term together.
     fn suffices(&mut self, k: usize, joint: usize) -> Result<bool, SingularDesign> {
-        let terms = self.model.terms.clone();
+        let (terms, curves) = (self.model.terms.clone(), self.model.curves(SmoothingWindow::Slow));
         let mut left = |without: &[usize]| -> Result<f64, SingularDesign> {
             let keep = |i: &usize| !without.contains(i);
             self.model.terms = (0..terms.len()).filter(keep).map(|i| terms[i].clone()).collect();
             self.model.refit()?;
-            Ok(self.model.slow.held_out(false)?.left[joint])
+            Ok(self.model.slow.held_out(false, &curves)?.left[joint])
         };
         let last = terms.len() - 1;
         let (nothing, alone, both) = (left(&[k, last])?, left(&[last])?, left(&[])?);

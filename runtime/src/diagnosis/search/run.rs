@@ -4,6 +4,7 @@
 
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::outcome::StopReason;
 use crate::diagnosis::rules::KEPT_FRACTION;
 use crate::diagnosis::search::body;
@@ -145,10 +146,11 @@ impl Search<'_> {
                 self.model.refit()?;
                 continue;
             }
-            let with = held_out_error(&self.model, &self.model.terms[k])?;
+            let curves = self.model.curves(self.model.terms[k].effect.properties().window);
+            let with = held_out_error(&self.model, &self.model.terms[k], &curves)?;
             let term = self.model.terms.remove(k);
             self.model.refit()?;
-            if self.earns_its_place(&term, with, settings)? {
+            if self.earns_its_place(&term, (with, &curves), settings)? {
                 self.model.terms.insert(k, term);
                 k += 1;
             } else {
@@ -159,15 +161,16 @@ impl Search<'_> {
         Ok(rejected)
     }
 
-    /// Whether a term that is not in the model improves it; `with` is the held-out error with it.
+    /// Whether a term that is not in the model improves it; `with` is the held-out error with it, where the curves of the
+    /// model with it say something.
     fn earns_its_place(
         &self,
         term: &Accepted,
-        with: f64,
+        (with, curves): (f64, &[Curve]),
         settings: &Settings,
     ) -> Result<bool, SingularDesign> {
         let model = &self.model;
-        let without = held_out_error(model, term)?;
+        let without = held_out_error(model, term, curves)?;
         let regression = model.regression(term.effect.properties().window);
         let shape = std::slice::from_ref(&term.shape);
         let candidate =
@@ -185,7 +188,11 @@ impl Search<'_> {
     }
 }
 
-/// Held-out error of the joints of a term.
-fn held_out_error(model: &ExtendedModel<'_>, term: &Accepted) -> Result<f64, SingularDesign> {
-    Ok(model.regression(term.effect.properties().window).held_out(false)?.error_on(&term.shows_on))
+/// Held-out error of the joints of a term, where these curves say something.
+fn held_out_error(
+    model: &ExtendedModel<'_>,
+    term: &Accepted,
+    curves: &[Curve],
+) -> Result<f64, SingularDesign> {
+    Ok(model.regression(term.effect.properties().window).held_out(false, curves)?.error_on(&term.shows_on))
 }

@@ -106,6 +106,10 @@ impl JointLaw for PositionDependentTorque {
         false
     }
 
+    fn holds_only_where_seen(&self) -> bool {
+        true
+    }
+
     /// Beyond the travel that was seen, the torque stays what it is at its end.
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         let x = ((at.q - shape[0]) / shape[1].abs().max(1e-9)).clamp(-1.0, 1.0);

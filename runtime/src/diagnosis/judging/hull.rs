@@ -1,0 +1,128 @@
+//! Where a curve that was fitted to some motion says something: within the hull of its regressors (Cook 1979; Brooks,
+//! Carroll and Verdini 1988).
+//!
+//! A curve knows nothing of values that the fitted motion has not passed. A row whose leverage in the regression of the curve
+//! and an offset is larger than that of every fitted row lies beyond these values, whatever the curve's variables are; it is
+//! no evidence for the curve, and none against it.
+
+use crate::diagnosis::candidates::candidate::Candidate;
+use crate::diagnosis::candidates::trial::{Sparse, Trial};
+use crate::diagnosis::judging::white_products::factored;
+use crate::diagnosis::rows::design::Design;
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// A curve on the rows of its joint.
+pub(in crate::diagnosis) struct Curve {
+    pub joint: usize,
+    /// Values on the rows of the joint, one column per amplitude.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Curve {
+    /// A shape of a candidate that says nothing of values that no motion has passed; `None` for every other law.
+    pub fn of(candidate: &Candidate, trial: &Trial) -> Option<Self> {
+        if !candidate.effect.form().holds_only_where_seen() {
+            return None;
+        }
+        let joint = *candidate.own.first()?;
+        let on_joint = |column: &Sparse| column.iter().find(|(j, _)| *j == joint).map(|(_, v)| v.clone());
+        Some(Self { joint, columns: trial.columns.iter().map(on_joint).collect::<Option<_>>()? })
+    }
+}
+
+/// Rows of one joint that a fit says nothing about.
+#[derive(Clone)]
+pub(in crate::diagnosis) struct Beyond {
+    first: usize,
+    /// One per row of the joint.
+    rows: Vec<bool>,
+}
+
+impl Beyond {
+    /// Rows beyond the hull of a curve on the segments that `train` marks. Rows on which the curve is silent are no part of
+    /// the fitted ones.
+    pub fn of(design: &Design, curve: &Curve, train: &[bool]) -> Self {
+        let all = design.of_joint(curve.joint);
+        let first = all.start;
+        let row = |r: usize| {
+            let local = r - first;
+            DVector::from_iterator(
+                curve.columns.len() + 1,
+                curve.columns.iter().map(|c| c[local]).chain([1.0]),
+            )
+        };
+        let acts = |r: &usize| curve.columns.iter().any(|c| c[*r - first] != 0.0);
+        let segments = (0..train.len()).filter(|&g| train[g]);
+        let trained: Vec<DVector<f64>> =
+            segments.flat_map(|g| design.ranges[curve.joint][g].clone()).filter(acts).map(row).collect();
+        let width = curve.columns.len() + 1;
+        let mut gram = DMatrix::zeros(width, width);
+        trained.iter().for_each(|z| gram.ger(1.0, z, z, 1.0));
+        let Some((factor, scale)) = factored(&gram) else {
+            return Self { first, rows: vec![true; all.len()] };
+        };
+        // A column that is zero on all fitted rows has no scale; a row on which it is not lies beyond them.
+        let unseen = |z: &DVector<f64>| (0..width).any(|k| scale[k] == 0.0 && z[k] != 0.0);
+        let leverage = |z: &DVector<f64>| {
+            let z = z.component_mul(&scale);
+            z.dot(&factor.solve(&z))
+        };
+        let largest = trained.iter().map(leverage).fold(0.0, f64::max);
+        let is_beyond = |z: DVector<f64>| unseen(&z) || leverage(&z) > largest;
+        Self { first, rows: all.map(|r| is_beyond(row(r))).collect() }
+    }
+
+    /// Whether a row is one of them; rows of other joints are not.
+    pub fn contains(&self, row: usize) -> bool {
+        row.checked_sub(self.first).and_then(|local| self.rows.get(local)).copied().unwrap_or(false)
+    }
+
+    /// The others of a range of rows.
+    pub fn seen(&self, range: Range<usize>) -> impl Iterator<Item = usize> + '_ {
+        range.filter(|&r| !self.contains(r))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One joint whose position in segment g runs from `ranges[g][0]` to `ranges[g][1]`, and polynomials of it.
+    fn swept(ranges: &[[f64; 2]], degree: i32) -> (Design, Curve, Vec<f64>) {
+        let rows = 40;
+        let segments: Vec<(usize, bool)> = (0..ranges.len()).map(|g| (g, true)).collect();
+        let q: Vec<f64> = ranges
+            .iter()
+            .flat_map(|[low, high]| {
+                (0..rows).map(move |t| low + (high - low) * f64::from(t) / f64::from(rows - 1))
+            })
+            .collect();
+        let columns = (1..=degree).map(|n| q.iter().map(|q| q.powi(n)).collect()).collect();
+        let design = Design::made_up(1, &segments, rows as usize, vec![vec![1.0; q.len()]], q.clone());
+        (design, Curve { joint: 0, columns }, q)
+    }
+
+    #[test]
+    fn rows_beyond_the_positions_that_were_fitted_are_beyond_and_no_others() {
+        for degree in 1..=5 {
+            let (design, curve, q) = swept(&[[-0.5, 0.4], [-0.2, 0.6], [-1.0, 1.0]], degree);
+            let beyond = Beyond::of(&design, &curve, &[true, true, false]);
+            for (r, q) in q.iter().enumerate() {
+                let outside = *q < -0.5 || *q > 0.6;
+                // The hull of leverage is an ellipsoid: for a line it is centred on the mean, and cut on one side only.
+                let near = *q < -0.45 || *q > 0.45;
+                assert!(!beyond.contains(r) || near, "degree {degree}: {q} was passed");
+                assert!(beyond.contains(r) || !outside || q.abs() < 0.75, "degree {degree}: {q} was not");
+            }
+        }
+    }
+
+    #[test]
+    fn a_curve_that_no_fitted_motion_shows_says_nothing() {
+        let (design, mut curve, _) = swept(&[[-0.5, 0.4], [-1.0, 1.0]], 3);
+        curve.columns.iter_mut().for_each(|c| c[..40].fill(0.0));
+        let beyond = Beyond::of(&design, &curve, &[true, false]);
+        assert_eq!(beyond.seen(40..80).count(), 0);
+    }
+}
