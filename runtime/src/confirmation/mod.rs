@@ -7,6 +7,7 @@
 //! fails is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by
 //! it: of a finding that stays, only that it did not fail is known from it.
 
+mod intervals;
 mod slope;
 
 use crate::diagnosis::{
@@ -16,6 +17,7 @@ use crate::effects::{EffectKind, EffectTerm, SmoothingWindow};
 use crate::model::{JointNumber, Model};
 use crate::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate};
 use crate::recording::Trajectory;
+use intervals::Intervals;
 use slope::{Judgement, Slope};
 
 /// Why there is no confirmed diagnosis.
@@ -108,7 +110,9 @@ fn held_against_test(
     for (which, (k, ..)) in without.iter().enumerate().map(|(i, w)| (i + 1, w)) {
         let finding = &diagnosis.findings[*k];
         let joints = joints_of(model, finding);
-        let Some(slope) = Slope::of(&evaluation, [which, 0], Some(&joints)) else { continue };
+        let intervals = Intervals::new(&finding.term, model.robot().joints(), &test.motions);
+        let slope_on = |joints| Slope::of(&evaluation, [which, 0], joints, &intervals);
+        let Some(slope) = slope_on(Some(&joints)) else { continue };
         let models = [predictors[which], predictors[0]];
         if finding.term.effect.properties().window == SmoothingWindow::Fast
             && !shows(model, finding, models, test, (&evaluation, [which, 0]))?
@@ -118,7 +122,7 @@ fn held_against_test(
         let on_test = OnTest { part: slope.value, sigma: slope.sigma, units: slope.units };
         parts.push((*k, on_test));
         // By the parameters that joints share it may show, or do harm, on others.
-        let on_all = Slope::of(&evaluation, [which, 0], None);
+        let on_all = slope_on(None);
         let own = slope.judgement();
         let harms_others = own == Judgement::Stands && on_all.as_ref().is_some_and(Slope::certainly_harms);
         let is_another = finding.term.effect.properties().is_factor && slope.certainly_differs();

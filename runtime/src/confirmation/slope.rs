@@ -5,6 +5,7 @@
 //! regression of a forecast: Mincer and Zarnowitz 1969). Neighbouring rows share their errors: its standard deviation
 //! is that of sums over units of a few seconds (Liang and Zeger 1986).
 
+use super::intervals::Intervals;
 use crate::prediction::{Evaluation, JointRows};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -46,18 +47,19 @@ pub(super) enum Judgement {
 }
 
 impl Slope {
-    /// Of what changes from model `without` to model `with` of an evaluation, on all joints or on some; `None` where that
-    /// is nothing.
+    /// Of what changes from model `without` to model `with` of an evaluation, on all joints or on some, but for rows
+    /// that the law's `intervals` leave out; `None` where that is nothing.
     pub(super) fn of(
         evaluation: &Evaluation,
         [without, with]: [usize; 2],
         joints: Option<&[usize]>,
+        intervals: &Intervals<'_>,
     ) -> Option<Self> {
         let weights = weights(evaluation, without);
         let length = unit_length(&evaluation.rows);
         let mut sums: Vec<(usize, i64, [f64; 2])> = Vec::new();
         for rows in evaluation.rows.iter().filter(|r| joints.is_none_or(|own| own.contains(&r.joint))) {
-            for t in (0..rows.used.len()).filter(|&t| rows.used[t]) {
+            for t in (0..rows.used.len()).filter(|&t| rows.used[t] && !intervals.leave_out(rows, t)) {
                 let d = rows.predicted[with][t] - rows.predicted[without][t];
                 let r = rows.measured[t] - rows.predicted[without][t];
                 let w = weights[rows.joint];

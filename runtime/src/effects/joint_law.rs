@@ -112,7 +112,8 @@ pub trait JointLaw: Sync {
     /// Whether only a positive amplitude is this effect: a negative one is something else.
     fn only_positive(&self) -> bool;
 
-    /// Whether it is a curve that says nothing of positions that no motion has passed.
+    /// Whether it is a curve that says nothing of positions that no motion has passed; its shape is the middle of those that one
+    /// has, and half of their range.
     fn holds_only_where_seen(&self) -> bool {
         false
     }

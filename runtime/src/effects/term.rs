@@ -4,10 +4,11 @@ use super::catalogue::EffectKind;
 use super::compliance::Transmission;
 use super::contact::ContactForce;
 use super::form::Form;
-use super::free_law::FreeLaw;
+use super::free_law::{Axis, FreeLaw};
 use super::joint_law::Scale;
 use super::place::Place;
 use super::sensitivity::Distortion;
+use super::variable::Variable;
 use crate::model::JointKind;
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +46,20 @@ pub(crate) fn named(effect: EffectKind, place: Place, shape: &[f64]) -> EffectKi
 }
 
 impl EffectTerm {
+    /// The variables of a curve, with the intervals of values that were fitted: of others it says nothing. None for every
+    /// other law. `joints`: how many the robot has.
+    pub fn intervals(&self, joints: usize) -> Vec<Axis> {
+        match (self.effect.form(), self.place.joint(), self.shape.as_slice()) {
+            (Form::Free, ..) => {
+                FreeLaw::from_shape(&self.shape, joints).map_or_else(Vec::new, |law| law.axes)
+            }
+            (Form::Joint(law), Some(joint), &[centre, half]) if law.holds_only_where_seen() => {
+                vec![Axis { variable: Variable::Position(joint), centre, half }]
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// Its name in the JSON: that of the effect, or of the user's law. A curve over nothing but the position of its joint has
     /// the name of the effect that says so.
     pub fn id(&self) -> &'static str {

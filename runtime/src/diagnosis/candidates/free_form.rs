@@ -67,6 +67,24 @@ pub(in crate::diagnosis) fn screen(
     Screened { single, pairs: judged_pairs, tried: axes.len() + pairs.len() }
 }
 
+/// The law over two of these variables that gains most on held-out motion, as a candidate.
+pub(in crate::diagnosis) fn best_of_pairs(
+    context: &Context<'_>,
+    regression: &Regression,
+    joint: usize,
+    over: &[Variable],
+    change: bool,
+) -> Option<Candidate> {
+    let axes = axes(context, regression, joint);
+    let axes: Vec<Axis> = axes.into_iter().filter(|a| over.contains(&a.variable)).collect();
+    let pairs = (0..axes.len()).flat_map(|a| (a + 1..axes.len()).map(move |b| [a, b]));
+    let shapes = pairs.flat_map(|[a, b]| FreeLaw::two(axes[a], axes[b])).map(|law| law.shape());
+    let place = Place::Joint(joint);
+    let of_shape = |shape| make(context, &regression.design, EffectKind::FreeForm, place, &[shape], change);
+    let judged = shapes.map(of_shape).filter_map(|c| Some((regression.judge(&c)?.total(), c)));
+    judged.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
+}
+
 fn sorted(judged: Vec<Option<Judged>>) -> Vec<Judged> {
     let mut list: Vec<Judged> = judged.into_iter().flatten().filter(|j| j.verdict.total() > 0.0).collect();
     list.sort_by(|a, b| b.verdict.total().total_cmp(&a.verdict.total()));

@@ -149,8 +149,8 @@ mod tests {
     #[test]
     fn a_single_motion_is_predicted_forward_in_time() {
         // Three stretches come after the first cut, two of them after the second.
-        let held =
-            HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false, &[]).expect("a small problem is regular");
+        let held = HeldOutSquares::of(&design(&[(0, true); 8]), &[1.0], false, &[])
+            .expect("a small problem is regular");
         let segments: Vec<usize> = held.by_segment.iter().map(|s| s.0).collect();
         assert_eq!(segments, [5, 6, 7, 6, 7]);
     }

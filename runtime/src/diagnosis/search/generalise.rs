@@ -2,7 +2,8 @@
 //!
 //! A search that goes forward takes the simpler law first, and what is left of the general one then looks like another of
 //! its cases: a drive that loses power only where it drives the load is half friction that grows with the load and half
-//! a wrong torque constant. One law that explains what its cases explain together is named in their place.
+//! a wrong torque constant. One law that explains what its cases explain together is named in their place, and in that of
+//! a law over any variables that was what they left.
 
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rules::KEPT_BESIDE;
@@ -11,7 +12,7 @@ use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, Place, named};
+use crate::effects::{EffectKind, Place, SmoothingWindow, named};
 
 impl Search<'_> {
     /// Names one law where two or more of its cases, or it and one of them, were found at the same place.
@@ -30,24 +31,34 @@ impl Search<'_> {
                     let one_of = effect == general || general.special_cases().any(|s| s == effect);
                     t.place == place && one_of
                 };
-                if self.model.terms.iter().filter(|t| is_case(t)).count() > 1 {
-                    self.put_in_place_of(&is_case, (general, place), settings)?;
+                let what_they_left = |t: &Accepted| t.effect == EffectKind::FreeForm && t.place == place;
+                let count =
+                    |part: &dyn Fn(&Accepted) -> bool| self.model.terms.iter().filter(|t| part(t)).count();
+                let (cases, free) = (count(&is_case), count(&what_they_left));
+                let window = general.properties().window;
+                let law = |search: &mut Self| search.one_law((general, place), settings);
+                let all = |t: &Accepted| is_case(t) || what_they_left(t);
+                if cases > 0 && free > 0 && self.put_in_place_of(&all, window, law)? {
+                    continue;
+                }
+                if cases > 1 {
+                    self.put_in_place_of(&is_case, window, law)?;
                 }
             }
         }
-        Ok(())
+        self.one_curve(settings)
     }
 
-    /// Puts one law in the place of its cases, if it passes the gate without them and explains as much.
-    fn put_in_place_of(
+    /// Puts one law in the place of several, if it passes the gate without them and explains as much. Whether it did.
+    pub(super) fn put_in_place_of(
         &mut self,
         is_case: &dyn Fn(&Accepted) -> bool,
-        (general, place): (EffectKind, Place),
-        settings: &Settings,
-    ) -> Result<(), SingularDesign> {
-        let sigma = self.model.regression(general.properties().window).sigma.clone();
+        window: SmoothingWindow,
+        law: impl FnOnce(&mut Self) -> Option<Accepted>,
+    ) -> Result<bool, SingularDesign> {
+        let sigma = self.model.regression(window).sigma.clone();
         let left = |search: &Self| {
-            let regression = search.model.regression(general.properties().window);
+            let regression = search.model.regression(window);
             let residual = regression.residual();
             let of_joint = |(j, s): (usize, &f64)| {
                 regression.design.of_joint(j).map(|r| residual[r] * residual[r]).sum::<f64>() / (s * s)
@@ -59,19 +70,20 @@ impl Search<'_> {
         self.model.terms.retain(|t| !is_case(t));
         self.refit_and_update()?;
         let without = left(self);
-        if let Some(law) = self.one_law((general, place), settings) {
+        if let Some(law) = law(self) {
             self.model.terms.insert(first, law);
             self.refit_and_update()?;
             if without - left(self) >= KEPT_BESIDE * (without - with_cases) {
-                return Ok(());
+                return Ok(true);
             }
         }
         self.model.terms = before;
-        self.refit_and_update()
+        self.refit_and_update()?;
+        Ok(false)
     }
 
     /// The law of a place beside the model as it is, if it passes the gate.
-    fn one_law(&self, law: (EffectKind, Place), settings: &Settings) -> Option<Accepted> {
+    pub(super) fn one_law(&self, law: (EffectKind, Place), settings: &Settings) -> Option<Accepted> {
         let ranked = self.ranked(None);
         let k = ranked.iter().position(|r| {
             let candidate = self.of(r).1;

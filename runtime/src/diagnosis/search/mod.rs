@@ -9,6 +9,7 @@ pub(in crate::diagnosis) mod friction_change;
 pub(in crate::diagnosis) mod gate;
 mod generalise;
 pub(in crate::diagnosis) mod line;
+mod one_curve;
 pub(in crate::diagnosis) mod pair;
 pub(in crate::diagnosis) mod prominence;
 pub(in crate::diagnosis) mod reconsider;
