@@ -14,7 +14,7 @@ use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{LONGEST_BLOCK, NAMED_DELAY, NAMED_DELAY_SAMPLES};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, EffectTerm, Place, SmoothingWindow};
+use crate::effects::{EffectKind, EffectTerm, Place};
 use std::collections::BTreeSet;
 
 /// Skew of the torques behind the positions in a design, s.
@@ -48,7 +48,7 @@ pub(in crate::diagnosis) fn finding(
     }
     let slow = &model.slow;
     let p = slow.design.parameters;
-    let seen = model.curves(SmoothingWindow::Slow);
+    let seen = model.slow.curves();
     let with = slow.held_out(false, &seen)?;
     let unaware = HeldOutSquares::of(&with_skew(slow, skew), &slow.sigma, false, &seen)?;
     let all: Vec<usize> = (0..slow.design.joints).collect();
@@ -88,7 +88,7 @@ pub(in crate::diagnosis) fn unaware(
     model: &ExtendedModel<'_>,
     skew: f64,
 ) -> Result<HeldOutSquares, DiagnosisError> {
-    let seen = model.curves(SmoothingWindow::Fast);
+    let seen = model.fast.curves();
     let mut standard = model.clone();
     standard.terms.clear();
     standard.refit()?;

@@ -134,7 +134,7 @@ fn found(
     } else {
         (SmoothingWindow::Fast, &ended.standard.held, ended.sampling.band)
     };
-    let (regression, curves) = (model.regression(window), model.curves(window));
+    let (regression, curves) = (model.regression(window), model.regression(window).curves());
     let held = regression.held_out(false, &curves)?;
     findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
     // Both are told of the same rows.

@@ -3,7 +3,7 @@
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::judging::autocorrelation::{Places, decorrelation_lag};
 use crate::diagnosis::judging::hull::{Beyond, Curve};
-use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::judging::regression::{Regression, is_beyond};
 use crate::diagnosis::judging::significance::{Block, Evidence, mean_root};
 use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rules::{LAGS_PER_BLOCK, LONGEST_BLOCK, SHIFTS, SHIFTS_LEFT_OUT, SHORTEST_BLOCK};
@@ -65,7 +65,9 @@ impl Regression {
                 curves.iter().flatten().map(|curve| Beyond::of(design, curve, &fold.fit.train)).collect();
             for (j, &s) in self.sigma.iter().enumerate() {
                 for g in (0..design.segments.len()).filter(|&g| fold.test[g]) {
-                    let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
+                    let seen = |r: &usize| {
+                        !is_beyond(&self.beyond, *r) && !beyond.iter().any(|beyond| beyond.contains(*r))
+                    };
                     for r in design.ranges[j][g].clone().filter(seen) {
                         let (residual, change) = prediction.at(design, r, dense.iter().map(|c| c[r]));
                         let block = blocks.entry(design.block(design.rows[r], per_block)).or_default();

@@ -6,7 +6,7 @@ use crate::diagnosis::judging::folds::{Fold, forward_cuts};
 use crate::diagnosis::judging::hull::{Beyond, Curve};
 use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::prediction::Prediction;
-use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::judging::regression::{Regression, is_beyond};
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{AIC_PENALTY, MOST_OF_WHAT_IS_OPEN};
 use nalgebra::DVector;
@@ -43,14 +43,6 @@ struct Best {
     part: Residualised,
 }
 
-/// A candidate on the segments that a fold holds out.
-enum Predicted<'a> {
-    /// Everything refitted to the other motions.
-    FromOthers(Prediction<'a>),
-    /// Its amplitude fitted to the rest of a single motion.
-    FromRest(&'a BySegment, DVector<f64>),
-}
-
 /// The shape whose gain is largest after a penalty for its numbers.
 fn best_shape(fit: &Fit, candidate: &Candidate) -> Option<Best> {
     let worth = |gain: f64, numbers: usize| gain - AIC_PENALTY * numbers as f64;
@@ -81,30 +73,13 @@ impl Regression {
             .is_single_motion()
             .then(|| self.by_segment(&best.part, &candidate.trials[best.trial]));
         for (fold, left) in self.folds.iter().zip(&self.held_out_squares) {
-            let prediction = self.predict(candidate, (&best, parts.as_ref()), fold)?;
-            let held = || (0..fold.test.len()).filter(|&g| fold.test[g]);
-            let seen = match &prediction {
-                Predicted::FromOthers(prediction) => self.where_seen(candidate, prediction, fold),
-                Predicted::FromRest(_, amplitude) => {
-                    let (trial, amplitude) = (&candidate.trials[best.trial], amplitude.clone());
-                    let prediction = Prediction::new(&self.fit, trial, &best.part, amplitude);
-                    self.where_seen(candidate, &prediction, fold)
-                }
-            };
             let mut sum = 0.0;
-            for (j, &s) in self.sigma.iter().enumerate() {
+            let on_fold = self.on_fold(candidate, (&best, parts.as_ref()), (fold, left))?;
+            for ((of_joint, s), [gone, left]) in of_joint.iter_mut().zip(&self.sigma).zip(on_fold) {
                 let w = 1.0 / (s * s);
-                let gain = |g: usize| match &prediction {
-                    Predicted::FromOthers(prediction) => prediction.gain(&self.design, j, g),
-                    Predicted::FromRest(parts, amplitude) => parts.gain(amplitude, j, g),
-                };
-                let [gone, left] = match seen {
-                    Some((joint, seen)) if joint == j => seen,
-                    _ => [held().map(gain).sum(), left[j]],
-                };
                 sum += w * gone;
-                of_joint[j].0 += w * gone;
-                of_joint[j].1 += w * left;
+                of_joint.0 += w * gone;
+                of_joint.1 += w * left;
             }
             held_out.push(sum);
         }
@@ -136,40 +111,47 @@ impl Regression {
         })
     }
 
-    /// The candidate fitted to the segments of a fold; on a single motion by its products on each of its `parts`.
-    fn predict<'a>(
-        &'a self,
-        candidate: &'a Candidate,
-        (best, parts): (&Best, Option<&'a BySegment>),
-        fold: &'a Fold,
-    ) -> Option<Predicted<'a>> {
-        if let Some(parts) = parts {
-            let amplitude = self.amplitude_from_rest_of_motion(candidate, (&best.part, parts), fold)?;
-            return Some(Predicted::FromRest(parts, amplitude));
-        }
-        if candidate.fixed.is_some() {
-            // A law without free amplitudes has nothing to fit but its shape, which needs all of the motion.
-            let trial = &candidate.trials[best.trial];
-            return self.predict_from_others(candidate, trial, fold).map(Predicted::FromOthers);
-        }
-        let own = best_shape(&fold.fit, candidate)?;
-        let trial = &candidate.trials[own.trial];
-        Some(Predicted::FromOthers(Prediction::new(&fold.fit, trial, &own.part, own.amplitude)))
-    }
-
-    /// Of a curve its joint, and there the squares of the held-out residual that are gone and that there were, on rows whose
-    /// values the fitted motion has passed; `None` for every other law, which says something of all of them.
-    fn where_seen(
+    /// What a candidate takes of the squares that a fold leaves of each joint, and these; on rows that the model's curves, and
+    /// the candidate where it is one, say something of.
+    fn on_fold(
         &self,
         candidate: &Candidate,
-        prediction: &Prediction<'_>,
-        fold: &Fold,
-    ) -> Option<(usize, [f64; 2])> {
-        let curve = Curve::of(candidate, prediction.trial)?;
-        let beyond = Beyond::of(&self.design, &curve, &fold.fit.train);
-        let held = (0..fold.test.len()).filter(|&g| fold.test[g]);
-        let rows = held.flat_map(|g| beyond.seen(self.design.ranges[curve.joint][g].clone()));
-        Some((curve.joint, prediction.gain_on(&self.design, &curve, rows)))
+        (best, parts): (&Best, Option<&BySegment>),
+        (fold, left): (&Fold, &[f64]),
+    ) -> Option<Vec<[f64; 2]>> {
+        let design = &self.design;
+        let prediction = match parts {
+            Some(parts) => {
+                let amplitude = self.amplitude_from_rest_of_motion(candidate, (&best.part, parts), fold)?;
+                Prediction::new(&self.fit, &candidate.trials[best.trial], &best.part, amplitude)
+            }
+            None if candidate.fixed.is_some() => {
+                // A law without free amplitudes has nothing to fit but its shape, which needs all of the motion.
+                self.predict_from_others(candidate, &candidate.trials[best.trial], fold)?
+            }
+            None => {
+                let own = best_shape(&fold.fit, candidate)?;
+                Prediction::new(&fold.fit, &candidate.trials[own.trial], &own.part, own.amplitude)
+            }
+        };
+        let held: Vec<usize> = (0..fold.test.len()).filter(|&g| fold.test[g]).collect();
+        let curve = Curve::of(candidate, prediction.trial);
+        let beyond = curve.map(|curve| (curve.joint, Beyond::of(design, &curve, &fold.fit.train)));
+        let of_joint = |j: usize| {
+            let own = beyond.as_ref().filter(|(joint, _)| *joint == j).map(|(_, beyond)| beyond);
+            let rows = || held.iter().flat_map(|&g| design.ranges[j][g].clone());
+            if own.is_some() || rows().any(|r| is_beyond(&self.beyond, r)) {
+                let seen =
+                    |r: &usize| !is_beyond(&self.beyond, *r) && own.is_none_or(|own| !own.contains(*r));
+                return prediction.gain_on(design, j, rows().filter(seen));
+            }
+            let gain = |&g: &usize| match parts {
+                Some(parts) => parts.gain(&prediction.amplitude, j, g),
+                None => prediction.gain(design, j, g),
+            };
+            [held.iter().map(gain).sum(), left[j]]
+        };
+        Some((0..design.joints).map(of_joint).collect())
     }
 
     /// Squared residual of a joint in the recording that is diagnosed, in units of its variance.
@@ -193,20 +175,21 @@ impl Regression {
     ) -> Result<bool, SingularDesign> {
         let segments = self.design.segments.len();
         let trial = &candidate.trials[trial];
-        let curve = Curve::of(candidate, trial);
+        let curves: Vec<Curve> = self.curves().into_iter().chain(Curve::of(candidate, trial)).collect();
         let gain = |fit: &Fit, is_held: &dyn Fn(usize) -> bool| {
             let part = fit.project_out(trial)?;
             let (amplitude, _) = part.solve(candidate)?;
             let prediction = Prediction::new(fit, trial, &part, amplitude);
             let held = || (0..segments).filter(|&g| is_held(g));
+            let beyond: Vec<(usize, Beyond)> =
+                curves.iter().map(|c| (c.joint, Beyond::of(&self.design, c, &fit.train))).collect();
             let of_joint = |&j: &usize| {
-                let gone = match curve.as_ref().filter(|curve| curve.joint == j) {
-                    Some(curve) => {
-                        let beyond = Beyond::of(&self.design, curve, &fit.train);
-                        let rows = held().flat_map(|g| beyond.seen(self.design.ranges[j][g].clone()));
-                        prediction.gain_on(&self.design, curve, rows)[0]
-                    }
-                    None => held().map(|g| prediction.gain(&self.design, j, g)).sum(),
+                let gone = if beyond.iter().any(|(joint, _)| *joint == j) {
+                    let rows = held().flat_map(|g| self.design.ranges[j][g].clone());
+                    let seen = |r: &usize| !beyond.iter().any(|(_, beyond)| beyond.contains(*r));
+                    prediction.gain_on(&self.design, j, rows.filter(seen))[0]
+                } else {
+                    held().map(|g| prediction.gain(&self.design, j, g)).sum()
                 };
                 gone / (self.sigma[j] * self.sigma[j])
             };

@@ -1,9 +1,8 @@
 //! What a candidate that was fitted to some segments changes on others.
 
 use crate::diagnosis::candidates::candidate::Candidate;
-use crate::diagnosis::candidates::trial::Trial;
+use crate::diagnosis::candidates::trial::{Sparse, Trial};
 use crate::diagnosis::judging::folds::Fold;
-use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
@@ -70,11 +69,14 @@ impl<'a> Prediction<'a> {
         (residual, change)
     }
 
-    /// On some rows of a curve's joint: squares of the residual that are gone, and those of the residual without the trial.
-    pub fn gain_on(&self, design: &Design, curve: &Curve, rows: impl Iterator<Item = usize>) -> [f64; 2] {
-        let first = design.of_joint(curve.joint).start;
+    /// On some rows of a joint: squares of the residual that are gone, and those of the residual without the trial.
+    pub fn gain_on(&self, design: &Design, joint: usize, rows: impl Iterator<Item = usize>) -> [f64; 2] {
+        let first = design.of_joint(joint).start;
+        let on_joint = |c: &'a Sparse| c.iter().find(|(j, _)| *j == joint).map(|(_, v)| v.as_slice());
+        let law: Vec<Option<&[f64]>> = self.trial.columns.iter().map(on_joint).collect();
         rows.fold([0.0, 0.0], |[gone, squares], r| {
-            let (residual, change) = self.at(design, r, curve.columns.iter().map(|c| c[r - first]));
+            let values = law.iter().map(|c| c.map_or(0.0, |c| c[r - first]));
+            let (residual, change) = self.at(design, r, values);
             [gone + change * (2.0 * residual - change), squares + residual * residual]
         })
     }

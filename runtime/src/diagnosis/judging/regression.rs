@@ -3,6 +3,7 @@
 
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::{Fold, folds};
+use crate::diagnosis::judging::hull::{Beyond, Curve};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
@@ -38,6 +39,11 @@ pub(in crate::diagnosis) struct Regression {
     known: Option<Arc<Prior>>,
     /// Those of curves among them.
     curves: Vec<Range<usize>>,
+    /// Joint and columns of terms that say nothing of values that no motion has passed.
+    bounded: Vec<(usize, Range<usize>)>,
+    /// Whether such a term says nothing of a row where its motion is held out; empty where there is none. On a single motion
+    /// laws are judged beside terms that are fitted to all of it.
+    pub(super) beyond: Vec<bool>,
 }
 
 /// What is fitted or taken out beside the terms.
@@ -55,6 +61,8 @@ pub(in crate::diagnosis) struct TermColumns {
     pub fixed: Option<f64>,
     /// Whether it is a curve of many numbers.
     pub is_curve: bool,
+    /// The joint of a curve that says nothing of values that no motion has passed.
+    pub curve_on: Option<usize>,
 }
 
 impl Regression {
@@ -71,7 +79,7 @@ impl Regression {
         let folds = folds(&design, &fit.sigma)?;
         let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
         let sigma = fit.sigma.clone();
-        let held_out_squares = held_out_squares(&design, &fit, &folds);
+        let held_out_squares = held_out_squares(&design, &fit, &folds, &[]);
         let residual_products = residual_products(&design, &fit);
         let target_squares = target_squares(&design, &fit);
         let (known, curves) = (design.prior.clone(), design.shrunk.clone());
@@ -89,6 +97,8 @@ impl Regression {
             fixed_columns,
             known,
             curves,
+            bounded: Vec::new(),
+            beyond: Vec::new(),
         })
     }
 
@@ -108,6 +118,7 @@ impl Regression {
         self.design.y.iter_mut().zip(known).for_each(|(y, known)| *y -= known);
         self.design.shrunk.clone_from(&self.curves);
         self.term_columns.clear();
+        self.bounded.clear();
         self.gains = self.fixed_columns..self.fixed_columns + besides.gains.len();
         self.design.prior.clone_from(&self.known);
         if !besides.gains.is_empty() {
@@ -128,12 +139,14 @@ impl Regression {
             if term.is_curve {
                 self.design.shrunk.push(start..self.design.columns.len());
             }
+            self.bounded.extend(term.curve_on.map(|joint| (joint, start..self.design.columns.len())));
         }
         self.design.refresh_from(self.fixed_columns);
         self.fit = Fit::weighted(&self.design, &self.sigma)?;
         self.sigma.clone_from(&self.fit.sigma);
         self.folds = folds(&self.design, &self.sigma)?;
-        self.held_out_squares = held_out_squares(&self.design, &self.fit, &self.folds);
+        self.beyond = self.beyond_curves();
+        self.held_out_squares = held_out_squares(&self.design, &self.fit, &self.folds, &self.beyond);
         self.residual_products = residual_products(&self.design, &self.fit);
         self.target_squares = target_squares(&self.design, &self.fit);
         Ok(())
@@ -150,6 +163,34 @@ impl Regression {
         self.design.refresh();
     }
 
+    /// Terms that say nothing of values that no motion has passed.
+    pub fn curves(&self) -> Vec<Curve> {
+        let of_term = |(joint, columns): &(usize, Range<usize>)| {
+            let rows = self.design.of_joint(*joint);
+            let on_joint = |k: usize| self.design.columns[k][rows.clone()].to_vec();
+            Curve { joint: *joint, columns: columns.clone().map(on_joint).collect() }
+        };
+        self.bounded.iter().map(of_term).collect()
+    }
+
+    fn beyond_curves(&self) -> Vec<bool> {
+        if self.bounded.is_empty() || self.design.is_single_motion() {
+            return Vec::new();
+        }
+        let mut out = vec![false; self.design.rows.len()];
+        for curve in self.curves() {
+            for fold in &self.folds {
+                let beyond = Beyond::of(&self.design, &curve, &fold.fit.train);
+                for g in (0..fold.test.len()).filter(|&g| fold.test[g]) {
+                    for r in self.design.ranges[curve.joint][g].clone() {
+                        out[r] |= beyond.contains(r);
+                    }
+                }
+            }
+        }
+        out
+    }
+
     /// Number of columns that are always there: base parameters and nuisances.
     pub fn fixed_columns(&self) -> usize {
         self.fixed_columns
@@ -161,15 +202,28 @@ impl Regression {
     }
 }
 
-/// Squares that the fit of each fold leaves of the segments that it holds out, joint by joint; on a single motion those of
+/// Squares that the fit of each fold leaves of the segments that it holds out, without the rows `beyond`, joint by joint; on a single motion those of
 /// the fit to all of it, beside which laws are judged there.
-fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold]) -> Vec<Vec<f64>> {
+fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool]) -> Vec<Vec<f64>> {
     let of_fold = |fold: &Fold| {
         let fit = if design.is_single_motion() { whole } else { &fold.fit };
         let held: Vec<usize> = (0..fold.test.len()).filter(|&g| fold.test[g]).collect();
-        (0..design.joints).map(|j| held.iter().map(|&g| fit.squares(design, j, g)).sum()).collect()
+        let squares = |j: usize, g: usize| {
+            let rows = design.ranges[j][g].clone();
+            if rows.clone().any(|r| is_beyond(beyond, r)) {
+                rows.filter(|&r| !is_beyond(beyond, r)).map(|r| fit.residual_at(design, r).powi(2)).sum()
+            } else {
+                fit.squares(design, j, g)
+            }
+        };
+        (0..design.joints).map(|j| held.iter().map(|&g| squares(j, g)).sum()).collect()
     };
     folds.iter().map(of_fold).collect()
+}
+
+/// Whether a row is one that curves say nothing of; there may be none at all.
+pub(super) fn is_beyond(beyond: &[bool], row: usize) -> bool {
+    beyond.get(row).copied().unwrap_or(false)
 }
 
 fn residual_products(design: &Design, fit: &Fit) -> Vec<Vec<Vec<f64>>> {

@@ -7,7 +7,6 @@ use crate::diagnosis::candidates::nuisances::{
 };
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::rows::context::{Carried, Context};
 use crate::diagnosis::rows::design::Design;
@@ -156,17 +155,6 @@ impl<'a> ExtendedModel<'a> {
         Ok(copy)
     }
 
-    /// Curves among the terms, on the rows of a window: where they say nothing, motion is no evidence.
-    pub fn curves(&self, window: SmoothingWindow) -> Vec<Curve> {
-        let Regression { design, term_columns, .. } = self.regression(window);
-        let of_term = |(term, columns): (&Accepted, &Range<usize>)| {
-            let joint = *term.own.first().filter(|_| term.effect.form().holds_only_where_seen())?;
-            let on_joint = |k: usize| design.columns[k][design.of_joint(joint)].to_vec();
-            Some(Curve { joint, columns: columns.clone().map(on_joint).collect() })
-        };
-        self.terms.iter().zip(term_columns).filter_map(of_term).collect()
-    }
-
     /// The columns of a law on all rows of a design of the same motions, one per amplitude.
     pub fn columns_of(&self, design: &Design, term: &Accepted) -> Vec<Vec<f64>> {
         dense_columns(&self.context, design, term.effect, term.place, &term.shape, self.change)
@@ -213,6 +201,8 @@ fn put_terms(
     regression.set_terms(terms.len(), besides, |design, k| {
         let term = &terms[k];
         let columns = dense_columns(context, design, term.effect, term.place, &term.shape, change);
-        TermColumns { columns, fixed: term.fixed, is_curve: term.effect.form().is_curve() }
+        let form = term.effect.form();
+        let curve_on = term.own.first().copied().filter(|_| form.holds_only_where_seen());
+        TermColumns { columns, fixed: term.fixed, is_curve: form.is_curve(), curve_on }
     })
 }

@@ -126,7 +126,7 @@ impl Search<'_> {
 
     /// Whether term `k` alone explains nearly as much of a joint's held-out motion as it and the last term together.
     fn suffices(&mut self, k: usize, joint: usize) -> Result<bool, SingularDesign> {
-        let (terms, curves) = (self.model.terms.clone(), self.model.curves(SmoothingWindow::Slow));
+        let (terms, curves) = (self.model.terms.clone(), self.model.slow.curves());
         let mut left = |without: &[usize]| -> Result<f64, SingularDesign> {
             let keep = |i: &usize| !without.contains(i);
             self.model.terms = (0..terms.len()).filter(keep).map(|i| terms[i].clone()).collect();

@@ -146,7 +146,7 @@ impl Search<'_> {
                 self.model.refit()?;
                 continue;
             }
-            let curves = self.model.curves(self.model.terms[k].effect.properties().window);
+            let curves = self.model.regression(self.model.terms[k].effect.properties().window).curves();
             let with = held_out_error(&self.model, &self.model.terms[k], &curves)?;
             let term = self.model.terms.remove(k);
             self.model.refit()?;
