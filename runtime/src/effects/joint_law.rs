@@ -112,6 +112,11 @@ pub trait JointLaw: Sync {
     /// Whether only a positive amplitude is this effect: a negative one is something else.
     fn only_positive(&self) -> bool;
 
+    /// Whether with this shape it is one of many forms, which says more than that the torque follows a curve.
+    fn is_form_of_many(&self, _shape: &[f64]) -> bool {
+        false
+    }
+
     /// Whether it is a curve that says nothing of positions that no motion has passed; its shape is the middle of those that one
     /// has, and half of their range.
     fn holds_only_where_seen(&self) -> bool {

@@ -48,7 +48,7 @@ impl Search<'_> {
         let mut ties = Vec::new();
         let ranked = self.ranked(joint);
         let evidence_of_round = RoundEvidence::new(ranked.len());
-        let holding = self.of_user_first(&ranked, self.holding(&ranked, settings));
+        let holding = self.in_order(&ranked, self.holding(&ranked, settings));
         for &k in &holding {
             let (regression, candidate) = self.of(&ranked[k]);
             let verdict = &ranked[k].verdict;

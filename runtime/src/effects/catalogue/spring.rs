@@ -90,6 +90,11 @@ impl JointLaw for Spring {
         false
     }
 
+    /// A lever, and where it is at rest.
+    fn is_form_of_many(&self, shape: &[f64]) -> bool {
+        !shape.is_empty()
+    }
+
     /// Through a lever the force acts along the line from a point at distance 1 from the axis to a point at distance
     /// `ratio`: of the torque k·(1 - l0/l(q))·sin the part without l0 is gravity-like, so the columns are the part
     /// with l0 for a lever that starts along x and along y.
