@@ -72,6 +72,11 @@ impl Beyond {
         Self { first, rows: all.map(|r| is_beyond(row(r))).collect() }
     }
 
+    /// First row of the joint.
+    pub fn first(&self) -> usize {
+        self.first
+    }
+
     /// Whether a row is one of them; rows of other joints are not.
     pub fn contains(&self, row: usize) -> bool {
         row.checked_sub(self.first).and_then(|local| self.rows.get(local)).copied().unwrap_or(false)

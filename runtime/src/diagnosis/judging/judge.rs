@@ -8,7 +8,7 @@ use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::prediction::Prediction;
 use crate::diagnosis::judging::regression::{Regression, is_beyond};
 use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rules::{AIC_PENALTY, MOST_OF_WHAT_IS_OPEN};
+use crate::diagnosis::rules::{AIC_PENALTY, LOST, MOST_OF_WHAT_IS_OPEN};
 use nalgebra::DVector;
 
 /// The verdict on a candidate.
@@ -20,6 +20,8 @@ pub(in crate::diagnosis) struct Verdict {
     pub gain: f64,
     /// Held out, in units of the noise variance, one value per fold.
     pub held_out: Vec<f64>,
+    /// Folds that it makes worse, by more than the uncertainty of what was fitted elsewhere.
+    pub lost: usize,
     /// Joints that it shows on: its own, or another one where it explains more, through the parameters that joints share.
     pub shows_on: Vec<usize>,
     /// Held-out gain as a fraction of the held-out squares of these joints.
@@ -66,21 +68,26 @@ impl Regression {
         if best.gain <= 0.0 {
             return None;
         }
-        let mut held_out = Vec::new();
+        let (mut held_out, mut lost) = (Vec::new(), 0);
         let mut of_joint = vec![(0.0, 0.0); self.sigma.len()];
         let parts = self
             .design
             .is_single_motion()
             .then(|| self.by_segment(&best.part, &candidate.trials[best.trial]));
         for (fold, left) in self.folds.iter().zip(&self.held_out_squares) {
+            let (prediction, curve) = self.fitted(candidate, (&best, parts.as_ref()), fold)?;
             let mut sum = 0.0;
-            let on_fold = self.on_fold(candidate, (&best, parts.as_ref()), (fold, left))?;
-            for ((of_joint, s), [gone, left]) in of_joint.iter_mut().zip(&self.sigma).zip(on_fold) {
+            for (j, s) in self.sigma.iter().enumerate() {
+                let [gone, left] = self.on_joint(&prediction, (parts.as_ref(), &curve), (fold, left), j);
                 let w = 1.0 / (s * s);
                 sum += w * gone;
-                of_joint.0 += w * gone;
-                of_joint.1 += w * left;
+                of_joint[j].0 += w * gone;
+                of_joint[j].1 += w * left;
             }
+            let seen = (0..self.sigma.len()).flat_map(|j| self.seen(&curve, fold, j).map(move |r| (j, r)));
+            let allowed =
+                || if parts.is_some() { 0.0 } else { LOST * prediction.deviation(&self.design, seen) };
+            lost += usize::from(sum <= 0.0 && -sum >= allowed());
             held_out.push(sum);
         }
         let total = held_out.iter().sum::<f64>();
@@ -105,21 +112,21 @@ impl Regression {
             trial: best.trial,
             gain: best.gain,
             held_out,
+            lost,
             shows_on,
             explained_fraction,
             fitted_fraction,
         })
     }
 
-    /// What a candidate takes of the squares that a fold leaves of each joint, and these; on rows that the model's curves, and
-    /// the candidate where it is one, say something of.
-    fn on_fold(
-        &self,
-        candidate: &Candidate,
+    /// A candidate fitted to the motion that a fold does not hold out, and where it is a curve its joint and what it says nothing
+    /// of.
+    fn fitted<'a>(
+        &'a self,
+        candidate: &'a Candidate,
         (best, parts): (&Best, Option<&BySegment>),
-        (fold, left): (&Fold, &[f64]),
-    ) -> Option<Vec<[f64; 2]>> {
-        let design = &self.design;
+        fold: &'a Fold,
+    ) -> Option<(Prediction<'a>, Option<Beyond>)> {
         let prediction = match parts {
             Some(parts) => {
                 let amplitude = self.amplitude_from_rest_of_motion(candidate, (&best.part, parts), fold)?;
@@ -134,24 +141,45 @@ impl Regression {
                 Prediction::new(&fold.fit, &candidate.trials[own.trial], &own.part, own.amplitude)
             }
         };
-        let held: Vec<usize> = (0..fold.test.len()).filter(|&g| fold.test[g]).collect();
         let curve = Curve::of(candidate, prediction.trial);
-        let beyond = curve.map(|curve| (curve.joint, Beyond::of(design, &curve, &fold.fit.train)));
-        let of_joint = |j: usize| {
-            let own = beyond.as_ref().filter(|(joint, _)| *joint == j).map(|(_, beyond)| beyond);
-            let rows = || held.iter().flat_map(|&g| design.ranges[j][g].clone());
-            if own.is_some() || rows().any(|r| is_beyond(&self.beyond, r)) {
-                let seen =
-                    |r: &usize| !is_beyond(&self.beyond, *r) && own.is_none_or(|own| !own.contains(*r));
-                return prediction.gain_on(design, j, rows().filter(seen));
-            }
-            let gain = |&g: &usize| match parts {
-                Some(parts) => parts.gain(&prediction.amplitude, j, g),
-                None => prediction.gain(design, j, g),
-            };
-            [held.iter().map(gain).sum(), left[j]]
+        let beyond = curve.map(|curve| Beyond::of(&self.design, &curve, &fold.fit.train));
+        Some((prediction, beyond))
+    }
+
+    /// Rows of a joint that a fold holds out, and the model's curves and the candidate, where it is one, say something of.
+    fn seen<'a>(
+        &'a self,
+        curve: &'a Option<Beyond>,
+        fold: &'a Fold,
+        joint: usize,
+    ) -> impl Iterator<Item = usize> + 'a {
+        let held = (0..fold.test.len()).filter(|&g| fold.test[g]);
+        let seen = |r: &usize| {
+            !is_beyond(&self.beyond, *r) && curve.as_ref().is_none_or(|curve| !curve.contains(*r))
         };
-        Some((0..design.joints).map(of_joint).collect())
+        held.flat_map(move |g| self.design.ranges[joint][g].clone()).filter(seen)
+    }
+
+    /// What a candidate takes of the squares that a fold leaves of a joint, and these, on the rows that are seen.
+    fn on_joint(
+        &self,
+        prediction: &Prediction<'_>,
+        (parts, curve): (Option<&BySegment>, &Option<Beyond>),
+        (fold, left): (&Fold, &[f64]),
+        joint: usize,
+    ) -> [f64; 2] {
+        let held = || (0..fold.test.len()).filter(|&g| fold.test[g]);
+        let of_joint = |r: usize| self.design.of_joint(joint).contains(&r);
+        let is_curves = curve.as_ref().is_some_and(|curve| of_joint(curve.first()));
+        let mut rows = held().flat_map(|g| self.design.ranges[joint][g].clone());
+        if is_curves || rows.any(|r| is_beyond(&self.beyond, r)) {
+            return prediction.gain_on(&self.design, joint, self.seen(curve, fold, joint));
+        }
+        let gain = |g: usize| match parts {
+            Some(parts) => parts.gain(&prediction.amplitude, joint, g),
+            None => prediction.gain(&self.design, joint, g),
+        };
+        [held().map(gain).sum(), left[joint]]
     }
 
     /// Squared residual of a joint in the recording that is diagnosed, in units of its variance.

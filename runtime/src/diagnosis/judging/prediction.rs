@@ -69,6 +69,20 @@ impl<'a> Prediction<'a> {
         (residual, change)
     }
 
+    /// Standard deviation of what is gained on some rows, given with their joints, in units of the noise variance: the residual
+    /// that a change d meets there is noise, and the error of the parameters, which were fitted elsewhere.
+    pub fn deviation(&self, design: &Design, rows: impl Iterator<Item = (usize, usize)>) -> f64 {
+        let law: Vec<Vec<f64>> = self.trial.dense(design);
+        let (mut squares, mut with) = (0.0, DVector::zeros(design.columns.len()));
+        for (joint, r) in rows {
+            let weight = self.fit.sigma[joint].powi(-2);
+            let (_, change) = self.at(design, r, law.iter().map(|c| c[r]));
+            squares += weight * change * change;
+            with.iter_mut().zip(&design.columns).for_each(|(w, c)| *w += weight * change * c[r]);
+        }
+        2.0 * (squares + with.dot(&self.fit.solve(&with))).max(0.0).sqrt()
+    }
+
     /// On some rows of a joint: squares of the residual that are gone, and those of the residual without the trial.
     pub fn gain_on(&self, design: &Design, joint: usize, rows: impl Iterator<Item = usize>) -> [f64; 2] {
         let first = design.of_joint(joint).start;

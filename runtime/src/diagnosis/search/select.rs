@@ -285,7 +285,6 @@ impl Search<'_> {
 
 /// Whether a candidate explains enough, in nearly all folds, of what was fitted and of what was held out.
 fn holds(regression: &Regression, candidate: &Candidate, verdict: &Verdict, settings: &Settings) -> bool {
-    let positive = verdict.held_out.iter().filter(|g| **g > 0.0).count();
     let folds = verdict.held_out.len();
     let needed = if regression.design.short {
         // Its evidence is a test against correlated noise, not how many stretches agree.
@@ -299,5 +298,5 @@ fn holds(regression: &Regression, candidate: &Candidate, verdict: &Verdict, sett
     };
     verdict.explained_fraction >= settings.least_share
         && verdict.fitted_fraction >= FITTED_TO_HELD_OUT * settings.least_share
-        && positive >= needed
+        && folds - verdict.lost >= needed
 }
