@@ -9,6 +9,8 @@ pub(in crate::diagnosis) mod folds;
 pub(in crate::diagnosis) mod held_out;
 pub(in crate::diagnosis) mod hull;
 pub(in crate::diagnosis) mod judge;
+#[cfg(test)]
+mod judge_tests;
 pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod regression;
