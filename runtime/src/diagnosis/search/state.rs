@@ -187,7 +187,10 @@ impl<'a> Search<'a> {
         let same = |t: &Accepted| t.place == candidate.place && t.effect == candidate.effect;
         // Where the special case was enough, the general one would take its place by what is left of it.
         let simpler = |t: &Accepted| candidate.effect.special_cases().any(|s| s == t.effect);
-        if self.model.terms.iter().any(|t| t.place == candidate.place && simpler(t)) {
+        // What a special case has beside its general law is what that one leaves, and would take its place in turn.
+        let more_general = |t: &Accepted| t.effect.special_cases().any(|s| s == candidate.effect);
+        let related = |t: &Accepted| t.place == candidate.place && (simpler(t) || more_general(t));
+        if self.model.terms.iter().any(related) {
             return true;
         }
         !candidate.effect.properties().repeats && self.model.terms.iter().any(same)
