@@ -119,8 +119,8 @@ pub(super) const FORWARD_CUTS: [usize; 2] = [5, 6];
 /// Share of what held-out stretches leave open from which on a law need not hold forward in time: without it the parameters
 /// that are extrapolated are no model of the motion. Judgement.
 pub(super) const MOST_OF_WHAT_IS_OPEN: f64 = 0.75;
-/// Standard deviations of a gain from which on a loss is no accident of parameters that were fitted elsewhere. Statistics:
-/// one in forty of those that are.
+/// Standard deviations of a gain, by the error of parameters that were fitted elsewhere, from which on a loss is that of the
+/// law. Statistics: one in forty of losses by that error alone is larger.
 pub(super) const LOST: f64 = 2.0;
 /// Of the stretches of few motions, one in so many may lose: an effect may leave some of them untouched. Judgement.
 pub(super) const STRETCHES_PER_LOSS: usize = 4;

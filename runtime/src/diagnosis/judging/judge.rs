@@ -20,7 +20,7 @@ pub(in crate::diagnosis) struct Verdict {
     pub gain: f64,
     /// Held out, in units of the noise variance, one value per fold.
     pub held_out: Vec<f64>,
-    /// Folds that it makes worse, by more than the uncertainty of what was fitted elsewhere.
+    /// Folds that it makes worse, by more than the error of the parameters that were fitted elsewhere.
     pub lost: usize,
     /// Joints that it shows on: its own, or another one where it explains more, through the parameters that joints share.
     pub shows_on: Vec<usize>,
@@ -85,8 +85,13 @@ impl Regression {
                 of_joint[j].1 += w * left;
             }
             let seen = (0..self.sigma.len()).flat_map(|j| self.seen(&curve, fold, j).map(move |r| (j, r)));
-            let allowed =
-                || if parts.is_some() { 0.0 } else { LOST * prediction.deviation(&self.design, seen) };
+            let allowed = || {
+                if parts.is_some() {
+                    0.0
+                } else {
+                    LOST * prediction.deviation_by_parameters(&self.design, seen)
+                }
+            };
             lost += usize::from(sum <= 0.0 && -sum >= allowed());
             held_out.push(sum);
         }

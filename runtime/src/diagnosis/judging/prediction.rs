@@ -69,18 +69,21 @@ impl<'a> Prediction<'a> {
         (residual, change)
     }
 
-    /// Standard deviation of what is gained on some rows, given with their joints, in units of the noise variance: the residual
-    /// that a change d meets there is noise, and the error of the parameters, which were fitted elsewhere.
-    pub fn deviation(&self, design: &Design, rows: impl Iterator<Item = (usize, usize)>) -> f64 {
+    /// Standard deviation of what is gained on some rows, given with their joints, by the error of the parameters that were
+    /// fitted elsewhere and that the change meets in the residual; in units of the noise variance.
+    pub fn deviation_by_parameters(
+        &self,
+        design: &Design,
+        rows: impl Iterator<Item = (usize, usize)>,
+    ) -> f64 {
         let law: Vec<Vec<f64>> = self.trial.dense(design);
-        let (mut squares, mut with) = (0.0, DVector::zeros(design.columns.len()));
+        let mut with = DVector::zeros(design.columns.len());
         for (joint, r) in rows {
             let weight = self.fit.sigma[joint].powi(-2);
             let (_, change) = self.at(design, r, law.iter().map(|c| c[r]));
-            squares += weight * change * change;
             with.iter_mut().zip(&design.columns).for_each(|(w, c)| *w += weight * change * c[r]);
         }
-        2.0 * (squares + with.dot(&self.fit.solve(&with))).max(0.0).sqrt()
+        2.0 * with.dot(&self.fit.solve(&with)).max(0.0).sqrt()
     }
 
     /// On some rows of a joint: squares of the residual that are gone, and those of the residual without the trial.
