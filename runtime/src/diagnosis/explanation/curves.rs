@@ -155,37 +155,45 @@ pub(in crate::diagnosis) fn mismatch(
         shares.push((standard.held_slow.left[j] / (floor * floor).max(1e-300) - rows as f64).max(0.0));
     }
     let all: f64 = shares.iter().sum::<f64>().max(1e-300);
-    for j in 0..design.joints {
-        let rows: Vec<usize> = design.of_joint(j).collect();
-        let residual: Vec<f64> = rows.iter().map(|&r| standard.residual_slow[r]).collect();
-        let over = |f: &dyn Fn(&Signals, &RowAt) -> f64| -> f64 {
-            let values =
-                rows.iter().map(|&r| f(&context.signals[design.rows[r].signal], &design.rows[r])).collect();
-            explained(values, &residual)
-        };
-        let candidates = [
-            ("changes with the speed", over(&|s, r| s.dq[j][r.centre])),
-            ("changes with the position", over(&|s, r| s.q[j][r.centre])),
-            ("changes with the acceleration", over(&|s, r| s.ddq[j][r.centre])),
-            ("changes with time", over(&|s, r| s.time(r.centre))),
-            (
-                "has the sign of the speed and grows with the load torque",
-                over(&|s, r| context.torques[r.signal].rigid[j][r.centre] * s.dq[j][r.centre].signum()),
-            ),
-        ];
-        let best = candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-        let share = shares[j] / all;
-        let where_ = match best {
-            Some((words, e)) if *e > ORDERED_BY_VARIABLE && share > LEAST_MISMATCH => {
-                format!("while moving; {words} ({:.0} % of it)", 100.0 * e.min(1.0))
-            }
-            _ if share > LEAST_MISMATCH => "while moving; no single variable orders it".into(),
-            _ => "nothing beyond the noise".into(),
+    for (j, share) in shares.iter().enumerate() {
+        let share = share / all;
+        let where_ = if share > LEAST_MISMATCH {
+            ordered_by(model, j, &standard.residual_slow)
+        } else {
+            "nothing beyond the noise".into()
         };
         list.push(Mismatch { joint: robot.joint_number(JointIndex(j)).0, share, where_ });
     }
     list.sort_by(|a, b| b.share.total_cmp(&a.share));
     list
+}
+
+/// Which variable orders a residual of the slow rows on a joint, in words.
+fn ordered_by(model: &ExtendedModel<'_>, j: usize, residual: &[f64]) -> String {
+    let (design, context) = (&model.slow.design, &model.context);
+    let rows: Vec<usize> = design.of_joint(j).collect();
+    let residual: Vec<f64> = rows.iter().map(|&r| residual[r]).collect();
+    let over = |f: &dyn Fn(&Signals, &RowAt) -> f64| -> f64 {
+        let values =
+            rows.iter().map(|&r| f(&context.signals[design.rows[r].signal], &design.rows[r])).collect();
+        explained(values, &residual)
+    };
+    let candidates = [
+        ("changes with the speed", over(&|s, r| s.dq[j][r.centre])),
+        ("changes with the position", over(&|s, r| s.q[j][r.centre])),
+        ("changes with the acceleration", over(&|s, r| s.ddq[j][r.centre])),
+        ("changes with time", over(&|s, r| s.time(r.centre))),
+        (
+            "has the sign of the speed and grows with the load torque",
+            over(&|s, r| context.torques[r.signal].rigid[j][r.centre] * s.dq[j][r.centre].signum()),
+        ),
+    ];
+    match candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((words, e)) if *e > ORDERED_BY_VARIABLE => {
+            format!("while moving; {words} ({:.0} % of it)", 100.0 * e.min(1.0))
+        }
+        _ => "while moving; no single variable orders it".into(),
+    }
 }
 
 /// Standard deviation of what changes from row to row: noise, whatever slow effects remain. Rows of a Hann window
@@ -221,14 +229,14 @@ pub(in crate::diagnosis) fn unexplained(model: &ExtendedModel<'_>) -> Unexplaine
     let design = &model.slow.design;
     let residual = model.slow.fit.residual(design);
     let mut out = Unexplained::default();
-    let (mut open, mut all) = (0.0, 0.0);
+    let (mut open, mut all) = (Vec::new(), 0.0);
     for j in 0..design.joints {
         let floor = noise_floor(design, &model.slow.fit, j);
         let squares: f64 = design.of_joint(j).map(|r| residual[r] * residual[r]).sum();
         let noise = floor * floor * design.of_joint(j).len() as f64;
         let share = (1.0 - noise / squares.max(1e-300)).max(0.0);
         out.per_joint.push(share);
-        open += share * squares / (floor * floor).max(1e-300);
+        open.push(share * squares / (floor * floor).max(1e-300));
         all += squares / (floor * floor).max(1e-300);
         let rows = design
             .of_joint(j)
@@ -241,7 +249,15 @@ pub(in crate::diagnosis) fn unexplained(model: &ExtendedModel<'_>) -> Unexplaine
         curve.unit = model.context.scales[j].kind.torque_unit().into();
         out.curves.push(curve);
     }
-    out.share = open / f64::max(all, 1e-300);
+    let left: f64 = open.iter().sum();
+    out.share = left / f64::max(all, 1e-300);
+    let joint = |(j, open): (usize, &f64)| Mismatch {
+        joint: model.context.model.robot().joint_number(JointIndex(j)).0,
+        share: open / left.max(1e-300),
+        where_: ordered_by(model, j, &residual),
+    };
+    let most = open.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|_| left > 0.0);
+    out.most = most.map(joint);
     out
 }
 

@@ -1,6 +1,6 @@
 //! Sentences for a person.
 
-use crate::diagnosis::outcome::{Diagnosis, Finding, NotJudged};
+use crate::diagnosis::outcome::{Diagnosis, Finding, Mismatch, NotJudged};
 use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rules;
 use crate::effects::{EffectKind, FreeLaw, Parameter, Place, Quantities, UserLaw};
@@ -196,16 +196,19 @@ pub(in crate::diagnosis) fn of_reference(reference: &Reference, alone: bool) -> 
 
 /// Where what is missing lies, where nothing names it.
 fn something_missing(d: &Diagnosis) -> String {
-    let Some(most) = d.mismatch.first() else {
-        return "Something is missing that cannot be named".to_owned();
-    };
+    format!("Something is missing that cannot be named{}", most_of_it(d.mismatch.first()))
+}
+
+/// On which joint most of something is, and what orders it there.
+fn most_of_it(most: Option<&Mismatch>) -> String {
+    let Some(most) = most else { return String::new() };
     let how = most.where_.trim_start_matches("while moving; ");
     let how = if how.starts_with("changes") || how.starts_with("has") {
         format!("it {how}")
     } else {
         how.to_owned()
     };
-    format!("Something is missing that cannot be named, most of it on joint {}: {how}", most.joint)
+    format!(", most of it on joint {}: {how}", most.joint)
 }
 
 /// The joint on which most is gained, where all joints together, of which others have the larger torques, hardly show it.
@@ -260,8 +263,10 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
     }
     if unexplained {
         lines.push(format!(
-            "{:.0} % of what remains is not noise: something is left that nothing in the catalogue explains.",
-            100.0 * d.unexplained.share
+            "{:.0} % of what remains is not noise: something is left that nothing in the catalogue explains{}.",
+            100.0 * d.unexplained.share,
+            // Without a finding the first line has said it.
+            most_of_it(d.unexplained.most.as_ref().filter(|_| !d.findings.is_empty()))
         ));
     }
     lines

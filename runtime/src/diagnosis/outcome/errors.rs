@@ -64,4 +64,7 @@ pub struct Unexplained {
     pub per_joint: Vec<f64>,
     /// Remaining residual of each joint over its speed.
     pub curves: Vec<Curve>,
+    /// The joint on which most of it is, the share that it has, and what orders it there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most: Option<Mismatch>,
 }
