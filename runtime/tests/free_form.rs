@@ -97,13 +97,12 @@ fn friction_that_depends_on_the_angle_of_another_joint_names_both_variables() {
 #[test]
 fn a_cable_over_two_joints_is_told_on_both_with_the_other_ones_angle() {
     let diagnosis = diagnosed(&planar(), &Hidden::in_recording(cable));
-    // On the first joint, that pulls on itself as a spring does, and on the other as nothing of the catalogue.
-    let spring = diagnosis.findings.iter().find(|f| f.effect == "spring").unwrap();
-    assert_eq!(spring.joints, [1]);
-    assert!((spring.parameters["k"].value - 2.0).abs() < 0.2, "{:?}", spring.parameters);
-    over(&diagnosis, 1, &["q2"]);
-    over(&diagnosis, 2, &["q1", "q2"]);
-    assert_eq!(diagnosis.findings.len(), 3);
+    // Neither as a spring over one of them with something over the other beside it.
+    for joint in [1, 2] {
+        let found = over(&diagnosis, joint, &["q1", "q2"]);
+        assert!(found.held_out_after < 0.05 * found.held_out_before, "{}", found.sentence);
+    }
+    assert_eq!(diagnosis.findings.len(), 2);
 }
 
 #[test]
