@@ -153,11 +153,7 @@ impl Trial {
         let old = std::mem::take(&mut self.products);
         self.products = (0..design.joints)
             .map(|j| {
-                let mine: Vec<Option<&[f64]>> = self
-                    .columns
-                    .iter()
-                    .map(|c| c.iter().find(|(i, _)| *i == j).map(|(_, v)| v.as_slice()))
-                    .collect();
+                let mine = on_joint(&self.columns, j);
                 if mine.iter().all(Option::is_none) {
                     return Vec::new();
                 }
@@ -187,10 +183,20 @@ impl Trial {
             .collect();
     }
 
+    /// Values of each column on the rows of a joint; `None` where it does not act there.
+    pub fn on_joint(&self, joint: usize) -> Vec<Option<&[f64]>> {
+        on_joint(&self.columns, joint)
+    }
+
     /// The trial's columns on all rows of the design.
     pub fn dense(&self, design: &Design) -> Vec<Vec<f64>> {
         self.columns.iter().map(|column| dense(design, column)).collect()
     }
+}
+
+fn on_joint(columns: &[Sparse], joint: usize) -> Vec<Option<&[f64]>> {
+    let of = |c: &'_ Sparse| c.iter().position(|(j, _)| *j == joint);
+    columns.iter().map(|c| of(c).map(|k| c[k].1.as_slice())).collect()
 }
 
 fn dot_or_zero(a: &[f64], b: &[f64]) -> f64 {

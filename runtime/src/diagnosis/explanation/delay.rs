@@ -89,10 +89,7 @@ pub(in crate::diagnosis) fn unaware(
     skew: f64,
 ) -> Result<HeldOutSquares, DiagnosisError> {
     let seen = model.fast.curves();
-    let mut standard = model.clone();
-    standard.terms.clear();
-    standard.refit()?;
-    let fast = &standard.fast;
+    let fast = &model.standard()?.fast;
     Ok(HeldOutSquares::of(&with_skew(fast, skew), &fast.sigma, model.change, &seen)?)
 }
 

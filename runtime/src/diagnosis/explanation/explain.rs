@@ -134,13 +134,14 @@ fn found(
     } else {
         (SmoothingWindow::Fast, &ended.standard.held, ended.sampling.band)
     };
-    let (regression, curves) = (model.regression(window), model.regression(window).curves());
+    let regression = model.regression(window);
+    let curves = regression.curves();
     let held = regression.held_out(false, &curves)?;
     findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
     // Both are told of the same rows.
     let standard_where_seen = match curves.is_empty() {
         true => None,
-        false => Some(standard_where_seen(model, window, &curves)?),
+        false => Some(model.standard()?.regression(window).held_out(model.change, &curves)?),
     };
     let standard = standard_where_seen.as_ref().unwrap_or(standard);
     let before = before(model, ended, (standard, named_skew))?;
@@ -157,18 +158,6 @@ fn found(
         by_motion: by_motion(model, &regression.design, [standard, held]),
     };
     Ok((findings, held_out))
-}
-
-/// Errors of the standard model where the curves of a model say something.
-fn standard_where_seen(
-    model: &ExtendedModel<'_>,
-    window: SmoothingWindow,
-    curves: &[Curve],
-) -> Result<HeldOutSquares, DiagnosisError> {
-    let mut standard = model.clone();
-    standard.terms.clear();
-    standard.refit()?;
-    Ok(standard.regression(window).held_out(model.change, curves)?)
 }
 
 /// What was there before, and how all that the model has varies together.

@@ -52,7 +52,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Resu
     let deviations = uncertainty(model, k, &amplitude)?;
     let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
     let reduced = model.without(k)?;
-    let seen = model.regression(window).curves();
+    let seen = regression.curves();
     let after = regression.held_out(false, &seen)?.error_on(&accepted.shows_on);
     let before = reduced.regression(window).held_out(false, &seen)?.error_on(&accepted.shows_on);
     let mut finding = Finding {

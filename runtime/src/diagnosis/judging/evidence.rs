@@ -33,7 +33,8 @@ impl Regression {
     /// compared block by block, on rows that both say something of.
     pub fn difference_p_value(&self, law: Law<'_>, rival: Law<'_>) -> f64 {
         let per_block = self.rows_per_block(&law.0.own);
-        let curves = [law, rival].map(|(candidate, trial)| Curve::of(candidate, &candidate.trials[trial]));
+        let curve = |(candidate, trial): Law<'_>| Curve::of(candidate, &candidate.trials[trial]);
+        let curves: Vec<Curve> = [law, rival].into_iter().filter_map(curve).collect();
         let blocks = |law| self.blocks(law, &curves, per_block);
         let (Some(law), Some(rival)) = (blocks(law), blocks(rival)) else { return 0.0 };
         let ahead: Vec<f64> =
@@ -45,7 +46,7 @@ impl Regression {
     fn blocks(
         &self,
         (candidate, trial): Law<'_>,
-        curves: &[Option<Curve>],
+        curves: &[Curve],
         per_block: usize,
     ) -> Option<BTreeMap<(usize, usize), Block>> {
         let trial = &candidate.trials[trial];
@@ -61,10 +62,9 @@ impl Regression {
                 }
                 None => self.predict_from_others(candidate, trial, fold)?,
             };
-            let beyond: Vec<Beyond> =
-                curves.iter().flatten().map(|curve| Beyond::of(design, curve, &fold.fit.train)).collect();
+            let beyond = Beyond::each(design, curves, &fold.fit.train);
             for (j, &s) in self.sigma.iter().enumerate() {
-                for g in (0..design.segments.len()).filter(|&g| fold.test[g]) {
+                for g in fold.held() {
                     let seen = |r: &usize| {
                         !is_beyond(&self.beyond, *r) && !beyond.iter().any(|beyond| beyond.contains(*r))
                     };

@@ -14,6 +14,13 @@ pub(in crate::diagnosis) struct Fold {
     pub fit: Fit,
 }
 
+impl Fold {
+    /// Segments that are held out.
+    pub fn held(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.test.len()).filter(|&g| self.test[g])
+    }
+}
+
 /// Every segment of the recording that is diagnosed held out once: a whole motion, or a stretch of one.
 ///
 /// # Errors

@@ -36,28 +36,29 @@ impl HeldOutSquares {
     ) -> Result<Self, SingularDesign> {
         let n = design.joints;
         let mut out = Self { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
+        // A curve that is a change says nothing where only the baseline is fitted: its rows are those that it is judged
+        // on.
+        let judged = if from_baseline && !curves.is_empty() { splits(design, false) } else { Vec::new() };
         for (train, test) in splits(design, from_baseline) {
-            // A curve that is a change says nothing where only the baseline is fitted: its rows are those that it is judged on.
-            let beyond = (!from_baseline).then(|| beyond(design, curves, &train));
+            let beyond = if from_baseline { Vec::new() } else { Beyond::each(design, curves, &train) };
             let fit = Fit::new(design, sigma, train)?;
             for g in test {
-                let of_segment = || {
-                    let (train, _) = splits(design, false).into_iter().find(|(_, test)| test.contains(&g))?;
-                    Some(self::beyond(design, curves, &train))
-                };
-                let beyond = beyond.clone().or_else(of_segment).unwrap_or_default();
-                out.add(design, &fit, g, &beyond);
+                let own = judged.iter().find(|(_, test)| test.contains(&g));
+                match own.map(|(train, _)| Beyond::each(design, curves, train)) {
+                    Some(own) => out.add(design, &fit, g, &own),
+                    None => out.add(design, &fit, g, &beyond),
+                }
             }
         }
         Ok(out)
     }
 
-    fn add(&mut self, design: &Design, fit: &Fit, segment: usize, beyond: &[(usize, Beyond)]) {
+    fn add(&mut self, design: &Design, fit: &Fit, segment: usize, beyond: &[Beyond]) {
         let (mut left, mut whole) = (0.0, 0.0);
         for j in 0..design.joints {
             // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
-            let (squares, torque) = if beyond.iter().any(|(joint, _)| *joint == j) {
-                let seen = |r: &usize| !beyond.iter().any(|(_, beyond)| beyond.contains(*r));
+            let (squares, torque) = if beyond.iter().any(|beyond| beyond.joint == j) {
+                let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
                 let rows = || design.ranges[j][segment].clone().filter(seen);
                 let squares = rows().map(|r| fit.residual_at(design, r).powi(2)).sum();
                 (squares, rows().map(|r| design.torque(r).powi(2)).sum())
@@ -92,11 +93,6 @@ impl Regression {
     pub fn held_out(&self, from_baseline: bool, curves: &[Curve]) -> Result<HeldOutSquares, SingularDesign> {
         HeldOutSquares::of(&self.design, &self.sigma, from_baseline, curves)
     }
-}
-
-/// Rows that curves say nothing of where these segments are fitted, with the joint of each.
-fn beyond(design: &Design, curves: &[Curve], train: &[bool]) -> Vec<(usize, Beyond)> {
-    curves.iter().map(|curve| (curve.joint, Beyond::of(design, curve, train))).collect()
 }
 
 fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {

@@ -1,12 +1,12 @@
 //! Where a curve that was fitted to some motion says something: within the hull of its regressors (Cook 1979; Brooks,
 //! Carroll and Verdini 1988).
 //!
-//! A curve knows nothing of values that the fitted motion has not passed. A row whose leverage in the regression of the curve
-//! and an offset is larger than that of every fitted row lies beyond these values, whatever the curve's variables are; it is
-//! no evidence for the curve, and none against it.
+//! A curve knows nothing of values that the fitted motion has not passed. A row whose leverage in the regression of the
+//! curve and an offset is larger than that of every fitted row lies beyond these values, whatever the curve's variables
+//! are; it is no evidence for the curve, and none against it.
 
 use crate::diagnosis::candidates::candidate::Candidate;
-use crate::diagnosis::candidates::trial::{Sparse, Trial};
+use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::judging::white_products::factored;
 use crate::diagnosis::rows::design::Design;
 use nalgebra::{DMatrix, DVector};
@@ -25,14 +25,15 @@ impl Curve {
             return None;
         }
         let joint = *candidate.own.first()?;
-        let on_joint = |column: &Sparse| column.iter().find(|(j, _)| *j == joint).map(|(_, v)| v.clone());
-        Some(Self { joint, columns: trial.columns.iter().map(on_joint).collect::<Option<_>>()? })
+        let on_joint = trial.on_joint(joint).into_iter().map(|column| column.map(<[f64]>::to_vec));
+        Some(Self { joint, columns: on_joint.collect::<Option<_>>()? })
     }
 }
 
 /// Rows of one joint that a fit says nothing about.
 #[derive(Clone)]
 pub(in crate::diagnosis) struct Beyond {
+    pub joint: usize,
     first: usize,
     /// One per row of the joint.
     rows: Vec<bool>,
@@ -43,7 +44,7 @@ impl Beyond {
     /// the fitted ones.
     pub fn of(design: &Design, curve: &Curve, train: &[bool]) -> Self {
         let all = design.of_joint(curve.joint);
-        let first = all.start;
+        let (joint, first) = (curve.joint, all.start);
         let row = |r: usize| {
             let local = r - first;
             DVector::from_iterator(
@@ -54,12 +55,12 @@ impl Beyond {
         let acts = |r: &usize| curve.columns.iter().any(|c| c[*r - first] != 0.0);
         let segments = (0..train.len()).filter(|&g| train[g]);
         let trained: Vec<DVector<f64>> =
-            segments.flat_map(|g| design.ranges[curve.joint][g].clone()).filter(acts).map(row).collect();
+            segments.flat_map(|g| design.ranges[joint][g].clone()).filter(acts).map(row).collect();
         let width = curve.columns.len() + 1;
         let mut gram = DMatrix::zeros(width, width);
         trained.iter().for_each(|z| gram.ger(1.0, z, z, 1.0));
         let Some((factor, scale)) = factored(&gram) else {
-            return Self { first, rows: vec![true; all.len()] };
+            return Self { joint, first, rows: vec![true; all.len()] };
         };
         // A column that is zero on all fitted rows has no scale; a row on which it is not lies beyond them.
         let unseen = |z: &DVector<f64>| (0..width).any(|k| scale[k] == 0.0 && z[k] != 0.0);
@@ -69,12 +70,12 @@ impl Beyond {
         };
         let largest = trained.iter().map(leverage).fold(0.0, f64::max);
         let is_beyond = |z: DVector<f64>| unseen(&z) || leverage(&z) > largest;
-        Self { first, rows: all.map(|r| is_beyond(row(r))).collect() }
+        Self { joint, first, rows: all.map(|r| is_beyond(row(r))).collect() }
     }
 
-    /// First row of the joint.
-    pub fn first(&self) -> usize {
-        self.first
+    /// Those of several curves.
+    pub fn each(design: &Design, curves: &[Curve], train: &[bool]) -> Vec<Self> {
+        curves.iter().map(|curve| Self::of(design, curve, train)).collect()
     }
 
     /// Whether a row is one of them; rows of other joints are not.

@@ -84,15 +84,13 @@ impl Regression {
                 of_joint[j].0 += w * gone;
                 of_joint[j].1 += w * left;
             }
-            let seen = (0..self.sigma.len()).flat_map(|j| self.seen(&curve, fold, j).map(move |r| (j, r)));
-            let allowed = || {
-                if parts.is_some() {
-                    0.0
-                } else {
-                    LOST * prediction.deviation_by_parameters(&self.design, seen)
-                }
+            // On a single motion nothing but the law is fitted elsewhere.
+            let by_parameters = || {
+                let seen = |j| self.seen(&curve, fold, j).map(move |r| (j, r));
+                let rows = (0..self.sigma.len()).flat_map(seen);
+                if parts.is_some() { 0.0 } else { prediction.deviation_by_parameters(&self.design, rows) }
             };
-            lost += usize::from(sum <= 0.0 && -sum >= allowed());
+            lost += usize::from(sum <= 0.0 && -sum >= LOST * by_parameters());
             held_out.push(sum);
         }
         let total = held_out.iter().sum::<f64>();
@@ -124,8 +122,7 @@ impl Regression {
         })
     }
 
-    /// A candidate fitted to the motion that a fold does not hold out, and where it is a curve its joint and what it says nothing
-    /// of.
+    /// A candidate fitted to the motion that a fold does not hold out, and where it is a curve what it says nothing of.
     fn fitted<'a>(
         &'a self,
         candidate: &'a Candidate,
@@ -158,11 +155,10 @@ impl Regression {
         fold: &'a Fold,
         joint: usize,
     ) -> impl Iterator<Item = usize> + 'a {
-        let held = (0..fold.test.len()).filter(|&g| fold.test[g]);
         let seen = |r: &usize| {
             !is_beyond(&self.beyond, *r) && curve.as_ref().is_none_or(|curve| !curve.contains(*r))
         };
-        held.flat_map(move |g| self.design.ranges[joint][g].clone()).filter(seen)
+        fold.held().flat_map(move |g| self.design.ranges[joint][g].clone()).filter(seen)
     }
 
     /// What a candidate takes of the squares that a fold leaves of a joint, and these, on the rows that are seen.
@@ -173,10 +169,8 @@ impl Regression {
         (fold, left): (&Fold, &[f64]),
         joint: usize,
     ) -> [f64; 2] {
-        let held = || (0..fold.test.len()).filter(|&g| fold.test[g]);
-        let of_joint = |r: usize| self.design.of_joint(joint).contains(&r);
-        let is_curves = curve.as_ref().is_some_and(|curve| of_joint(curve.first()));
-        let mut rows = held().flat_map(|g| self.design.ranges[joint][g].clone());
+        let is_curves = curve.as_ref().is_some_and(|curve| curve.joint == joint);
+        let mut rows = fold.held().flat_map(|g| self.design.ranges[joint][g].clone());
         if is_curves || rows.any(|r| is_beyond(&self.beyond, r)) {
             return prediction.gain_on(&self.design, joint, self.seen(curve, fold, joint));
         }
@@ -184,7 +178,7 @@ impl Regression {
             Some(parts) => parts.gain(&prediction.amplitude, joint, g),
             None => prediction.gain(&self.design, joint, g),
         };
-        [held().map(gain).sum(), left[joint]]
+        [fold.held().map(gain).sum(), left[joint]]
     }
 
     /// Squared residual of a joint in the recording that is diagnosed, in units of its variance.
@@ -214,12 +208,11 @@ impl Regression {
             let (amplitude, _) = part.solve(candidate)?;
             let prediction = Prediction::new(fit, trial, &part, amplitude);
             let held = || (0..segments).filter(|&g| is_held(g));
-            let beyond: Vec<(usize, Beyond)> =
-                curves.iter().map(|c| (c.joint, Beyond::of(&self.design, c, &fit.train))).collect();
+            let beyond = Beyond::each(&self.design, &curves, &fit.train);
             let of_joint = |&j: &usize| {
-                let gone = if beyond.iter().any(|(joint, _)| *joint == j) {
+                let gone = if beyond.iter().any(|beyond| beyond.joint == j) {
                     let rows = held().flat_map(|g| self.design.ranges[j][g].clone());
-                    let seen = |r: &usize| !beyond.iter().any(|(_, beyond)| beyond.contains(*r));
+                    let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
                     prediction.gain_on(&self.design, j, rows.filter(seen))[0]
                 } else {
                     held().map(|g| prediction.gain(&self.design, j, g)).sum()

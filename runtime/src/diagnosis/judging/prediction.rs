@@ -1,7 +1,7 @@
 //! What a candidate that was fitted to some segments changes on others.
 
 use crate::diagnosis::candidates::candidate::Candidate;
-use crate::diagnosis::candidates::trial::{Sparse, Trial};
+use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::judging::folds::Fold;
 use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::regression::Regression;
@@ -57,16 +57,14 @@ impl<'a> Prediction<'a> {
         2.0 * linear - square
     }
 
-    /// At one row, given the values of the trial's columns there: the residual of the fit without the trial, and what the trial
-    /// changes.
+    /// At one row, given the values of the trial's columns there: the residual of the fit without the trial, and what the
+    /// trial changes.
     pub fn at(&self, design: &Design, row: usize, law: impl Iterator<Item = f64>) -> (f64, f64) {
-        let mut residual = design.y[row];
         let mut change: f64 = law.zip(self.amplitude.iter()).map(|(c, a)| a * c).sum();
         for (k, column) in design.columns.iter().enumerate() {
-            residual -= column[row] * self.fit.chi[k];
             change += column[row] * self.shift[k];
         }
-        (residual, change)
+        (self.fit.residual_at(design, row), change)
     }
 
     /// Standard deviation of what is gained on some rows, given with their joints, by the error of the parameters that were
@@ -89,8 +87,7 @@ impl<'a> Prediction<'a> {
     /// On some rows of a joint: squares of the residual that are gone, and those of the residual without the trial.
     pub fn gain_on(&self, design: &Design, joint: usize, rows: impl Iterator<Item = usize>) -> [f64; 2] {
         let first = design.of_joint(joint).start;
-        let on_joint = |c: &'a Sparse| c.iter().find(|(j, _)| *j == joint).map(|(_, v)| v.as_slice());
-        let law: Vec<Option<&[f64]>> = self.trial.columns.iter().map(on_joint).collect();
+        let law = self.trial.on_joint(joint);
         rows.fold([0.0, 0.0], |[gone, squares], r| {
             let values = law.iter().map(|c| c.map_or(0.0, |c| c[r - first]));
             let (residual, change) = self.at(design, r, values);

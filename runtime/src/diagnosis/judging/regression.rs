@@ -181,7 +181,7 @@ impl Regression {
         for curve in self.curves() {
             for fold in &self.folds {
                 let beyond = Beyond::of(&self.design, &curve, &fold.fit.train);
-                for g in (0..fold.test.len()).filter(|&g| fold.test[g]) {
+                for g in fold.held() {
                     for r in self.design.ranges[curve.joint][g].clone() {
                         out[r] |= beyond.contains(r);
                     }
@@ -202,12 +202,11 @@ impl Regression {
     }
 }
 
-/// Squares that the fit of each fold leaves of the segments that it holds out, without the rows `beyond`, joint by joint; on a single motion those of
-/// the fit to all of it, beside which laws are judged there.
+/// Squares that the fit of each fold leaves of the segments that it holds out, without the rows `beyond`, joint by joint;
+/// on a single motion those of the fit to all of it, beside which laws are judged there.
 fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool]) -> Vec<Vec<f64>> {
     let of_fold = |fold: &Fold| {
         let fit = if design.is_single_motion() { whole } else { &fold.fit };
-        let held: Vec<usize> = (0..fold.test.len()).filter(|&g| fold.test[g]).collect();
         let squares = |j: usize, g: usize| {
             let rows = design.ranges[j][g].clone();
             if rows.clone().any(|r| is_beyond(beyond, r)) {
@@ -216,7 +215,7 @@ fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool
                 fit.squares(design, j, g)
             }
         };
-        (0..design.joints).map(|j| held.iter().map(|&g| squares(j, g)).sum()).collect()
+        (0..design.joints).map(|j| fold.held().map(|g| squares(j, g)).sum()).collect()
     };
     folds.iter().map(of_fold).collect()
 }

@@ -157,8 +157,7 @@ impl Fit {
 
     /// Residual of one row.
     pub fn residual_at(&self, design: &Design, row: usize) -> f64 {
-        let fitted = design.columns.iter().zip(self.chi.iter()).map(|(c, x)| c[row] * x);
-        design.y[row] - fitted.sum::<f64>()
+        design.columns.iter().zip(self.chi.iter()).fold(design.y[row], |left, (c, x)| left - c[row] * x)
     }
 
     /// Squares, in units of the residual variance, that only these columns explain: Wald's statistic. Nothing where they

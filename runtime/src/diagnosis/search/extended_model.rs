@@ -128,6 +128,17 @@ impl<'a> ExtendedModel<'a> {
         self.context.carried_before().into_iter().chain(found).collect()
     }
 
+    /// A copy without any term: the standard model.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn standard(&self) -> Result<Self, SingularDesign> {
+        let mut copy = self.clone();
+        copy.terms.clear();
+        copy.refit()?;
+        Ok(copy)
+    }
+
     /// A copy without one of the terms, everything else refitted.
     ///
     /// # Errors

@@ -8,8 +8,8 @@ use crate::effects::Form;
 
 impl Search<'_> {
     /// The candidates that hold, in the order in which they are considered: those that gain most first, but
-    /// - a law that the user wrote down before those of the catalogue that cannot be told from it: who wrote it has a reason to
-    ///   that no motion shows;
+    /// - a law that the user wrote down before those of the catalogue that cannot be told from it: who wrote it has a
+    ///   reason to that no motion shows;
     /// - a curve before one of many forms of its special case: a balancer with its lever says more than that the torque
     ///   follows a curve, and must show it.
     pub(super) fn in_order(&self, ranked: &[Ranked], mut holding: Vec<usize>) -> Vec<usize> {
