@@ -136,7 +136,8 @@ pub struct LinkSide<'a> {
 /// before the link is first free within its play.
 ///
 /// Semi-implicit (symplectic) steps, which neither add nor take energy; where the step is too long for the spring,
-/// implicit ones, which are stable for every stiffness.
+/// implicit ones, which are stable for every stiffness. Each is written as a recurrence over the last two stretches
+/// (Störmer's form of the same step), whose next value waits for one product and one sum.
 pub fn deflection(
     link: &LinkSide<'_>,
     t: &Transmission,
@@ -146,39 +147,34 @@ pub fn deflection(
     let Some(&first) = link.load.first() else { return 0 };
     let steps = (STEPS_PER_SECOND / link.rate).ceil().max(1.0);
     let h = 1.0 / (link.rate * steps);
+    let square = h * h;
     let half = 0.5 * t.play;
-    let (mut x, mut v) = (start.x, start.dx);
+    let (mut x, mut last) = (start.x, start.x - h * start.dx);
     let mut before = first;
     let mut held = link.load.len();
-    for (k, (&now, &m)) in link.load.iter().zip(link.inertia).enumerate() {
-        let mut sum = 0.0;
-        let m_free = 1.0 / m;
-        let stiff = h * h * t.stiffness;
-        let m_held = 1.0 / (m + h * t.damping + if stiff > 0.3 * m { stiff } else { 0.0 });
-        let (kept, driven) = (m * m_held, h * m_held);
-        let pulled = driven * t.stiffness;
+    for (k, ((&now, &m), &bent)) in link.load.iter().zip(link.inertia).zip(link.stiffness).enumerate() {
+        let stiff = square * t.stiffness;
+        let free = square / m;
+        let on_flank = 1.0 / (m + h * t.damping + if stiff > 0.3 * m { stiff } else { 0.0 });
+        let (kept, driven) = (m * on_flank, square * on_flank);
+        let held_slope = 1.0 + kept - driven * (t.stiffness + bent);
+        let free_slope = 2.0 - free * bent;
         let slope = (now - before) / steps;
+        let went = x - last;
         for step in 1..=steps as usize {
-            let force = before + slope * step as f64 - link.stiffness[k] * x;
-            let stretch = if x > half {
-                x - half
-            } else if x < -half {
-                x + half
-            } else {
-                0.0
-            };
-            let new = if stretch != 0.0 || half == 0.0 {
-                kept * v + driven * force - pulled * stretch
+            let force = before + slope * step as f64;
+            let new = if half == 0.0 {
+                held_slope * x + (driven * force - kept * last)
+            } else if x.abs() > half {
+                held_slope * x + (driven * (force + t.stiffness * half.copysign(x)) - kept * last)
             } else {
                 held = held.min(k);
-                v + h * force * m_free
+                free_slope * x + (free * force - last)
             };
-            sum += new - v;
-            v = new;
-            x += h * v;
+            (last, x) = (x, new);
         }
         stretches[k] = x;
-        out[k] = -m * sum / (h * steps);
+        out[k] = -m * (x - last - went) / (square * steps);
         before = now;
     }
     held

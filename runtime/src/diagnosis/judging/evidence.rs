@@ -51,7 +51,6 @@ impl Regression {
     ) -> Option<BTreeMap<(usize, usize), Block>> {
         let trial = &candidate.trials[trial];
         let design = &self.design;
-        let dense = trial.dense(design);
         let whole = if design.is_single_motion() { Some(self.fit.project_out(trial)?) } else { None };
         let whole = whole.map(|whole| (self.by_segment(&whole, trial), whole));
         let mut blocks = BTreeMap::<(usize, usize), Block>::new();
@@ -68,8 +67,10 @@ impl Regression {
                     let seen = |r: &usize| {
                         !is_beyond(&self.beyond, *r) && !beyond.iter().any(|beyond| beyond.contains(*r))
                     };
-                    for r in design.ranges[j][g].clone().filter(seen) {
-                        let (residual, change) = prediction.at(design, r, dense.iter().map(|c| c[r]));
+                    let rows: Vec<usize> = design.ranges[j][g].clone().filter(seen).collect();
+                    let residual = prediction.fit.residual_on(design, &rows);
+                    let changes = prediction.changes(design, j, &rows);
+                    for ((&r, residual), change) in rows.iter().zip(residual).zip(changes) {
                         let block = blocks.entry(design.block(design.rows[r], per_block)).or_default();
                         block.with_residual += change * residual / (s * s);
                         block.squares += change * change / (s * s);

@@ -59,9 +59,9 @@ impl HeldOutSquares {
             // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
             let (squares, torque) = if beyond.iter().any(|beyond| beyond.joint == j) {
                 let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
-                let rows = || design.ranges[j][segment].clone().filter(seen);
-                let squares = rows().map(|r| fit.residual_at(design, r).powi(2)).sum();
-                (squares, rows().map(|r| design.torque(r).powi(2)).sum())
+                let rows: Vec<usize> = design.ranges[j][segment].clone().filter(seen).collect();
+                let squares = fit.residual_on(design, &rows).iter().map(|left| left * left).sum();
+                (squares, rows.iter().map(|&r| design.torque(r).powi(2)).sum())
             } else {
                 (fit.squares(design, j, segment), design.torque_squares(j, segment))
             };

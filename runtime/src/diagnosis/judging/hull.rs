@@ -9,7 +9,7 @@ use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::judging::white_products::factored;
 use crate::diagnosis::rows::design::Design;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVectorView};
 
 /// A curve on the rows of its joint.
 pub(in crate::diagnosis) struct Curve {
@@ -45,32 +45,28 @@ impl Beyond {
     pub fn of(design: &Design, curve: &Curve, train: &[bool]) -> Self {
         let all = design.of_joint(curve.joint);
         let (joint, first) = (curve.joint, all.start);
-        let row = |r: usize| {
-            let local = r - first;
-            DVector::from_iterator(
-                curve.columns.len() + 1,
-                curve.columns.iter().map(|c| c[local]).chain([1.0]),
-            )
-        };
-        let acts = |r: &usize| curve.columns.iter().any(|c| c[*r - first] != 0.0);
+        let acts = |local: &usize| curve.columns.iter().any(|c| c[*local] != 0.0);
         let segments = (0..train.len()).filter(|&g| train[g]);
-        let trained: Vec<DVector<f64>> =
-            segments.flat_map(|g| design.ranges[joint][g].clone()).filter(acts).map(row).collect();
+        let trained: Vec<usize> =
+            segments.flat_map(|g| design.ranges[joint][g].clone()).map(|r| r - first).filter(acts).collect();
         let width = curve.columns.len() + 1;
-        let mut gram = DMatrix::zeros(width, width);
-        trained.iter().for_each(|z| gram.ger(1.0, z, z, 1.0));
-        let Some((factor, scale)) = factored(&gram) else {
+        // One row of the joint a column.
+        let value = |k: usize, local: usize| curve.columns.get(k).map_or(1.0, |c| c[local]);
+        let mut regressors = DMatrix::from_fn(width, all.len(), value);
+        let fitted = regressors.select_columns(&trained);
+        let Some((factor, scale)) = factored(&(&fitted * fitted.transpose())) else {
             return Self { joint, first, rows: vec![true; all.len()] };
         };
         // A column that is zero on all fitted rows has no scale; a row on which it is not lies beyond them.
-        let unseen = |z: &DVector<f64>| (0..width).any(|k| scale[k] == 0.0 && z[k] != 0.0);
-        let leverage = |z: &DVector<f64>| {
-            let z = z.component_mul(&scale);
-            z.dot(&factor.solve(&z))
-        };
-        let largest = trained.iter().map(leverage).fold(0.0, f64::max);
-        let is_beyond = |z: DVector<f64>| unseen(&z) || leverage(&z) > largest;
-        Self { joint, first, rows: all.map(|r| is_beyond(row(r))).collect() }
+        let unseen = |row: DVectorView<'_, f64>| (0..width).any(|k| scale[k] == 0.0 && row[k] != 0.0);
+        let mut beyond: Vec<bool> = regressors.column_iter().map(unseen).collect();
+        regressors.column_iter_mut().for_each(|mut row| row.component_mul_assign(&scale));
+        // The factor's diagonal is positive, so that there is a solution.
+        let _ = factor.l_dirty().solve_lower_triangular_mut(&mut regressors);
+        let leverage: Vec<f64> = regressors.column_iter().map(|row| row.norm_squared()).collect();
+        let largest = trained.iter().map(|&local| leverage[local]).fold(0.0, f64::max);
+        beyond.iter_mut().zip(leverage).for_each(|(beyond, leverage)| *beyond |= leverage > largest);
+        Self { joint, first, rows: beyond }
     }
 
     /// Those of several curves.

@@ -86,9 +86,12 @@ impl Regression {
             }
             // On a single motion nothing but the law is fitted elsewhere.
             let by_parameters = || {
-                let seen = |j| self.seen(&curve, fold, j).map(move |r| (j, r));
-                let rows = (0..self.sigma.len()).flat_map(seen);
-                if parts.is_some() { 0.0 } else { prediction.deviation_by_parameters(&self.design, rows) }
+                if parts.is_some() {
+                    return 0.0;
+                }
+                let seen = |j| self.seen(&curve, fold, j).collect();
+                let rows: Vec<Vec<usize>> = (0..self.sigma.len()).map(seen).collect();
+                prediction.deviation_by_parameters(&self.design, &rows)
             };
             lost += usize::from(sum <= 0.0 && -sum >= LOST * by_parameters());
             held_out.push(sum);
@@ -172,7 +175,8 @@ impl Regression {
         let is_curves = curve.as_ref().is_some_and(|curve| curve.joint == joint);
         let mut rows = fold.held().flat_map(|g| self.design.ranges[joint][g].clone());
         if is_curves || rows.any(|r| is_beyond(&self.beyond, r)) {
-            return prediction.gain_on(&self.design, joint, self.seen(curve, fold, joint));
+            let rows: Vec<usize> = self.seen(curve, fold, joint).collect();
+            return prediction.gain_on(&self.design, joint, &rows);
         }
         let gain = |g: usize| match parts {
             Some(parts) => parts.gain(&prediction.amplitude, joint, g),
@@ -213,7 +217,8 @@ impl Regression {
                 let gone = if beyond.iter().any(|beyond| beyond.joint == j) {
                     let rows = held().flat_map(|g| self.design.ranges[j][g].clone());
                     let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
-                    prediction.gain_on(&self.design, j, rows.filter(seen))[0]
+                    let rows: Vec<usize> = rows.filter(seen).collect();
+                    prediction.gain_on(&self.design, j, &rows)[0]
                 } else {
                     held().map(|g| prediction.gain(&self.design, j, g)).sum()
                 };

@@ -111,7 +111,7 @@ fn what_a_prediction_gains_scatters_by_the_error_of_the_parameters_as_its_deviat
     let part = fit.project_out(&law.trials[0]).expect("a small problem is regular");
     let prediction = Prediction::new(&fit, &law.trials[0], &part, nalgebra::DVector::from_element(1, 1.0));
     let held = design.ranges[0][2].clone();
-    let expected = prediction.deviation_by_parameters(&design, held.clone().map(|r| (0, r)));
+    let expected = prediction.deviation_by_parameters(&design, &[held.clone().collect()]);
 
     let runs = 2000;
     let mut squares = 0.0;
@@ -123,13 +123,9 @@ fn what_a_prediction_gains_scatters_by_the_error_of_the_parameters_as_its_deviat
         design.refresh();
         let fit = Fit::new(&design, &[1.0], train.clone()).expect("a small problem is regular");
         let fitted = Prediction::new(&fit, &law.trials[0], &part, prediction.amplitude.clone());
-        let (mut with, mut own) = (0.0, 0.0);
-        for r in held.clone() {
-            let (residual, change) = fitted.at(&design, r, [law.trials[0].columns[0][0].1[r]].into_iter());
-            with += residual * change;
-            own += change * change;
-        }
-        let gain = 2.0 * with - own;
+        let rows: Vec<usize> = held.clone().collect();
+        let own: f64 = fitted.changes(&design, 0, &rows).iter().map(|change| change * change).sum();
+        let [gain, _] = fitted.gain_on(&design, 0, &rows);
         squares += (gain + own).powi(2);
     }
     let deviation = (squares / f64::from(runs)).sqrt();

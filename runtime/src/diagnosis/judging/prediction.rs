@@ -57,40 +57,42 @@ impl<'a> Prediction<'a> {
         2.0 * linear - square
     }
 
-    /// At one row, given the values of the trial's columns there: the residual of the fit without the trial, and what the
-    /// trial changes.
-    pub fn at(&self, design: &Design, row: usize, law: impl Iterator<Item = f64>) -> (f64, f64) {
-        let mut change: f64 = law.zip(self.amplitude.iter()).map(|(c, a)| a * c).sum();
-        for (k, column) in design.columns.iter().enumerate() {
-            change += column[row] * self.shift[k];
+    /// What the trial changes on some rows of a joint.
+    pub fn changes(&self, design: &Design, joint: usize, rows: &[usize]) -> Vec<f64> {
+        let first = design.of_joint(joint).start;
+        let mut changes = vec![0.0; rows.len()];
+        let mut add = |column: &[f64], first: usize, factor: f64| {
+            changes.iter_mut().zip(rows).for_each(|(sum, r)| *sum += factor * column[r - first]);
+        };
+        for (column, a) in self.trial.on_joint(joint).into_iter().zip(&self.amplitude) {
+            column.into_iter().for_each(|column| add(column, first, *a));
         }
-        (self.fit.residual_at(design, row), change)
+        for (column, shift) in design.columns.iter().zip(&self.shift).filter(|(_, shift)| **shift != 0.0) {
+            add(column, 0, *shift);
+        }
+        changes
     }
 
-    /// Standard deviation of what is gained on some rows, given with their joints, by the error of the parameters that were
-    /// fitted elsewhere and that the change meets in the residual; in units of the noise variance.
-    pub fn deviation_by_parameters(
-        &self,
-        design: &Design,
-        rows: impl Iterator<Item = (usize, usize)>,
-    ) -> f64 {
-        let law: Vec<Vec<f64>> = self.trial.dense(design);
+    /// Standard deviation of what is gained on some rows of each joint by the error of the parameters that were fitted
+    /// elsewhere and that the change meets in the residual; in units of the noise variance.
+    pub fn deviation_by_parameters(&self, design: &Design, rows: &[Vec<usize>]) -> f64 {
         let mut with = DVector::zeros(design.columns.len());
-        for (joint, r) in rows {
+        for (joint, rows) in rows.iter().enumerate() {
             let weight = self.fit.sigma[joint].powi(-2);
-            let (_, change) = self.at(design, r, law.iter().map(|c| c[r]));
-            with.iter_mut().zip(&design.columns).for_each(|(w, c)| *w += weight * change * c[r]);
+            let changes = self.changes(design, joint, rows);
+            for (with, column) in with.iter_mut().zip(&design.columns) {
+                *with +=
+                    weight * changes.iter().zip(rows).map(|(change, &r)| change * column[r]).sum::<f64>();
+            }
         }
         2.0 * with.dot(&self.fit.solve(&with)).max(0.0).sqrt()
     }
 
     /// On some rows of a joint: squares of the residual that are gone, and those of the residual without the trial.
-    pub fn gain_on(&self, design: &Design, joint: usize, rows: impl Iterator<Item = usize>) -> [f64; 2] {
-        let first = design.of_joint(joint).start;
-        let law = self.trial.on_joint(joint);
-        rows.fold([0.0, 0.0], |[gone, squares], r| {
-            let values = law.iter().map(|c| c.map_or(0.0, |c| c[r - first]));
-            let (residual, change) = self.at(design, r, values);
+    pub fn gain_on(&self, design: &Design, joint: usize, rows: &[usize]) -> [f64; 2] {
+        let residual = self.fit.residual_on(design, rows);
+        let both = residual.iter().zip(self.changes(design, joint, rows));
+        both.fold([0.0, 0.0], |[gone, squares], (residual, change)| {
             [gone + change * (2.0 * residual - change), squares + residual * residual]
         })
     }

@@ -208,9 +208,10 @@ fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool
     let of_fold = |fold: &Fold| {
         let fit = if design.is_single_motion() { whole } else { &fold.fit };
         let squares = |j: usize, g: usize| {
-            let rows = design.ranges[j][g].clone();
-            if rows.clone().any(|r| is_beyond(beyond, r)) {
-                rows.filter(|&r| !is_beyond(beyond, r)).map(|r| fit.residual_at(design, r).powi(2)).sum()
+            let all = design.ranges[j][g].clone();
+            let seen: Vec<usize> = all.clone().filter(|&r| !is_beyond(beyond, r)).collect();
+            if seen.len() < all.len() {
+                fit.residual_on(design, &seen).iter().map(|left| left * left).sum()
             } else {
                 fit.squares(design, j, g)
             }

@@ -155,9 +155,13 @@ impl Fit {
         r
     }
 
-    /// Residual of one row.
-    pub fn residual_at(&self, design: &Design, row: usize) -> f64 {
-        design.columns.iter().zip(self.chi.iter()).fold(design.y[row], |left, (c, x)| left - c[row] * x)
+    /// Residual of some rows.
+    pub fn residual_on(&self, design: &Design, rows: &[usize]) -> Vec<f64> {
+        let mut left: Vec<f64> = rows.iter().map(|&r| design.y[r]).collect();
+        for (column, &x) in design.columns.iter().zip(self.chi.iter()) {
+            left.iter_mut().zip(rows).for_each(|(left, &r)| *left -= column[r] * x);
+        }
+        left
     }
 
     /// Squares, in units of the residual variance, that only these columns explain: Wald's statistic. Nothing where they

@@ -110,9 +110,17 @@ impl Links {
         let (mut x, mut swung) = (vec![0.0; link.load.len()], vec![0.0; link.load.len()]);
         deflection(link, t, start, [&mut x, &mut swung]);
         let n = self.joints;
+        // Of joint j, N.m or N, and as an acceleration of the links, whose inertia loads the other joints.
+        let accelerated: Vec<f64> = swung.iter().zip(&side.inertia).map(|(torque, m)| torque / m).collect();
         let on = |i: usize| {
-            let share = |k: usize| if i == j { 1.0 } else { self.mass[i * n + j][k] / side.inertia[k] };
-            (i, (0..x.len()).map(|k| swung[k] * share(k) - side.bent[i][k] * x[k]).collect())
+            let bent = side.bent[i].iter().zip(&x).map(|(bent, x)| bent * x);
+            let torque: Vec<f64> = if i == j {
+                swung.iter().zip(bent).map(|(swung, bent)| swung - bent).collect()
+            } else {
+                let coupled = accelerated.iter().zip(&self.mass[i * n + j]).map(|(a, m)| a * m);
+                coupled.zip(bent).map(|(coupled, bent)| coupled - bent).collect()
+            };
+            (i, torque)
         };
         (0..n).map(on).collect()
     }

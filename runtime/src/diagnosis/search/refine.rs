@@ -4,19 +4,27 @@ use crate::diagnosis::candidates::candidate::{Candidate, make};
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rules::{MOST_EVALUATIONS, MOST_STARTS, SMALLEST_STEP};
-use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::state::{Law, Search};
 use crate::diagnosis::search::term::{Accepted, Mode};
 use crate::diagnosis::search::tuning::Tuning;
 use crate::parallel;
 
 impl Search<'_> {
-    /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
-    /// refined on what nothing else explains.
-    pub(in crate::diagnosis) fn polish(&mut self, threads: usize) {
+    /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission that may
+    /// join the model is refined on what nothing else explains. Says whether there was anything to refine.
+    pub(in crate::diagnosis) fn polish(&mut self) -> bool {
+        let laws: Vec<Law> = self.model.terms.iter().map(|t| (t.effect, t.place, t.shape.clone())).collect();
+        if self.polished_beside.contains(&laws) {
+            return false;
+        }
+        self.polished_beside.push(laws);
         let (model, regression, candidates) = (&self.model, &self.model.fast, &self.fast);
-        let polished = parallel::map(threads, candidates.len(), |k| {
+        let polished = parallel::map(self.threads, candidates.len(), |k| {
             let candidate = &candidates[k];
             candidate.fixed?;
+            if self.is_excluded(candidate) {
+                return None;
+            }
             let [best, nearest] = regression.best_and_nearest(candidate)?;
             let shape = self.refined(regression, candidate, best);
             let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);
@@ -38,9 +46,11 @@ impl Search<'_> {
             let best = ends.min_by(|a, b| a.1.total_cmp(&b.1));
             Some(trial(&best.map_or(shape, |(shape, _)| shape)))
         });
+        let any = polished.iter().any(Option::is_some);
         for (candidate, trial) in self.fast.iter_mut().zip(polished) {
             candidate.trials.extend(trial);
         }
+        any
     }
 
     /// The shape near `start` that explains most of all motion.

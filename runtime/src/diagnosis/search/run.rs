@@ -64,8 +64,9 @@ impl Search<'_> {
             progress.at(0.6 + 0.25 * done, "held-out tests");
             let mut round = self.best(settings, None, 1)?;
             // Compliant transmissions of neighbours ring alike: which one it is shows when both are tuned.
-            if round.winner.as_ref().is_none_or(|w| self.candidates(w.window)[w.index].fixed.is_some()) {
-                self.polish(settings.threads);
+            if round.winner.as_ref().is_none_or(|w| self.candidates(w.window)[w.index].fixed.is_some())
+                && self.polish()
+            {
                 round = self.best(settings, None, 1)?;
             }
             self.ties = round.ties;
@@ -100,7 +101,7 @@ impl Search<'_> {
                 continue;
             }
             if effect.form().fixed_amplitude().is_some() {
-                self.polish(self.threads);
+                self.polish();
             }
             let window = effect.properties().window;
             let regression = self.model.regression(window);

@@ -41,8 +41,14 @@ pub(in crate::diagnosis) struct Search<'a> {
     pub tried: usize,
     /// Laws that were tried beside the candidates, to find some of these.
     pub more_tries: usize,
+    /// Laws beside which the shapes of compliant transmissions have been refined: refined once more they end where they
+    /// are.
+    pub(super) polished_beside: Vec<Vec<Law>>,
     pub threads: usize,
 }
+
+/// A law of the model: effect, place and shape.
+pub(super) type Law = (EffectKind, Place, Vec<f64>);
 
 impl<'a> Search<'a> {
     /// Builds all candidates; `slowest` are the speeds of standstill, per joint.
@@ -96,6 +102,7 @@ impl<'a> Search<'a> {
             lines,
             tried,
             more_tries: 0,
+            polished_beside: Vec::new(),
             threads,
         }
     }
