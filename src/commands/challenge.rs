@@ -15,7 +15,7 @@ use dynid_runtime::recording::{Manifest, Trajectory, load};
 
 use crate::errors::prediction_failure;
 use crate::failure::{Failure, file_failure};
-use crate::output::{Bar, print, write_json};
+use crate::output::{Bar, can_write, print, write_json};
 use crate::recorded::recording_failure;
 use crate::robots::{Dynamics, resolve};
 use crate::truth::read_truth;
@@ -52,6 +52,7 @@ struct Diagnosed {
 
 /// Diagnoses all cases, then keeps score.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    can_write(&arguments.json)?;
     let cases = cases(arguments)?;
     let settings = Settings::default();
     let bar = Bar::new("diagnosis");

@@ -25,12 +25,12 @@ use crate::errors::prediction_failure;
 use crate::estimated::named;
 use crate::failure::Failure;
 use crate::origin::recorded_from;
-use crate::output::{Bar, print, write, write_json};
+use crate::output::{Bar, can_write, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure};
 use crate::speeds::{and_of_speeds, speed_words};
 
-use compare::{Test, tested};
+use compare::{Test, no_gain_words, tested};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
@@ -80,6 +80,9 @@ const QUICK: f64 = 30.0;
 /// Diagnoses, prints, saves.
 pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure> {
     let source = &arguments.recording;
+    can_write(
+        [&arguments.json, &arguments.out, &arguments.residuals, &arguments.report].into_iter().flatten(),
+    )?;
     let measured = measure(source)?;
     let model = measured.dynamics.model();
     let mut baseline = match &arguments.baseline {
@@ -127,6 +130,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
         (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
         _ => None,
     };
+    diagnosis.verdict.extend(tested.as_ref().and_then(|tested| no_gain_words(tested, &diagnosis)));
     let extras = extras::of(arguments, words, &measured, &diagnosis, tested)?;
     hand_out(arguments, &measured, &diagnosis, &extras)
 }

@@ -23,7 +23,7 @@ use crate::compared::residual_file;
 use crate::estimated::{cells, value};
 use crate::failure::Failure;
 use crate::origin::recorded_from;
-use crate::output::{print, table, write_json};
+use crate::output::{can_write, print, table, write_json};
 use crate::ranges;
 use crate::recorded::{self, Recorded, left_out_words};
 use crate::speeds::{and_of_speeds, speed_words};
@@ -93,6 +93,9 @@ pub(super) fn run(arguments: &Arguments, line: &[String]) -> Result<(), Failure>
     if let Some(loaded) = &arguments.load.loaded {
         return gains::run(arguments, loaded);
     }
+    can_write(
+        [&arguments.json, &arguments.out, &arguments.residuals, &arguments.report].into_iter().flatten(),
+    )?;
     if let Some(reference) = &arguments.load.reference {
         return payload::run(arguments, reference);
     }

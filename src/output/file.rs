@@ -58,6 +58,23 @@ pub(super) fn replace(path: &Path, fill: Fill<'_>) -> io::Result<()> {
     Ok(())
 }
 
+/// Whether [`replace`] finds a place for its file. Nothing is left there.
+pub(super) fn can_replace(path: &Path) -> io::Result<()> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_file() && found.permissions().readonly() => {
+            Err(io::ErrorKind::PermissionDenied.into())
+        }
+        Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(found) if !found.is_file() => Ok(()),
+        Ok(_) => in_its_folder(&fs::canonicalize(path)?),
+        Err(_) => in_its_folder(path),
+    }
+}
+
+fn in_its_folder(path: &Path) -> io::Result<()> {
+    Complete::new(path.parent().unwrap_or(Path::new(".")), &mut |_| Ok(())).map(drop)
+}
+
 /// A device or a pipe has no other state to keep.
 fn into_device(path: &Path, fill: Fill<'_>) -> io::Result<()> {
     let mut device = BufWriter::new(File::options().write(true).open(path)?);

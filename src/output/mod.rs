@@ -5,7 +5,7 @@ mod terminal;
 mod together;
 
 use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table};
@@ -55,6 +55,17 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
 /// [`Failure::Input`] naming the path; what the file held before is still there then.
 pub fn fill(path: &Path, fill: Fill<'_>) -> Result<(), Failure> {
     file::replace(path, fill).map_err(|error| file_failure("write it", path, &error))
+}
+
+/// Whether files can be made where long work will write them; `-`, devices and pipes are not asked.
+///
+/// # Errors
+/// [`Failure::Input`] naming the first path at which no file can be.
+pub fn can_write<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Result<(), Failure> {
+    for path in paths.into_iter().filter(|path| *path != Path::new("-")) {
+        file::can_replace(path).map_err(|error| file_failure("write it", path, &error))?;
+    }
+    Ok(())
 }
 
 /// Makes a folder, before long work that would be lost without it.

@@ -5,6 +5,7 @@ use std::path::Path;
 use dynid_runtime::diagnosis::Diagnosis;
 use dynid_runtime::model::Model;
 use dynid_runtime::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate, row_states};
+use dynid_runtime::report::percent;
 
 use crate::arguments::DiagnosisOptions;
 use crate::errors::prediction_failure;
@@ -38,10 +39,14 @@ impl Test {
     /// # Errors
     /// A band that is none, or motions that cannot be filtered.
     pub fn new(measured: Measured, path: &Path, options: &DiagnosisOptions) -> Result<Self, Failure> {
-        let prepared = options
-            .comparison(measured.dynamics.model().robot().joints())
-            .prepare(&measured.trajectories)
-            .map_err(|error| prediction_failure(path, &error))?;
+        let model = measured.dynamics.model();
+        let refused = |error| prediction_failure(path, &error);
+        let prepared =
+            options.comparison(model.robot().joints()).prepare(&measured.trajectories).map_err(refused)?;
+        // Whether it has rows to be judged on shows before the diagnosis, with any parameters.
+        let any = vec![0.0; model.robot().base.len()];
+        let nothing = Predictor { chi: &any, effects: &[], delay: 0.0 };
+        evaluate(model, &[nothing], &prepared.motions, &prepared.settings, &[]).map_err(refused)?;
         Ok(Self { measured, prepared })
     }
 }
@@ -54,6 +59,21 @@ pub fn tested(test: &Test, path: &Path, diagnosis: &Diagnosis) -> Result<Tested,
     let evaluation = before_and_after(test.measured.dynamics.model(), diagnosis, &test.prepared, &[])
         .map_err(|error| prediction_failure(path, &error))?;
     Ok(Tested { name: test.measured.title.clone(), evaluation })
+}
+
+/// That all findings together do not help on the test recording, where that is so.
+pub fn no_gain_words(tested: &Tested, diagnosis: &Diagnosis) -> Option<String> {
+    let errors: Vec<Option<f64>> =
+        tested.evaluation.predictions.iter().map(|p| p.errors.relative_error).collect();
+    let &[Some(before), Some(after)] = errors.as_slice() else { return None };
+    (!diagnosis.findings.is_empty() && after >= before).then(|| {
+        format!(
+            "On the test recording the error does not fall: it is {} before and {} after. Do not rely on what was found \
+             before another recording shows it.",
+            percent(before),
+            percent(after)
+        )
+    })
 }
 
 /// The standard model and the model with the findings, on the same rows.
