@@ -72,6 +72,19 @@ fn magnet(motion: &mut Trajectory) {
     }
 }
 
+fn balancer_that_gives_way(motion: &mut Trajectory) {
+    for t in 0..motion.time.len() {
+        motion.torque[1][t] += 2.0 * (2.0 * motion.position[1][t]).tanh();
+    }
+}
+
+fn soft_spring(motion: &mut Trajectory) {
+    for t in 0..motion.time.len() {
+        let q = motion.position[1][t];
+        motion.torque[1][t] += 1.5 * (q - 0.25 * q.powi(3));
+    }
+}
+
 #[test]
 fn a_torque_channel_that_hears_a_joint_farther_away_depends_on_that_joints_torque() {
     let diagnosis = diagnosed(&scara(), &Hidden::in_recording(hears_joint_1));
@@ -113,6 +126,24 @@ fn a_magnet_under_a_joint_depends_on_its_own_position_whatever_it_is_called() {
     };
     assert!(diagnosis.findings.iter().any(|f| f.joints == [2] && of_position(f)));
     assert!(diagnosis.findings.iter().all(|f| f.joints == [2] && of_position(f)));
+}
+
+#[test]
+fn a_curve_that_a_lever_imitates_is_a_curve_until_a_motion_tells_them_apart() {
+    let diagnosis = diagnosed(&planar(), &Hidden::in_recording(balancer_that_gives_way));
+    let found: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.clone())).collect();
+    assert_eq!(found, [("position_dependent_torque", vec![2])]);
+    assert_eq!(diagnosis.cannot_tell.len(), 1);
+    assert_eq!(diagnosis.cannot_tell[0].between, ["position_dependent_torque", "spring"]);
+}
+
+#[test]
+fn where_one_motion_alone_goes_what_a_curve_leaves_is_no_push() {
+    // One of the motions goes farther than the others for two thirds of a second: set aside as a push, it would be one for
+    // ever, because the curve that is fitted to the rest ends there.
+    let diagnosis = diagnosed(&planar(), &Hidden::in_recording(soft_spring));
+    let found: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.clone())).collect();
+    assert_eq!(found, [("position_dependent_torque", vec![2])]);
 }
 
 #[test]

@@ -67,8 +67,10 @@ impl Pushes {
         self.contacts = confirmed;
         if self.scanned || !settings.single_joint_contacts {
             let before = self.of_single_joints.take();
+            let were_some = before.is_some();
             self.of_single_joints = before.and_then(|p| moving::still_there(p, found));
-            return refuted;
+            // What is no push belongs to the motion that laws are fitted to.
+            return refuted || were_some && self.of_single_joints.is_none();
         }
         // What was found with the pushes among the rows is looked for again without them.
         (self.of_single_joints, self.scanned) = (found, true);

@@ -169,10 +169,12 @@ impl<'a> Course<'a> {
         // What something outside did is no law over some variable: those are looked for without it.
         if self.known.is_none() && !search.beyond_catalogue {
             search.beyond_catalogue = true;
-            let found = search.model.terms.len();
+            let laws = |search: &Search<'_>| -> Vec<(EffectKind, Place)> {
+                search.model.terms.iter().map(|t| (t.effect, t.place)).collect()
+            };
+            let found = laws(search);
             report = search.run(settings, self.progress)?;
-            let more = search.model.terms.len() > found;
-            if more && pushes.differ_beside(self.model, self.prepared, search, settings) {
+            if laws(search) != found && pushes.differ_beside(self.model, self.prepared, search, settings) {
                 return Ok(None);
             }
         }
