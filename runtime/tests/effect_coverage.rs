@@ -23,17 +23,17 @@ const NORMAL_95: f64 = 1.959_964;
 struct Case {
     effect: EffectKind,
     robot: fn() -> SimulatedRobot,
-    joint: usize,
+    place: Place,
     shape: &'static [f64],
     amplitude: &'static [f64],
     truth: &'static [(&'static str, f64)],
 }
 
-const CASES: [Case; 7] = [
+const CASES: [Case; 9] = [
     Case {
         effect: EffectKind::Stribeck,
         robot: planar,
-        joint: 1,
+        place: Place::Joint(1),
         shape: &[0.3],
         amplitude: &[3.0],
         truth: &[("fs", 3.0), ("vs", 0.3)],
@@ -41,7 +41,7 @@ const CASES: [Case; 7] = [
     Case {
         effect: EffectKind::LoadDependentFriction,
         robot: planar,
-        joint: 0,
+        place: Place::Joint(0),
         shape: &[],
         amplitude: &[0.1],
         truth: &[("mu", 0.1)],
@@ -49,7 +49,7 @@ const CASES: [Case; 7] = [
     Case {
         effect: EffectKind::NonlinearViscous,
         robot: planar,
-        joint: 1,
+        place: Place::Joint(1),
         shape: &[0.5],
         amplitude: &[4.0],
         truth: &[("p", 0.5)],
@@ -57,7 +57,7 @@ const CASES: [Case; 7] = [
     Case {
         effect: EffectKind::AsymmetricFriction,
         robot: planar,
-        joint: 0,
+        place: Place::Joint(0),
         shape: &[],
         amplitude: &[0.5],
         truth: &[("half_difference", 0.5)],
@@ -65,7 +65,7 @@ const CASES: [Case; 7] = [
     Case {
         effect: EffectKind::PositionDependentFriction,
         robot: planar,
-        joint: 0,
+        place: Place::Joint(0),
         shape: &[2.0],
         amplitude: &[1.2, 0.9],
         truth: &[("amplitude", 1.5), ("wave_number", 2.0)],
@@ -73,7 +73,7 @@ const CASES: [Case; 7] = [
     Case {
         effect: EffectKind::Spring,
         robot: scara,
-        joint: 1,
+        place: Place::Joint(1),
         shape: &[],
         amplitude: &[2.0],
         truth: &[("k", 2.0)],
@@ -81,10 +81,26 @@ const CASES: [Case; 7] = [
     Case {
         effect: EffectKind::TorqueRipple,
         robot: planar,
-        joint: 0,
+        place: Place::Joint(0),
         shape: &[50.0],
         amplitude: &[0.8, 0.6],
         truth: &[("amplitude", 1.0), ("order_per_motor_turn", 1.0)],
+    },
+    Case {
+        effect: EffectKind::DriveEfficiency,
+        robot: planar,
+        place: Place::Joint(0),
+        shape: &[1.0],
+        amplitude: &[0.15, 0.1],
+        truth: &[("efficiency_driving", 1.0 / 1.15), ("efficiency_driven", 0.9)],
+    },
+    Case {
+        effect: EffectKind::TorqueCrosstalk,
+        robot: planar,
+        place: Place::Hears(1, 0),
+        shape: &[],
+        amplitude: &[0.1],
+        truth: &[("k", 0.1)],
     },
 ];
 
@@ -102,14 +118,12 @@ fn intervals_of_effects_contain_the_truth_as_often_as_they_say() {
         // Errors in units of their own sigmas, for each quantity.
         let mut errors: Vec<Vec<f64>> = vec![Vec::new(); case.truth.len()];
         let robot = (case.robot)();
-        let hidden = Hidden::effect(case.effect, Place::Joint(case.joint), case.shape, case.amplitude);
+        let hidden = Hidden::effect(case.effect, case.place, case.shape, case.amplitude);
         for seed in 1..=seeds {
             let recorded = robot.record(&robot.motions(MOTIONS, LENGTH, seed), &hidden, seed);
             let diagnosis = diagnose(&robot.model, &recorded, &[], &Settings::default(), &Silent).unwrap();
-            let own = diagnosis
-                .findings
-                .iter()
-                .find(|f| f.effect == case.effect.id() && f.joints == [case.joint + 1]);
+            let mut findings = diagnosis.findings.iter();
+            let own = findings.find(|f| f.term.effect == case.effect && f.term.place == case.place);
             let Some(found) = own else { continue };
             for ((quantity, truth), errors) in case.truth.iter().zip(&mut errors) {
                 if let Some(q) = found.parameters.get(*quantity).filter(|q| q.sigma > 0.0) {

@@ -53,6 +53,7 @@ pub use quantity::{Parameter, Quantities};
 pub use rigid_body::{BODY_SYMBOLS, BodyEstimate, BodyOnLink, body_columns, body_detail};
 pub use sensitivity::{Direction, Distortion, Seeds, Sensitivity, Variant, derivable, derivative};
 pub use shape::{Move, ShapeSearch, Step};
+#[cfg(feature = "diagnosis")]
 pub(crate) use term::named;
 pub use term::{EffectTerm, TermScale};
 pub use user_law::{LawError, UserLaw};

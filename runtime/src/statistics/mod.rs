@@ -5,3 +5,4 @@
 pub(crate) mod bins;
 pub(crate) mod median;
 pub(crate) mod moderation;
+pub(crate) mod student;

@@ -7,14 +7,15 @@ use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, LONGEST_BLOCK, QUANTITY_STEP};
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
-use crate::diagnosis::search::tangents::tangents;
+use crate::diagnosis::search::tangents::{along_parameters, tangents};
 use crate::diagnosis::search::term::{Accepted, Mode};
 use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter};
 use crate::model::JointIndex;
 
 /// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
-/// derivative of the columns (variable projection, Golub and Pereyra 1973). Each is the larger of two: with the noise
-/// that the test of the term allowed for, and as blocks of motion differ.
+/// derivative of the columns (variable projection, Golub and Pereyra 1973), and the columns of base parameters are the
+/// derivatives of all that is made of them, the load that a gear loses a part of too. Each is the larger of two: with the
+/// noise that the test of the term allowed for, and as blocks of motion differ.
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit with these derivatives.
@@ -32,7 +33,14 @@ pub(in crate::diagnosis) fn uncertainty(
         design.push(slope);
         varied.push(i);
     }
-    design.refresh_from(start);
+    let deviations: Vec<f64> =
+        side.fit.variances().iter().take(design.parameters).map(|v| v.max(0.0).sqrt()).collect();
+    let of_parameters = along_parameters(model, &side.design, term, (amplitude, &deviations));
+    let first = of_parameters.first().map_or(start, |(i, _)| *i);
+    for (i, slope) in of_parameters {
+        design.columns[i].iter_mut().zip(slope).for_each(|(column, slope)| *column += slope);
+    }
+    design.refresh_from(first);
     let fit = Fit::whole(&design, &side.sigma)?;
     let variances = fit.variances();
     let residual = fit.residual(&design);

@@ -1,5 +1,7 @@
-//! How the torque of a law moves with the numbers of its shape.
+//! How the torque of a law moves with the numbers of its shape, and with the parameters of the robot.
 
+use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::SHAPE_STEP;
 use crate::diagnosis::search::extended_model::ExtendedModel;
@@ -38,4 +40,39 @@ pub(in crate::diagnosis) fn tangents(
     };
     let all = (0..term.shape.len()).filter(|&i| estimated(i)).map(along);
     all.filter(|(_, slope)| slope.iter().any(|x| *x != 0.0)).collect()
+}
+
+/// Derivatives of a term's torque on the rows of a design by the base parameters, where its columns are made of these: the
+/// load of a gear, a torque that is heard. Differences over one standard deviation of each parameter (`deviations`), as far
+/// as it may be off; each with the place of the parameter.
+pub(in crate::diagnosis) fn along_parameters(
+    model: &ExtendedModel<'_>,
+    design: &Design,
+    term: &Accepted,
+    (amplitude, deviations): (&[f64], &[f64]),
+) -> Vec<(usize, Vec<f64>)> {
+    // A curve over torques bends where they are: a deviation of a parameter moves along it what it is fitted to anyway.
+    if !term.effect.properties().follows_parameters || term.effect.form().is_curve() {
+        return Vec::new();
+    }
+    let weights: Vec<f64> = term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed]);
+    let torque = |context: &Context<'_>| {
+        let columns = dense_columns(context, design, term.effect, term.place, &term.shape, model.change);
+        let mut sum = vec![0.0; design.rows.len()];
+        for (column, a) in columns.iter().zip(&weights) {
+            sum.iter_mut().zip(column).for_each(|(sum, c)| *sum += a * c);
+        }
+        sum
+    };
+    let here = torque(&model.context);
+    let mut moved = model.context.clone();
+    let along = |i: usize| {
+        let mut chi = model.context.chi.clone();
+        chi[i] += deviations[i];
+        moved.update(chi, model.context.carried().to_vec());
+        let mut slope = torque(&moved);
+        slope.iter_mut().zip(&here).for_each(|(there, here)| *there = (*there - here) / deviations[i]);
+        (i, slope)
+    };
+    (0..design.parameters).filter(|&i| deviations[i] > 0.0).map(along).collect()
 }

@@ -3,15 +3,9 @@
 use super::autoregression::Autoregression;
 use super::covariance::Innovations;
 use super::noise::Noise;
+use crate::statistics::student::student_factor;
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The normal deviate that one of forty exceeds: half an interval of 95 %, in standard deviations.
-const NORMAL: f64 = 1.959_963_984_540_054;
-/// Probability below that deviate.
-const BELOW: f64 = 0.975;
-/// Fewest degrees of freedom that are told apart: below, an interval says nothing.
-const FEWEST: f64 = 2.0;
 /// Of a squared normal innovation the fourth moment in units of its squared variance.
 const FOURTH_MOMENT: f64 = 3.0;
 
@@ -89,27 +83,8 @@ impl Known {
                     (of_level + model.variance_of_coefficients(&slopes)) / noise.freedom[e].max(1.0);
             }
             let freedom = 2.0 * self.variance[l].powi(2) / uncertainty;
-            if freedom.is_finite() { deviate(freedom.max(FEWEST)) / NORMAL } else { 1.0 }
+            student_factor(freedom)
         };
         (0..self.variance.len()).map(of).collect()
-    }
-}
-
-/// What Student's distribution exceeds in one of forty.
-fn deviate(freedom: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, freedom).map_or(NORMAL, |t| t.inverse_cdf(BELOW).max(NORMAL))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use approx::assert_relative_eq;
-
-    #[test]
-    fn few_degrees_of_freedom_make_a_deviate_larger_and_many_do_not() {
-        // scipy.stats.t.ppf(0.975, n)
-        assert_relative_eq!(deviate(5.0), 2.570581835636314, max_relative = 1e-8);
-        assert_relative_eq!(deviate(30.0), 2.0422724563012373, max_relative = 1e-8);
-        assert!(deviate(1e7) / NORMAL < 1.0001);
     }
 }
