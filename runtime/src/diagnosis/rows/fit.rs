@@ -5,9 +5,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::{Gram, dot};
 use crate::diagnosis::rules::{LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
 use crate::statistics::moderation::{Lent, Variance};
-use crate::statistics::student::student_factor;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A fit of the columns of a design on some of its segments, with weights 1 / sigma² per joint.
@@ -193,68 +191,6 @@ impl Fit {
         DVector::from_fn(self.chi.len(), |k, _| inverse[(k, k)] * self.scale[k] * self.scale[k])
     }
 
-    /// Variance of the parameter of a column where blocks of motion, of `rows` rows, err independently of each other, each by
-    /// as much as its residual shows, as [`Self::covariance_by_blocks`] has it, but such that 1.96 of its standard
-    /// deviations are half an interval of 95 %: the squares of a block are given back what the fit takes of them, and a
-    /// variance from few blocks that count is known from few (Bell and McCaffrey 2002, with independent rows as the working
-    /// model).
-    pub fn variance_by_blocks(&self, design: &Design, residual: &[f64], column: usize, rows: usize) -> f64 {
-        let unit = DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 });
-        let weights = self.solve(&unit);
-        let mut blocks: BTreeMap<(usize, usize), BlockError> = BTreeMap::new();
-        for (j, sigma) in self.sigma.iter().enumerate() {
-            let per_variance = 1.0 / (sigma * sigma);
-            for row in design.of_joint(j) {
-                let influence: f64 = design.columns.iter().zip(weights.iter()).map(|(c, w)| c[row] * w).sum();
-                let block = blocks.entry(design.block(design.rows[row], rows));
-                let block = block.or_insert_with(|| BlockError::none(self.chi.len()));
-                block.error += influence * residual[row] * per_variance;
-                block.expected += influence * influence * per_variance;
-                for (fitted, c) in block.fitted.iter_mut().zip(&design.columns) {
-                    *fitted += influence * per_variance * c[row];
-                }
-            }
-        }
-        let (mut variance, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        for block in blocks.values().filter(|block| block.expected > 0.0) {
-            let taken = block.fitted.dot(&self.solve(&block.fitted)) / block.expected;
-            variance += block.error * block.error / (1.0 - taken).max(LEAST_OF_A_BLOCK);
-            sum += block.expected;
-            squares += block.expected * block.expected;
-        }
-        if squares > 0.0 { variance * student_factor(sum * sum / squares).powi(2) } else { variance }
-    }
-
-    /// Covariance of the parameters of columns where blocks of motion, of `rows` rows, err independently of each other, each
-    /// by as much as its residual shows: for noise that lasts, and for what the model lacks (White 1980; Liang and Zeger
-    /// 1986).
-    pub fn covariance_by_blocks(
-        &self,
-        design: &Design,
-        residual: &[f64],
-        columns: Range<usize>,
-        rows: usize,
-    ) -> OfBlocks {
-        let k = columns.len();
-        let unit = |column| DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 });
-        let weights: Vec<DVector<f64>> = columns.map(|column| self.solve(&unit(column))).collect();
-        let mut blocks: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();
-        for (j, sigma) in self.sigma.iter().enumerate() {
-            for row in design.of_joint(j) {
-                let block =
-                    blocks.entry(design.block(design.rows[row], rows)).or_insert_with(|| DVector::zeros(k));
-                let error = residual[row] / (sigma * sigma);
-                for (sum, w) in block.iter_mut().zip(&weights) {
-                    let influence: f64 = design.columns.iter().zip(w.iter()).map(|(c, w)| c[row] * w).sum();
-                    *sum += influence * error;
-                }
-            }
-        }
-        let count = blocks.len().max(2) as f64;
-        let squares = blocks.values().fold(DMatrix::zeros(k, k), |sum, b| sum + b * b.transpose());
-        OfBlocks { matrix: squares * (count / (count - 1.0)), blocks: blocks.len() }
-    }
-
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].
     pub fn known_beforehand(&self, design: &Design) -> f64 {
         let Some(prior) = &design.prior else { return 0.0 };
@@ -270,32 +206,6 @@ impl Fit {
             .filter(|&k| self.scale[k] == 0.0 || 1.0 / inverse[(k, k)] < least * least)
             .collect()
     }
-}
-
-/// What a block of motion does to one parameter.
-struct BlockError {
-    /// By its residual.
-    error: f64,
-    /// The square of it that independent rows make expected, in units of their variance.
-    expected: f64,
-    /// Its influence in the space of the design's columns: the part of `expected` that the fit takes.
-    fitted: DVector<f64>,
-}
-
-impl BlockError {
-    fn none(parameters: usize) -> Self {
-        Self { error: 0.0, expected: 0.0, fitted: DVector::zeros(parameters) }
-    }
-}
-
-/// Least part of a block's squares that a fit is taken to leave. Numerics: a block that alone tells a parameter leaves none.
-const LEAST_OF_A_BLOCK: f64 = 0.1;
-
-/// A covariance as blocks of motion show it.
-pub(in crate::diagnosis) struct OfBlocks {
-    pub matrix: DMatrix<f64>,
-    /// Number of blocks.
-    pub blocks: usize,
 }
 
 /// Weighted inner products over the segments that are fitted.

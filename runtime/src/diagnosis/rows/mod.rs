@@ -1,5 +1,6 @@
 //! Rows: torques and columns of a recording, where a joint surely moves.
 
+mod by_blocks;
 pub(in crate::diagnosis) mod context;
 pub(in crate::diagnosis) mod design;
 pub(in crate::diagnosis) mod fit;
