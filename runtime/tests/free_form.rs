@@ -40,6 +40,11 @@ fn over<'d>(diagnosis: &'d Diagnosis, joint: usize, variables: &[&str]) -> &'d F
     found
 }
 
+/// What was found, with its joints.
+fn named(diagnosis: &Diagnosis) -> Vec<(&str, Vec<usize>)> {
+    diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.clone())).collect()
+}
+
 /// Direction of a joint over 20 ms: wide enough for the noise of its encoder.
 fn direction(motion: &Trajectory, joint: usize, t: usize) -> f64 {
     let q = &motion.position[joint];
@@ -131,8 +136,7 @@ fn a_magnet_under_a_joint_depends_on_its_own_position_whatever_it_is_called() {
 #[test]
 fn a_curve_that_a_lever_imitates_is_a_curve_until_a_motion_tells_them_apart() {
     let diagnosis = diagnosed(&planar(), &Hidden::in_recording(balancer_that_gives_way));
-    let found: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.clone())).collect();
-    assert_eq!(found, [("position_dependent_torque", vec![2])]);
+    assert_eq!(named(&diagnosis), [("position_dependent_torque", vec![2])]);
     assert_eq!(diagnosis.cannot_tell.len(), 1);
     assert_eq!(diagnosis.cannot_tell[0].between, ["position_dependent_torque", "spring"]);
 }
@@ -142,8 +146,7 @@ fn where_one_motion_alone_goes_what_a_curve_leaves_is_no_push() {
     // One of the motions goes farther than the others for two thirds of a second: set aside as a push, it would be one for
     // ever, because the curve that is fitted to the rest ends there.
     let diagnosis = diagnosed(&planar(), &Hidden::in_recording(soft_spring));
-    let found: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect.as_str(), f.joints.clone())).collect();
-    assert_eq!(found, [("position_dependent_torque", vec![2])]);
+    assert_eq!(named(&diagnosis), [("position_dependent_torque", vec![2])]);
 }
 
 #[test]

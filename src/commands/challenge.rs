@@ -52,7 +52,7 @@ struct Diagnosed {
 
 /// Diagnoses all cases, then keeps score.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    can_write(&arguments.json)?;
+    can_write([&arguments.json])?;
     let cases = cases(arguments)?;
     let settings = Settings::default();
     let bar = Bar::new("diagnosis");

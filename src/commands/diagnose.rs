@@ -80,9 +80,7 @@ const QUICK: f64 = 30.0;
 /// Diagnoses, prints, saves.
 pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure> {
     let source = &arguments.recording;
-    can_write(
-        [&arguments.json, &arguments.out, &arguments.residuals, &arguments.report].into_iter().flatten(),
-    )?;
+    can_write([&arguments.json, &arguments.out, &arguments.residuals, &arguments.report])?;
     let measured = measure(source)?;
     let model = measured.dynamics.model();
     let mut baseline = match &arguments.baseline {

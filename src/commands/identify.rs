@@ -93,9 +93,7 @@ pub(super) fn run(arguments: &Arguments, line: &[String]) -> Result<(), Failure>
     if let Some(loaded) = &arguments.load.loaded {
         return gains::run(arguments, loaded);
     }
-    can_write(
-        [&arguments.json, &arguments.out, &arguments.residuals, &arguments.report].into_iter().flatten(),
-    )?;
+    can_write([&arguments.json, &arguments.out, &arguments.residuals, &arguments.report])?;
     if let Some(reference) = &arguments.load.reference {
         return payload::run(arguments, reference);
     }

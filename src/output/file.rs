@@ -33,11 +33,8 @@ impl Complete {
 
     /// Gives it its name; what had the name before is gone.
     pub fn replace(self, path: &Path) -> io::Result<()> {
-        if let Ok(old) = fs::metadata(path) {
-            if old.permissions().readonly() {
-                return Err(io::ErrorKind::PermissionDenied.into());
-            }
-            self.0.as_file().set_permissions(old.permissions())?;
+        if let Some(old) = permissions(path)? {
+            self.0.as_file().set_permissions(old)?;
         }
         self.0.persist(path).map_err(|error| error.error)?;
         Ok(())
@@ -46,13 +43,8 @@ impl Complete {
 
 /// Replaces the file at `path`, or makes it. A link stays and its target is replaced; a device or a pipe is written to.
 pub(super) fn replace(path: &Path, fill: Fill<'_>) -> io::Result<()> {
-    let path = match fs::metadata(path) {
-        Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-        Ok(found) if !found.is_file() => return into_device(path, fill),
-        Ok(_) => fs::canonicalize(path)?,
-        Err(_) => path.to_path_buf(),
-    };
-    let folder = path.parent().unwrap_or(Path::new("."));
+    let Some(path) = target(path)? else { return into_device(path, fill) };
+    let folder = folder(&path);
     Complete::new(folder, fill)?.replace(&path)?;
     sync_folder(folder);
     Ok(())
@@ -60,19 +52,32 @@ pub(super) fn replace(path: &Path, fill: Fill<'_>) -> io::Result<()> {
 
 /// Whether [`replace`] finds a place for its file. Nothing is left there.
 pub(super) fn can_replace(path: &Path) -> io::Result<()> {
-    match fs::metadata(path) {
-        Ok(found) if found.is_file() && found.permissions().readonly() => {
-            Err(io::ErrorKind::PermissionDenied.into())
-        }
-        Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
-        Ok(found) if !found.is_file() => Ok(()),
-        Ok(_) => in_its_folder(&fs::canonicalize(path)?),
-        Err(_) => in_its_folder(path),
-    }
+    let Some(path) = target(path)? else { return Ok(()) };
+    permissions(&path)?;
+    Complete::new(folder(&path), &mut |_| Ok(())).map(drop)
 }
 
-fn in_its_folder(path: &Path) -> io::Result<()> {
-    Complete::new(path.parent().unwrap_or(Path::new(".")), &mut |_| Ok(())).map(drop)
+/// The file that a path is, or will be; `None` for a device or a pipe.
+fn target(path: &Path) -> io::Result<Option<PathBuf>> {
+    Ok(match fs::metadata(path) {
+        Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        Ok(found) if !found.is_file() => None,
+        Ok(_) => Some(fs::canonicalize(path)?),
+        Err(_) => Some(path.to_path_buf()),
+    })
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new("."))
+}
+
+/// What the file that is there permits, which a person has not protected; `None` where there is none.
+fn permissions(path: &Path) -> io::Result<Option<fs::Permissions>> {
+    match fs::metadata(path).map(|old| old.permissions()) {
+        Ok(old) if old.readonly() => Err(io::ErrorKind::PermissionDenied.into()),
+        Ok(old) => Ok(Some(old)),
+        Err(_) => Ok(None),
+    }
 }
 
 /// A device or a pipe has no other state to keep.

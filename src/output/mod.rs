@@ -57,12 +57,12 @@ pub fn fill(path: &Path, fill: Fill<'_>) -> Result<(), Failure> {
     file::replace(path, fill).map_err(|error| file_failure("write it", path, &error))
 }
 
-/// Whether files can be made where long work will write them; `-`, devices and pipes are not asked.
+/// Whether files that were asked for can be made where long work will write them; `-`, devices and pipes are not asked.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the first path at which no file can be.
-pub fn can_write<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Result<(), Failure> {
-    for path in paths.into_iter().filter(|path| *path != Path::new("-")) {
+pub fn can_write<'p>(paths: impl IntoIterator<Item = &'p Option<PathBuf>>) -> Result<(), Failure> {
+    for path in paths.into_iter().flatten().filter(|path| *path != Path::new("-")) {
         file::can_replace(path).map_err(|error| file_failure("write it", path, &error))?;
     }
     Ok(())

@@ -88,6 +88,9 @@ pub(super) const NAMED_DELAY: f64 = 1e-3;
 /// Longest block of motion, s, longer than residuals of a robot in motion are correlated. Judgement; both concealment
 /// pages.
 pub(super) const LONGEST_BLOCK: f64 = 0.5;
+/// Least part of a block's squares that a fit is taken to leave. Numerics: a block that alone tells a parameter leaves none;
+/// effects in `docs/coverage.md`.
+pub(super) const LEAST_OF_A_BLOCK: f64 = 0.1;
 /// From this many blocks of that length on, gains are compared block by block. Judgement: with fewer,
 /// Student's tail is so long that hundreds of comparisons leave nothing certain; `docs/concealment_short.md`.
 pub(super) const ENOUGH_BLOCKS: usize = 24;

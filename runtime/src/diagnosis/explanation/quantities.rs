@@ -33,9 +33,7 @@ pub(in crate::diagnosis) fn uncertainty(
         design.push(slope);
         varied.push(i);
     }
-    let deviations: Vec<f64> =
-        side.fit.variances().iter().take(design.parameters).map(|v| v.max(0.0).sqrt()).collect();
-    let of_parameters = along_parameters(model, &side.design, term, (amplitude, &deviations));
+    let of_parameters = along_parameters(model, term, amplitude);
     let first = of_parameters.first().map_or(start, |(i, _)| *i);
     for (i, slope) in of_parameters {
         design.columns[i].iter_mut().zip(slope).for_each(|(column, slope)| *column += slope);

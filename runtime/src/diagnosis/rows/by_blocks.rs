@@ -2,6 +2,7 @@
 
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rules::LEAST_OF_A_BLOCK;
 use crate::statistics::student::student_factor;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -21,13 +22,12 @@ impl Fit {
     /// variance from few blocks that count is known from few (Bell and McCaffrey 2002, with independent rows as the working
     /// model).
     pub fn variance_by_blocks(&self, design: &Design, residual: &[f64], column: usize, rows: usize) -> f64 {
-        let unit = DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 });
-        let weights = self.solve(&unit);
+        let weights = self.weights_of(column);
         let mut blocks: BTreeMap<(usize, usize), BlockError> = BTreeMap::new();
         for (j, sigma) in self.sigma.iter().enumerate() {
             let per_variance = 1.0 / (sigma * sigma);
             for row in design.of_joint(j) {
-                let influence: f64 = design.columns.iter().zip(weights.iter()).map(|(c, w)| c[row] * w).sum();
+                let influence = influence(design, &weights, row);
                 let block = blocks.entry(design.block(design.rows[row], rows));
                 let block = block.or_insert_with(|| BlockError::none(self.chi.len()));
                 block.error += influence * residual[row] * per_variance;
@@ -69,8 +69,7 @@ impl Fit {
         rows: usize,
     ) -> OfBlocks {
         let k = columns.len();
-        let unit = |column| DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 });
-        let weights: Vec<DVector<f64>> = columns.map(|column| self.solve(&unit(column))).collect();
+        let weights: Vec<DVector<f64>> = columns.map(|column| self.weights_of(column)).collect();
         let mut blocks: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();
         for (j, sigma) in self.sigma.iter().enumerate() {
             for row in design.of_joint(j) {
@@ -78,8 +77,7 @@ impl Fit {
                     blocks.entry(design.block(design.rows[row], rows)).or_insert_with(|| DVector::zeros(k));
                 let error = residual[row] / (sigma * sigma);
                 for (sum, w) in block.iter_mut().zip(&weights) {
-                    let influence: f64 = design.columns.iter().zip(w.iter()).map(|(c, w)| c[row] * w).sum();
-                    *sum += influence * error;
+                    *sum += influence(design, w, row) * error;
                 }
             }
         }
@@ -87,6 +85,16 @@ impl Fit {
         let squares = blocks.values().fold(DMatrix::zeros(k, k), |sum, b| sum + b * b.transpose());
         OfBlocks { matrix: squares * (count / (count - 1.0)), blocks: blocks.len() }
     }
+
+    /// What makes the parameter of a column of the columns' inner products with the torques.
+    fn weights_of(&self, column: usize) -> DVector<f64> {
+        self.solve(&DVector::from_fn(self.chi.len(), |i, _| if i == column { 1.0 } else { 0.0 }))
+    }
+}
+
+/// What one unit of a row's torque, weighted, does to the parameter with these weights.
+fn influence(design: &Design, weights: &DVector<f64>, row: usize) -> f64 {
+    design.columns.iter().zip(weights.iter()).map(|(c, w)| c[row] * w).sum()
 }
 
 /// What a block of motion does to one parameter.
@@ -104,9 +112,6 @@ impl BlockError {
         Self { error: 0.0, expected: 0.0, fitted: DVector::zeros(parameters) }
     }
 }
-
-/// Least part of a block's squares that a fit is taken to leave. Numerics: a block that alone tells a parameter leaves none.
-const LEAST_OF_A_BLOCK: f64 = 0.1;
 
 #[cfg(test)]
 mod tests {

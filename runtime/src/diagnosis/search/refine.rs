@@ -10,8 +10,8 @@ use crate::diagnosis::search::tuning::Tuning;
 use crate::parallel;
 
 impl Search<'_> {
-    /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission that may
-    /// join the model is refined on what nothing else explains. Says whether there was anything to refine.
+    /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
+    /// refined on what nothing else explains. Says whether there was anything to refine.
     pub(in crate::diagnosis) fn polish(&mut self) -> bool {
         let laws: Vec<Law> = self.model.terms.iter().map(|t| (t.effect, t.place, t.shape.clone())).collect();
         if self.polished_beside.contains(&laws) {
@@ -22,9 +22,6 @@ impl Search<'_> {
         let polished = parallel::map(self.threads, candidates.len(), |k| {
             let candidate = &candidates[k];
             candidate.fixed?;
-            if self.is_excluded(candidate) {
-                return None;
-            }
             let [best, nearest] = regression.best_and_nearest(candidate)?;
             let shape = self.refined(regression, candidate, best);
             let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);

@@ -1,6 +1,7 @@
 //! How the torque of a law moves with the numbers of its shape, and with the parameters of the robot.
 
 use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::SHAPE_STEP;
@@ -22,7 +23,7 @@ pub(in crate::diagnosis) fn tangents(
     // its amplitude once more.
     let estimated =
         |i: usize| !form.shape_is_amplitude() && steps.get(i).is_some_and(|step| !matches!(step, Step::Keep));
-    let weights: Vec<f64> = term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed]);
+    let weights = weights(term, amplitude);
     let along = |i: usize| {
         let step = SHAPE_STEP * term.shape[i].abs().max(1e-6);
         let moved = |by: f64| {
@@ -42,20 +43,26 @@ pub(in crate::diagnosis) fn tangents(
     all.filter(|(_, slope)| slope.iter().any(|x| *x != 0.0)).collect()
 }
 
-/// Derivatives of a term's torque on the rows of a design by the base parameters, where its columns are made of these: the
-/// load of a gear, a torque that is heard. Differences over one standard deviation of each parameter (`deviations`), as far
-/// as it may be off; each with the place of the parameter.
+/// What the columns of a term are multiplied by.
+fn weights(term: &Accepted, amplitude: &[f64]) -> Vec<f64> {
+    term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed])
+}
+
+/// Derivatives of a term's torque on the rows that it is judged on by the base parameters, where its columns are made of these: the
+/// load of a gear, a torque that is heard. Differences over one standard deviation of each parameter, as far as it may be
+/// off; each with the place of the parameter.
 pub(in crate::diagnosis) fn along_parameters(
     model: &ExtendedModel<'_>,
-    design: &Design,
     term: &Accepted,
-    (amplitude, deviations): (&[f64], &[f64]),
+    amplitude: &[f64],
 ) -> Vec<(usize, Vec<f64>)> {
     // A curve over torques bends where they are: a deviation of a parameter moves along it what it is fitted to anyway.
     if !term.effect.properties().follows_parameters || term.effect.form().is_curve() {
         return Vec::new();
     }
-    let weights: Vec<f64> = term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed]);
+    let Regression { design, fit, .. } = model.regression(term.effect.properties().window);
+    let deviations = fit.variances().map(|v| v.max(0.0).sqrt());
+    let weights = weights(term, amplitude);
     let torque = |context: &Context<'_>| {
         let columns = dense_columns(context, design, term.effect, term.place, &term.shape, model.change);
         let mut sum = vec![0.0; design.rows.len()];
