@@ -2,7 +2,7 @@
 //! torques; and the recordings that it refuses.
 
 use super::error::DiagnosisError;
-use super::explanation::delay::skew_of;
+use super::explanation::delay::{Skew, usual_deviation};
 use super::motions::Motions;
 use super::rate::{WrongRate, corrected, factor};
 use super::rows::context::Context;
@@ -120,9 +120,11 @@ impl Prepared {
         Ok(context.beside(self.motions.settings().reference.clone()))
     }
 
-    /// A skew of more than a part of a sample is taken out of the motions themselves. The robot may carry more than a
+    /// A skew of more than a part of a sample is taken out of the motions themselves: what is to be expected of it, as one from
+    /// noise would be wrong for other motion. The robot may carry more than a
     /// reference knows of, and the torque of that is no skew: every parameter is free to be another one.
     fn take_out_skew(&mut self, model: &dyn Model) -> Result<(), DiagnosisError> {
+        let of_reference = self.delay;
         for _ in 0..rules::DELAY_ROUNDS {
             let (mut rows, mut context) = (self.aligned.clone(), self.context(model)?);
             if let Some(prior) = rows.prior.take() {
@@ -131,14 +133,14 @@ impl Prepared {
                 let chi = fit.chi.iter().take(rows.parameters).copied().collect();
                 context.update(chi, context.carried().to_vec());
             }
-            let found = skew_of(&context, rows)?;
-            let signals = &mut self.motions.signals;
-            let rate = signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min);
-            if found.abs() * rate < rules::DELAY_TAKEN_OUT {
+            let found =
+                Skew::of(&context, rows)?.expected(self.delay - of_reference, usual_deviation(&context));
+            let more = of_reference + found - self.delay;
+            if more.abs() * context.rate() < rules::DELAY_TAKEN_OUT {
                 break;
             }
-            self.delay += found;
-            for motion in signals {
+            self.delay += more;
+            for motion in &mut self.motions.signals {
                 motion.set_delay(self.delay)?;
             }
             self.aligned = self.motions.aligned(model);

@@ -21,8 +21,12 @@ pub(super) const STANDSTILL: f64 = 0.015;
 /// Least explained fraction of a joint's held-out squares. Judgement: below it, what is right is of no use, and small
 /// errors of the standard model are named as effects; false namings in `docs/concealment.md`.
 pub(super) const LEAST_EXPLAINED_FRACTION: f64 = 0.12;
-/// Least confidence. Statistics: one false naming in a hundred rounds; false namings in both concealment pages.
-pub(super) const LEAST_CONFIDENCE: f64 = 0.99;
+/// Least confidence. Statistics: of a thousand recordings that lack nothing one is told to lack something; false namings in
+/// both concealment pages.
+pub(super) const LEAST_CONFIDENCE: f64 = 0.999;
+/// The level is so many times as high once a law is in the model: a gate in front of the other tests, which alone says whether
+/// anything is missing (Dmitrienko and Tamhane 2007). Statistics: one false naming in a hundred rounds.
+pub(super) const LEVEL_BESIDE_LAWS: f64 = 10.0;
 /// Searches of their own that a recording goes through: laws, lines, contacts, skew. The chance of a false naming is shared
 /// among them. Statistics.
 pub(super) const SEARCHES: f64 = 4.0;
@@ -77,6 +81,9 @@ pub(super) const DELAY_ROUNDS: usize = 2;
 pub(super) const LOOSE_REFERENCE: f64 = 1e3;
 /// A skew of fewer samples is left to its column. Mechanics: within one sample, linear interpolation is exact enough.
 pub(super) const DELAY_TAKEN_OUT: f64 = 0.75;
+/// Standard deviation of skews before anything is known of one, s, a sample at least. Mechanics: filters of currents, buses and
+/// cycles of controllers delay by milliseconds.
+pub(super) const DELAY_DEVIATION: f64 = 0.01;
 /// A delay is named from this many samples on: a smaller one is part of sampling. Mechanics; time_delay in
 /// `docs/concealment.md`.
 pub(super) const NAMED_DELAY_SAMPLES: f64 = 0.75;
@@ -434,7 +441,7 @@ pub(super) const SCAN_IMPACT: f64 = 0.12;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(super) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording in which nothing else was found. Statistics: the share of this search in
-/// 1 - [`LEAST_CONFIDENCE`], see [`SEARCHES`]; size and power in the tests of `scan`.
+/// One false push in a hundred recordings, shared among [`SEARCHES`]; size and power in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 0.0025;
 /// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
 /// largest means knows nothing of; pushes of a hand are mostly far beyond.
@@ -483,11 +490,12 @@ pub(super) const LINE_MULTIPLES: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0];
 pub(super) const RECORDED_BAND: f64 = 0.4;
 /// Orders of a spectrum that are looked at besides.
 pub(super) const LINE_PICKED: usize = 4;
-/// How far a known order must stand above the median of the orders around it. Statistics: an amplitude of noise does
-/// once in 2^16 orders.
-pub(super) const LINE_ABOVE: f64 = 4.0;
-/// The same for an order that was picked from a spectrum. Statistics: once in 2^25.
-pub(super) const LINE_PICKED_ABOVE: f64 = 5.0;
+/// How far a known order must stand above the larger median of the orders on both sides of it to be a line of a motion.
+/// Statistics: an amplitude of noise does once in 2,000 orders (`statistics::greatest_of`); how sure the line of all motions is,
+/// of all orders that were tried, is judged besides.
+pub(super) const LINE_ABOVE: f64 = 3.3;
+/// The same for an order that was picked from a spectrum. Statistics: once in 60,000.
+pub(super) const LINE_PICKED_ABOVE: f64 = 4.2;
 /// Least fraction that one half of a motion predicts for the other. Judgement: a line worth its name; lines of noise
 /// stay below 0.012.
 pub(super) const LINE_LEAST_FRACTION: f64 = 0.02;
@@ -497,8 +505,8 @@ pub(super) const LINE_SLOWER: f64 = 4.0;
 pub(super) const LINE_LEAST_WAVES: f64 = 8.0;
 /// Samples that each half must have. Statistics.
 pub(super) const LINE_LEAST_SAMPLES: usize = 100;
-/// Orders on each side that a line is compared with. Statistics: a median of two dozen.
-pub(super) const LINE_AROUND: usize = 12;
+/// Orders on each side that a line is compared with. Statistics: a median of sixteen on each side.
+pub(super) const LINE_AROUND: usize = 16;
 /// Steps of what the travel resolves that a line covers itself on each side. Mechanics: its main lobe.
 pub(super) const LINE_COVERED: usize = 3;
 

@@ -30,7 +30,8 @@ pub struct Settings {
     pub standstill: f64,
     /// Least share of a joint's unexplained held-out energy that an effect must explain to be named.
     pub least_share: f64,
-    /// Least confidence: one minus the probability that any of all candidates comes as far by accident.
+    /// Least confidence that something is missing at all: one minus the probability that any of all candidates comes as far by
+    /// accident. Beside a first law the probability may be ten times as large.
     pub least_confidence: f64,
     /// Most effects that are named.
     pub most_effects: usize,
@@ -120,6 +121,12 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The same for what is looked for beside a law that is in the model: that something is missing is certain then.
+    pub(super) fn beside_laws(&self) -> Self {
+        let level = (rules::LEVEL_BESIDE_LAWS * (1.0 - self.least_confidence)).min(0.5);
+        Self { least_confidence: 1.0 - level, ..self.clone() }
+    }
+
     /// The confidence that a law needs to stay, less than to be taken: its variation is estimated anew in each round.
     pub(super) fn confidence_to_stay(&self) -> f64 {
         1.0 - (rules::LEVEL_TO_STAY * (1.0 - self.least_confidence)).min(0.5)
@@ -138,4 +145,22 @@ pub struct Silent;
 
 impl Progress for Silent {
     fn at(&self, _: f64, _: &str) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beside_a_law_ten_times_the_level_is_enough_and_to_stay_less_still() {
+        let first = Settings::default();
+        let next = first.beside_laws();
+        let level = |settings: &Settings| 1.0 - settings.least_confidence;
+        approx::assert_relative_eq!(level(&next), 10.0 * level(&first), max_relative = 1e-9);
+        assert!(next.confidence_to_stay() < next.least_confidence);
+        assert_eq!(
+            Settings { least_confidence: 0.0, ..Settings::default() }.beside_laws().least_confidence,
+            0.5
+        );
+    }
 }

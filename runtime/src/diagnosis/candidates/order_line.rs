@@ -11,6 +11,7 @@ use crate::diagnosis::rules::{
     LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
     LINE_PICKED_ABOVE, LINE_SLOWER,
 };
+use crate::statistics::greatest_of::{p_value, upper_median};
 use std::f64::consts::TAU;
 
 /// A joint in one motion, at the full rate.
@@ -35,8 +36,12 @@ pub(in crate::diagnosis) struct Line {
     pub sigma: f64,
     /// Rms of the residual without what is slower, N.m or N, the median of the motions.
     pub rms: f64,
-    /// Its amplitude against the median of the orders around it, all motions together.
+    /// Its amplitude against the larger median of the orders on both sides of it, all motions together.
     pub above: f64,
+    /// Probability that noise stands as far above at one order.
+    pub p_value: f64,
+    /// Whether motors have lines at its order, so that it was looked for there.
+    pub known: bool,
     /// Share of the residual that one half of a motion predicts for the other, the median of the motions.
     pub share: f64,
 }
@@ -58,18 +63,18 @@ pub(in crate::diagnosis) fn lines(
     picked: &[f64],
     slowest: f64,
 ) -> Vec<Line> {
-    let known = known.iter().map(|&o| (o, LINE_ABOVE));
-    let picked = picked.iter().map(|&o| (o, LINE_PICKED_ABOVE));
+    let known = known.iter().map(|&o| (o, LINE_ABOVE, true));
+    let picked = picked.iter().map(|&o| (o, LINE_PICKED_ABOVE, false));
     let resolved = resolution(strokes);
     let mut found: Vec<Line> = Vec::new();
-    for (order, above) in known.chain(picked) {
+    for (order, above, known) in known.chain(picked) {
         let looked: Vec<Look> = strokes.iter().map(|s| look(s, order, slowest)).collect();
         let able = looked.iter().filter(|l| !matches!(l, Look::Blind)).count();
-        let shown: Vec<&Line> = looked.iter().filter_map(|l| l.line(above)).collect();
+        let shown: Vec<&InMotion> = looked.iter().filter_map(|l| l.line(above)).collect();
         if shown.is_empty() || 2 * shown.len() <= able {
             continue;
         }
-        let median = |value: fn(&Line) -> f64| {
+        let median = |value: fn(&InMotion) -> f64| {
             let mut values: Vec<f64> = shown.iter().map(|l| value(l)).collect();
             values.sort_by(f64::total_cmp);
             values[values.len() / 2]
@@ -77,17 +82,19 @@ pub(in crate::diagnosis) fn lines(
         let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
         let Some((order, together)) = highest(&all, median(|l| l.order), resolved) else { continue };
         // A wave over the joint's angle has one phase in all motions: together they show it no worse than one by one.
-        let around = median_around(&all, order, resolved);
-        if together.norm() < above * around {
+        let around = Around::of(&all, order, resolved);
+        if together.norm() < above * around.level {
             continue;
         }
         found.push(Line {
             order,
             cosine: together.c,
             sine: together.s,
-            sigma: deviation(around),
+            sigma: deviation(around.level),
             rms: median(|l| l.rms),
-            above: together.norm() / around,
+            above: together.norm() / around.level,
+            p_value: p_value(together.norm() / around.level, around.orders),
+            known,
             share: median(|l| l.share),
         });
     }
@@ -119,12 +126,20 @@ enum Look {
     /// One half of it does not predict the other.
     Nothing,
     /// It predicts enough of it: a line, if it stands out far enough.
-    Wave(Line),
+    Wave(InMotion),
+}
+
+/// A wave in one motion, in the terms of a [`Line`].
+struct InMotion {
+    order: f64,
+    rms: f64,
+    above: f64,
+    share: f64,
 }
 
 impl Look {
     /// The line, where it stands out this far.
-    fn line(&self, above: f64) -> Option<&Line> {
+    fn line(&self, above: f64) -> Option<&InMotion> {
         match self {
             Look::Wave(line) if line.above >= above => Some(line),
             _ => None,
@@ -162,14 +177,10 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
     if share < LINE_LEAST_FRACTION {
         return Look::Nothing;
     }
-    let median = median_around(&samples, order, step);
-    Look::Wave(Line {
+    Look::Wave(InMotion {
         order,
-        cosine: fitted.c,
-        sine: fitted.s,
         rms: (samples.iter().map(|s| s.r * s.r).sum::<f64>() / samples.len() as f64).sqrt(),
-        sigma: deviation(median),
-        above: fitted.norm() / median,
+        above: fitted.norm() / Around::of(&samples, order, step).level,
         share,
     })
 }
@@ -185,16 +196,29 @@ fn deviation(median: f64) -> f64 {
     median / (2.0 * std::f64::consts::LN_2).sqrt()
 }
 
-/// Median of the amplitudes at orders beside one, as many steps away as its own foot does not reach.
-fn median_around(samples: &[Sample], order: f64, step: f64) -> f64 {
-    let far = LINE_COVERED as f64 * step;
-    let above = Orders { first: order + far, step, count: LINE_AROUND };
-    let below = Orders { first: order - far, step: -step, count: LINE_AROUND };
-    let sides = [above, below].map(|side| side.all().zip(side.waves(samples)).collect::<Vec<_>>());
-    let mut around: Vec<f64> =
-        sides.iter().flatten().filter(|(o, _)| *o > step).map(|(_, w)| w.norm()).collect();
-    around.sort_by(f64::total_cmp);
-    around[around.len() / 2].max(1e-300)
+/// The orders on both sides of one, as many steps away as its own foot does not reach.
+struct Around {
+    /// The larger one of the medians of their amplitudes: what the model lacks and noise that lasts fall with the order, and an
+    /// edge is no line.
+    level: f64,
+    /// How many they are on each side.
+    orders: [usize; 2],
+}
+
+impl Around {
+    fn of(samples: &[Sample], order: f64, step: f64) -> Self {
+        let far = LINE_COVERED as f64 * step;
+        let above = Orders { first: order + far, step, count: LINE_AROUND };
+        let below = Orders { first: order - far, step: -step, count: LINE_AROUND };
+        let sides = [below, above].map(|side| {
+            let waves = side.all().zip(side.waves(samples));
+            let mut norms: Vec<f64> = waves.filter(|(o, _)| *o > step).map(|(_, w)| w.norm()).collect();
+            norms.sort_by(f64::total_cmp);
+            norms
+        });
+        let median = |side: &Vec<f64>| side.get(upper_median(side.len())).copied().unwrap_or(0.0);
+        Self { level: sides.iter().map(median).fold(1e-300, f64::max), orders: sides.map(|s| s.len()) }
+    }
 }
 
 /// Samples at which the joint moves slowly enough for the band to hold the wave.

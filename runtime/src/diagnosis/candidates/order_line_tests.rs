@@ -42,13 +42,13 @@ fn with_phase(rng: &mut Pcg64, speed: f64, order: f64, amplitude: f64, angle: f6
     out
 }
 
+fn strokes(motions: &[Motion]) -> Vec<Stroke<'_>> {
+    motions.iter().map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE }).collect()
+}
+
 fn found(motions: &[Motion]) -> Vec<Line> {
-    let strokes: Vec<Stroke<'_>> = motions
-        .iter()
-        .map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE })
-        .collect();
     let known: Vec<f64> = LINE_MULTIPLES.iter().map(|k| k * GEAR).collect();
-    lines(&strokes, &known, &[], 0.05)
+    lines(&strokes(motions), &known, &[], 0.05)
 }
 
 /// Amplitude of a wave with this share of unit noise.
@@ -68,6 +68,24 @@ fn noise_has_no_line() {
             })
             .collect();
         false_lines += found(&motions).len();
+    }
+    assert_eq!(false_lines, 0);
+}
+
+#[test]
+fn noise_that_lasts_falls_with_the_order_and_has_no_line_where_it_does() {
+    let mut rng = Pcg64::seed_from_u64(29);
+    let picked: Vec<f64> = (8..40).map(f64::from).collect();
+    let mut false_lines = 0;
+    for _ in 0..60 {
+        let mut motion = motion(&mut rng, 0.8, 1.0, 0.0);
+        let fading = (-1.0 / (rng.random_range(0.02..0.2) * RATE)).exp();
+        let mut slow = 0.0;
+        for residual in &mut motion.residual {
+            slow = fading * slow + (1.0 - fading * fading).sqrt() * normal(&mut rng);
+            *residual = 0.2 * *residual + slow;
+        }
+        false_lines += lines(&strokes(&[motion]), &[], &picked, 0.05).len();
     }
     assert_eq!(false_lines, 0);
 }

@@ -122,9 +122,10 @@ fn found(
     let robot = model.context.model.robot();
     let mut findings: Vec<Finding> = ended.contacts.map(|c| of_contacts(robot, c)).into_iter().collect();
     findings.extend(effects);
+    let settings = search.settings_of_next(settings);
     findings.extend(line::findings(search, settings.least_confidence));
     let expected = model.context.reference.as_ref().map_or(0.0, |r| r.delay());
-    let late = delay::finding(model, skew - expected, settings)?;
+    let late = delay::finding(model, skew - expected, &settings)?;
     let named_skew = late.is_some().then_some(skew - expected);
     findings.extend(late);
     // Pushes and a wrong rate are looked for on slow rows, and what was there before them was predicted on these.

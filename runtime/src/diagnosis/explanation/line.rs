@@ -6,7 +6,7 @@ use crate::diagnosis::explanation::quantities::propagate;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::Finding;
 use crate::diagnosis::rules::{LINE_COVERED, SEARCHES};
-use crate::diagnosis::search::line::JointLines;
+use crate::diagnosis::search::line::{JointLines, Tried};
 use crate::diagnosis::search::state::Search;
 use crate::effects::{EffectKind, EffectTerm, Form, Place};
 
@@ -14,15 +14,26 @@ use crate::effects::{EffectKind, EffectTerm, Form, Place};
 ///
 /// The amplitudes are those of the full rate: rows may be smoothed or filtered more than the wave can take.
 pub(in crate::diagnosis) fn findings(search: &Search<'_>, least_confidence: f64) -> Vec<Finding> {
-    let tried: usize = search.lines.iter().map(|l| l.tried).sum();
+    let tried = search.lines.iter().fold(Tried::default(), |all, lines| Tried {
+        known: all.known + lines.tried.known,
+        whole: all.whole + lines.tried.whole,
+    });
     let least = 1.0 - (1.0 - least_confidence) / SEARCHES;
+    let doubt = |line: &Line| if line.known { tried.known } else { tried.whole } as f64 * line.p_value;
     let of_joint = |(j, found): (usize, &JointLines)| {
-        finding(search, j, found, tried).filter(|f| f.confidence >= told(least))
+        let sure: Vec<&Line> = found.lines.iter().filter(|line| doubt(line) <= 1.0 - least).collect();
+        finding(search, j, (found, sure), doubt)
     };
     search.lines.iter().enumerate().filter_map(of_joint).collect()
 }
 
-fn finding(search: &Search<'_>, joint: usize, found: &JointLines, tried: usize) -> Option<Finding> {
+/// The lines of a joint as a finding; `doubt` is the probability that noise has one like it anywhere.
+fn finding(
+    search: &Search<'_>,
+    joint: usize,
+    (found, sure): (&JointLines, Vec<&Line>),
+    doubt: impl Fn(&Line) -> f64,
+) -> Option<Finding> {
     let model = &search.model;
     let (effect, place) = (EffectKind::TorqueRipple, Place::Joint(joint));
     let near = LINE_COVERED as f64 * found.resolution;
@@ -30,7 +41,7 @@ fn finding(search: &Search<'_>, joint: usize, found: &JointLines, tried: usize) 
         let same = model.terms.iter().filter(|t| t.effect == effect && t.place == place);
         same.flat_map(|t| &t.shape).any(|order| (order - line.order).abs() <= near)
     };
-    let lines: Vec<&Line> = found.lines.iter().filter(|l| !in_model(l)).collect();
+    let lines: Vec<&Line> = sure.into_iter().filter(|l| !in_model(l)).collect();
     let strongest = lines.first()?;
     let shape: Vec<f64> = lines.iter().map(|l| l.order).collect();
     let amplitude: Vec<f64> = lines.iter().flat_map(|l| [l.cosine, l.sine]).collect();
@@ -42,12 +53,10 @@ fn finding(search: &Search<'_>, joint: usize, found: &JointLines, tried: usize) 
     let shape_sigma: Vec<f64> = lines.iter().map(of_order).collect();
     let parameters =
         propagate(|shape| law.parameters(scale, shape, &amplitude, &sigma), &shape, &shape_sigma);
-    // Amplitudes of noise pass their median so many times once in 2^(square) orders.
-    let doubt = tried as f64 * (-strongest.above * strongest.above).exp2();
     let share: f64 = lines.iter().map(|l| l.share).sum::<f64>().min(1.0);
     let before = strongest.rms / found.torque.max(1e-300);
     let mut finding = Finding {
-        confidence: told(1.0 - doubt),
+        confidence: told(1.0 - doubt(strongest)),
         significance: strongest.amplitude() / strongest.sigma.max(1e-300),
         parameters: parameters.iter().map(|p| (p.name.clone(), p.into())).collect(),
         held_out_before: before,

@@ -46,7 +46,8 @@ pub(in crate::diagnosis) fn uncertainty(
     // The first allows for the noise of the test; by blocks also noise of longer memory and what the law lacks count.
     let sd = |c: usize| {
         let white = term.inflation * term.inflation * variances[c];
-        white.max(fit.variance_by_blocks(&design, &residual, c, rows)).max(0.0).sqrt()
+        let by_blocks = fit.variance_by_blocks(&design, &residual, c, rows);
+        white.max(by_blocks.map_or(0.0, |by_blocks| by_blocks.widened())).max(0.0).sqrt()
     };
     let amplitudes = side.term_columns[k].clone().map(sd).collect();
     let mut shapes = vec![0.0; term.shape.len()];

@@ -196,6 +196,15 @@ impl Regression {
         self.fixed_columns
     }
 
+    /// Squares that another regression of the same rows leaves less of with these weights, in units of the noise variance.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn gain_against(&self, other: &Self) -> Result<f64, SingularDesign> {
+        let with = Fit::whole(&other.design, &self.sigma)?;
+        Ok(self.fit.weighted_squares(&self.design) - with.weighted_squares(&other.design))
+    }
+
     /// Residual of every row, all segments fitted.
     pub fn residual(&self) -> Vec<f64> {
         self.fit.residual(&self.design)

@@ -8,6 +8,21 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+/// The variance of one parameter as blocks of motion show it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct OneOfBlocks {
+    pub variance: f64,
+    /// Degrees of freedom that it has.
+    pub freedom: f64,
+}
+
+impl OneOfBlocks {
+    /// The variance such that 1.96 of its standard deviations are half an interval of 95 %.
+    pub fn widened(&self) -> f64 {
+        self.variance * student_factor(self.freedom).powi(2)
+    }
+}
+
 /// A covariance as blocks of motion show it.
 pub(in crate::diagnosis) struct OfBlocks {
     pub matrix: DMatrix<f64>,
@@ -17,11 +32,16 @@ pub(in crate::diagnosis) struct OfBlocks {
 
 impl Fit {
     /// Variance of the parameter of a column where blocks of motion, of `rows` rows, err independently of each other, each by
-    /// as much as its residual shows, as [`Self::covariance_by_blocks`] has it, but such that 1.96 of its standard
-    /// deviations are half an interval of 95 %: the squares of a block are given back what the fit takes of them, and a
-    /// variance from few blocks that count is known from few (Bell and McCaffrey 2002, with independent rows as the working
-    /// model).
-    pub fn variance_by_blocks(&self, design: &Design, residual: &[f64], column: usize, rows: usize) -> f64 {
+    /// as much as its residual shows, as [`Self::covariance_by_blocks`] has it, but with what the fit takes of the squares of a
+    /// block given back to it, and with the degrees of freedom of blocks that count differently (Bell and McCaffrey 2002, with
+    /// independent rows as the working model). None where no row knows of the parameter.
+    pub fn variance_by_blocks(
+        &self,
+        design: &Design,
+        residual: &[f64],
+        column: usize,
+        rows: usize,
+    ) -> Option<OneOfBlocks> {
         let weights = self.weights_of(column);
         let mut blocks: BTreeMap<(usize, usize), BlockError> = BTreeMap::new();
         for (j, sigma) in self.sigma.iter().enumerate() {
@@ -39,7 +59,7 @@ impl Fit {
         }
         let blocks: Vec<BlockError> = blocks.into_values().filter(|block| block.expected > 0.0).collect();
         if blocks.is_empty() {
-            return 0.0;
+            return None;
         }
         // With independent rows the errors of blocks b and c have the covariance expected_b (b = c) less fitted_b G^-1
         // fitted_c, each scaled such that the diagonal is what is expected: its trace, and that of its square.
@@ -55,7 +75,7 @@ impl Fit {
             between.ger(scale, &fitted, &block.fitted, 1.0);
         }
         squares += between.component_mul(&between.transpose()).sum();
-        variance * student_factor(trace * trace / squares).powi(2)
+        Some(OneOfBlocks { variance, freedom: trace * trace / squares })
     }
 
     /// Covariance of the parameters of columns where blocks of motion, of `rows` rows, err independently of each other, each
@@ -142,7 +162,9 @@ mod tests {
             let fit = Fit::whole(&design, &[1.0]).expect("a small problem is regular");
             let residual = fit.residual(&design);
             let of_equal = fit.covariance_by_blocks(&design, &residual, 0..1, ROWS).matrix[(0, 0)];
-            let variances = [fit.variance_by_blocks(&design, &residual, 0, ROWS), of_equal];
+            let by_blocks =
+                fit.variance_by_blocks(&design, &residual, 0, ROWS).expect("every block knows of it");
+            let variances = [by_blocks.widened(), of_equal];
             for (inside, variance) in inside.iter_mut().zip(variances) {
                 *inside += usize::from((fit.chi[0] - TRUTH).abs() <= 1.96 * variance.sqrt());
             }

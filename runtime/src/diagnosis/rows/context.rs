@@ -121,6 +121,11 @@ impl<'a> Context<'a> {
         copy
     }
 
+    /// Lowest rate of the motions, Hz.
+    pub fn rate(&self) -> f64 {
+        self.signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min)
+    }
+
     /// Bodies that the reference has.
     pub fn carried_before(&self) -> Vec<Carried> {
         let effects = self.reference.iter().flat_map(|reference| reference.effects());

@@ -275,15 +275,6 @@ impl Design {
         }
     }
 
-    /// Takes a column out; those after it move up.
-    pub fn remove(&mut self, column: usize) -> Vec<f64> {
-        for range in &mut self.shrunk {
-            let moved = |k: usize| if k > column { k - 1 } else { k };
-            *range = moved(range.start)..moved(range.end);
-        }
-        self.columns.remove(column)
-    }
-
     /// Adds a column given per row.
     pub fn push(&mut self, column: Vec<f64>) {
         self.columns.push(column);

@@ -7,9 +7,11 @@ use crate::diagnosis::candidates::nuisances::{
 };
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::explanation::delay::usual_deviation;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::rows::context::{Carried, Context};
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{GAIN_DEVIATION, LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
@@ -31,7 +33,8 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
 }
 
 impl<'a> ExtendedModel<'a> {
-    /// Without any effect; nuisances are always fitted along.
+    /// Without any effect; nuisances are always fitted along. Of these the skew of the torques is known to be small: what
+    /// is certainly there was taken out of the motions before.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
@@ -49,6 +52,9 @@ impl<'a> ExtendedModel<'a> {
                 let first = design.parameters + standing_from(design.joints);
                 design.prior = reference.prior_with_laws(first, &design.known).map(Arc::new);
             }
+            let skew = design.parameters..design.parameters + SKEW_COLUMNS;
+            let with_skew = Prior::with_zeros(design.prior.as_deref(), skew, usual_deviation(&context));
+            design.prior = Some(Arc::new(with_skew));
             Regression::new(design, nuisances)
         };
         let (slow, fast) = (regression(slow)?, regression(fast)?);

@@ -74,8 +74,9 @@ impl Search<'_> {
         };
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
         let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
+        let beside_laws = settings.beside_laws().least_confidence;
         let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
-        let changed: Vec<Changed> = (0..joints)
+        let mut changed: Vec<Changed> = (0..joints)
             .filter_map(|j| {
                 let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
                 let (shared, background) = own.as_ref().or(baseline.as_ref())?;
@@ -87,7 +88,7 @@ impl Search<'_> {
                     bench.own_friction_of(j),
                     1.0,
                 ));
-                let sure = confidence >= settings.least_confidence;
+                let sure = confidence >= beside_laws;
                 let excluded = match change {
                     Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
                     Change::DriveGain => is_excluded(DRIVE_GAIN, j),
@@ -96,6 +97,9 @@ impl Search<'_> {
                 (sure && !excluded).then_some(Changed { joint: j, change, significance, confidence })
             })
             .collect();
+        if self.model.terms.is_empty() && changed.iter().all(|c| c.confidence < settings.least_confidence) {
+            changed.clear();
+        }
         self.small.clear();
         for found in changed {
             let joint = found.joint;

@@ -7,7 +7,8 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rules::{FIRST_OF_PAIR, MOST_FIRSTS};
 use crate::diagnosis::search::gate::RoundEvidence;
-use crate::diagnosis::search::round::Winner;
+use crate::diagnosis::search::round::{Ranked, Winner};
+use crate::diagnosis::search::standing::penalty;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
@@ -36,7 +37,37 @@ impl Search<'_> {
             }
         }
         self.refit_and_update()?;
-        Ok(found)
+        match found {
+            Some(pair) if !self.one_law_suffices(&pair)? => Ok(Some(pair)),
+            _ => Ok(None),
+        }
+    }
+
+    /// Whether a single law of the joint of a pair, or one that shows there, explains as much, each of their numbers paid for: it may be one
+    /// that is not named because another joint could have it as well, and then two laws imitate it.
+    fn one_law_suffices(&self, pair: &[Accepted; 2]) -> Result<bool, SingularDesign> {
+        let [window, other] = [0, 1].map(|k| pair[k].effect.properties().window);
+        if window != other {
+            return Ok(false);
+        }
+        let regression = self.model.regression(window);
+        let mut with = self.model.clone();
+        with.terms.extend(pair.iter().cloned());
+        with.refit()?;
+        let columns = &with.regression(window).term_columns;
+        let amplitudes = columns.iter().rev().take(pair.len()).map(|columns| columns.len()).sum::<usize>();
+        let shapes = pair.iter().map(|law| law.shape.len()).sum::<usize>();
+        let penalty = penalty(self.tries());
+        let worth = |gain: f64, numbers: usize| gain - penalty * numbers as f64;
+        let of_pair = regression.gain_against(with.regression(window))?;
+        let joint = pair[0].own[0];
+        let shows = |r: &Ranked| r.verdict.shows_on.contains(&joint) || self.of(r).1.own.contains(&joint);
+        let same = self.ranked(None).into_iter().filter(|r| r.window == window && shows(r));
+        let best_of_one = same.map(|r| {
+            let trial = &self.of(&r).1.trials[r.verdict.trial];
+            worth(r.verdict.gain, trial.columns.len() + trial.shape.len())
+        });
+        Ok(best_of_one.fold(f64::NEG_INFINITY, f64::max) >= worth(of_pair, amplitudes + shapes))
     }
 
     /// Laws of one joint that are no likely accident, as first laws of a pair.

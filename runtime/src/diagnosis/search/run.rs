@@ -37,7 +37,7 @@ impl Search<'_> {
                 continue;
             }
             // 2. Cases of one more general law were found one after the other.
-            self.generalise(settings)?;
+            self.generalise(&self.settings_of_next(settings))?;
             // 3. Backward: what does not hold beside the others is taken out, for good.
             progress.at(0.87, "pruning");
             let rejected = self.prune(settings)?;
@@ -47,8 +47,10 @@ impl Search<'_> {
                 // 6. What is no larger than what nothing explains may be a part of that.
                 self.take_out_small()?;
                 // 7. Nor is anything named whose own numbers may be zero.
-                self.take_out_uncertain(settings)?;
-                // 8. Last, friction that has changed: it is free from the start, and no evidence for anything else.
+                self.take_out_uncertain(&self.settings_of_next(settings))?;
+                // 8. What joined beside a law that is gone must be certain by itself.
+                self.take_out_without_first(settings)?;
+                // 9. Last, friction that has changed: it is free from the start, and no evidence for anything else.
                 self.name_friction_changes(settings)?;
                 return Ok(SearchReport { stop, removed: self.rejected.clone() });
             }
@@ -58,8 +60,19 @@ impl Search<'_> {
         }
     }
 
+    /// Takes all laws out where none of them is certain enough to be the first.
+    fn take_out_without_first(&mut self, settings: &Settings) -> Result<(), SingularDesign> {
+        let terms = &mut self.model.terms;
+        if terms.is_empty() || terms.iter().any(|term| term.confidence >= settings.least_confidence) {
+            return Ok(());
+        }
+        self.rejected.append(terms);
+        self.refit_and_update()
+    }
+
     fn extend(&mut self, settings: &Settings, progress: &dyn Progress) -> Result<StopReason, SingularDesign> {
         while self.model.terms.len() < settings.most_effects {
+            let settings = &self.settings_of_next(settings);
             let done = self.model.terms.len() as f64 / settings.most_effects as f64;
             progress.at(0.6 + 0.25 * done, "held-out tests");
             let mut round = self.best(settings, None, 1)?;

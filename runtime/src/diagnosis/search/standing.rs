@@ -22,7 +22,7 @@ pub(in crate::diagnosis) enum Standing {
 }
 
 /// What a number must gain where the best of so many candidates is taken (Foster and George 1994).
-fn penalty(candidates: usize) -> f64 {
+pub(super) fn penalty(candidates: usize) -> f64 {
     2.0 * (candidates.max(2) as f64).ln()
 }
 

@@ -136,6 +136,11 @@ impl<'a> Search<'a> {
         self.refit_and_update()
     }
 
+    /// Settings with the confidence that the next law needs.
+    pub fn settings_of_next(&self, settings: &Settings) -> Settings {
+        if self.model.terms.is_empty() { settings.clone() } else { settings.beside_laws() }
+    }
+
     /// The candidates on the rows of a window.
     pub fn candidates(&self, window: SmoothingWindow) -> &[Candidate] {
         match window {
