@@ -42,9 +42,11 @@ impl Search<'_> {
             tried += screened.tried;
             let best = |list: &[Judged]| list.first().map_or(0.0, |j| j.verdict.total());
             let most_gained = best(&screened.single).max(best(&screened.pairs));
+            let Some((law, rivals)) = fewest_variables(regression, screened) else { continue };
             let most = FREE_FORM_SHARE * slow_part(regression, &residual, j);
-            let enough = most.max(settings.least_share);
-            let Some((law, rivals)) = fewest_variables(regression, screened, enough) else { continue };
+            if law.verdict.explained_fraction < most.max(settings.least_share) {
+                continue;
+            }
             let nearly = NEARLY_AS_MUCH * most_gained;
             // What the catalogue says with fewer numbers is no new law, even where it is not certain or was told as small.
             if !self.ranked(Some(j)).iter().any(|r| r.verdict.total() >= nearly)
@@ -137,20 +139,9 @@ impl Search<'_> {
     }
 }
 
-/// The law over the fewest variables that explains `enough` and that no other is certainly ahead of, and those that cannot be
-/// told from it.
-fn fewest_variables(
-    regression: &Regression,
-    screened: Screened,
-    enough: f64,
-) -> Option<(Judged, Vec<Rival>)> {
-    let Screened { mut single, mut pairs, tried } = screened;
-    for list in [&mut single, &mut pairs] {
-        // The best says whether any does.
-        if list.first().is_some_and(|best| best.verdict.explained_fraction < enough) {
-            list.clear();
-        }
-    }
+/// The law over the fewest variables that no other is certainly ahead of, and those that cannot be told from it.
+fn fewest_variables(regression: &Regression, screened: Screened) -> Option<(Judged, Vec<Rival>)> {
+    let Screened { single, pairs, tried } = screened;
     let ahead = |a: &Judged, b: &Judged| {
         let law = |j: &Judged| j.verdict.trial;
         let p = regression.difference_p_value((&a.candidate, law(a)), (&b.candidate, law(b)));
