@@ -1,16 +1,18 @@
 //! Numbers that no robot has, and numbers that are probably not meant.
 
-use super::{arm, arm_with_row, mistakes, one_mistake, read};
+use super::{arm, arm_with_row, mistakes, one_mistake, read, without_file};
 use dynid_codegen::robot::parse_with_warnings;
 
 /// The warnings of a text without mistakes, as `line:column: message`.
 fn warnings(text: &str) -> Vec<String> {
     let (_, warnings) =
         parse_with_warnings("arm.yaml", text.as_bytes()).unwrap_or_else(|m| panic!("{}", m[0]));
-    warnings
-        .iter()
-        .map(|d| d.to_string().strip_prefix("arm.yaml:").expect("names the file").to_owned())
-        .collect()
+    without_file(&warnings)
+}
+
+/// Row j of a table of revolute joints.
+fn row(j: usize) -> String {
+    format!("  - {{j: {j}, sigma: 0, alpha: 0, d: 0.1, theta: q{j}, r: 0}}\n")
 }
 
 #[test]
@@ -81,7 +83,6 @@ fn sizes_that_are_probably_not_meant_get_a_warning() {
 
 #[test]
 fn a_table_is_no_longer_than_what_computes_with_it_and_the_first_row_too_many_is_pointed_at() {
-    let row = |j: usize| format!("  - {{j: {j}, sigma: 0, alpha: 0, d: 0.1, theta: q{j}, r: 0}}\n");
     let table = |rows: usize| format!("name: arm\nframes:\n{}", (1..=rows).map(row).collect::<String>());
     assert_eq!(read(&table(16)).frames.len(), 16);
     one_mistake(&table(17), "19:5", &["17 rows", "at most 16"]);
@@ -89,7 +90,6 @@ fn a_table_is_no_longer_than_what_computes_with_it_and_the_first_row_too_many_is
 
 #[test]
 fn a_gear_matrix_couples_no_more_joints_than_can_be_computed() {
-    let row = |j: usize| format!("  - {{j: {j}, sigma: 0, alpha: 0, d: 0.1, theta: q{j}, r: 0}}\n");
     let table = |n: usize, coupled: usize| {
         let entry = |m: usize, k: usize| {
             if m == k {

@@ -6,16 +6,22 @@ mod sections;
 mod text;
 
 use dynid_codegen::robot::{RobotTable, parse};
+use std::fmt::Display;
 
 /// The mistakes of a text as `line:column: message`.
 fn mistakes(text: impl AsRef<[u8]>) -> Vec<String> {
     match parse("arm.yaml", text.as_ref()) {
         Ok(robot) => panic!("no mistake found in {robot:?}"),
-        Err(found) => found
-            .iter()
-            .map(|m| m.to_string().strip_prefix("arm.yaml:").expect("names the file").to_owned())
-            .collect(),
+        Err(found) => without_file(&found),
     }
+}
+
+/// Messages after the name of the file that each begins with.
+fn without_file(found: &[impl Display]) -> Vec<String> {
+    found
+        .iter()
+        .map(|m| m.to_string().strip_prefix("arm.yaml:").expect("names the file").to_owned())
+        .collect()
 }
 
 /// That the text has exactly one mistake, at this place, with these words in its message.

@@ -2,7 +2,7 @@
 //! torques; and the recordings that it refuses.
 
 use super::error::DiagnosisError;
-use super::explanation::delay::{Skew, usual_deviation};
+use super::judging::skew::{Skew, usual_deviation};
 use super::motions::Motions;
 use super::rate::{WrongRate, corrected, factor};
 use super::rows::context::Context;
@@ -120,9 +120,9 @@ impl Prepared {
         Ok(context.beside(self.motions.settings().reference.clone()))
     }
 
-    /// A skew of more than a part of a sample is taken out of the motions themselves: what is to be expected of it, as one from
-    /// noise would be wrong for other motion. The robot may carry more than a
-    /// reference knows of, and the torque of that is no skew: every parameter is free to be another one.
+    /// A skew of more than a part of a sample is taken out of the motions themselves: what is to be expected of it, as one
+    /// from noise would be wrong for other motion. The robot may carry more than a reference knows of, and the torque of
+    /// that is no skew: every parameter is free to be another one.
     fn take_out_skew(&mut self, model: &dyn Model) -> Result<(), DiagnosisError> {
         let of_reference = self.delay;
         for _ in 0..rules::DELAY_ROUNDS {

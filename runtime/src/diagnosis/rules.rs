@@ -440,8 +440,8 @@ pub(super) const SCAN_EDGE: f64 = 0.1;
 pub(super) const SCAN_IMPACT: f64 = 0.12;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(super) const SCAN_PRESENT: f64 = 0.7;
-/// False alarms per recording in which nothing else was found. Statistics: the share of this search in
-/// One false push in a hundred recordings, shared among [`SEARCHES`]; size and power in the tests of `scan`.
+/// False alarms per recording in which nothing else was found. Statistics: the share of this search, one of [`SEARCHES`], in
+/// one in a hundred recordings; size and power in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 0.0025;
 /// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
 /// largest means knows nothing of; pushes of a hand are mostly far beyond.

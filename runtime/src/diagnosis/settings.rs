@@ -123,13 +123,22 @@ impl Default for Settings {
 impl Settings {
     /// The same for what is looked for beside a law that is in the model: that something is missing is certain then.
     pub(super) fn beside_laws(&self) -> Self {
-        let level = (rules::LEVEL_BESIDE_LAWS * (1.0 - self.least_confidence)).min(0.5);
-        Self { least_confidence: 1.0 - level, ..self.clone() }
+        Self { least_confidence: self.confidence_at(rules::LEVEL_BESIDE_LAWS), ..self.clone() }
     }
 
     /// The confidence that a law needs to stay, less than to be taken: its variation is estimated anew in each round.
     pub(super) fn confidence_to_stay(&self) -> f64 {
-        1.0 - (rules::LEVEL_TO_STAY * (1.0 - self.least_confidence)).min(0.5)
+        self.confidence_at(rules::LEVEL_TO_STAY)
+    }
+
+    /// The confidence that what a search of its own finds needs, of those that share the level.
+    pub(super) fn confidence_of_one_search(&self) -> f64 {
+        self.confidence_at(1.0 / rules::SEARCHES)
+    }
+
+    /// The confidence at so many times the level.
+    fn confidence_at(&self, times: f64) -> f64 {
+        1.0 - (times * (1.0 - self.least_confidence)).min(0.5)
     }
 }
 

@@ -9,11 +9,6 @@ const POWERS: [f64; 2] = [1e-6, 60.0];
 /// rounding.
 const STEPS: usize = 800;
 
-/// Index of the median of so many sorted values, the upper one of an even number.
-pub(crate) fn upper_median(count: usize) -> usize {
-    count / 2
-}
-
 /// Probability that the amplitude of noise at one frequency is more than `above` times the larger one of the medians of so many
 /// amplitudes on either side of it; a side of none counts for nothing.
 ///
@@ -41,13 +36,15 @@ fn median_below(power: f64, count: usize) -> f64 {
     if count == 0 {
         return 1.0;
     }
-    let rank = upper_median(count) + 1;
+    // The upper median, see `statistics::median`.
+    let rank = count / 2 + 1;
     beta_reg(rank as f64, (count + 1 - rank) as f64, -(-power).exp_m1())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::median::median;
     use approx::assert_relative_eq;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
@@ -80,8 +77,7 @@ mod tests {
             let own = power();
             let medians = sides.map(|count| {
                 let mut side: Vec<f64> = (0..count).map(|_| power()).collect();
-                side.sort_by(f64::total_cmp);
-                side[upper_median(count)]
+                median(&mut side)
             });
             beyond += u32::from(own > above * above * medians[0].max(medians[1]));
         }

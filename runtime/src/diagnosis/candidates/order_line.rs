@@ -11,7 +11,8 @@ use crate::diagnosis::rules::{
     LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
     LINE_PICKED_ABOVE, LINE_SLOWER,
 };
-use crate::statistics::greatest_of::{p_value, upper_median};
+use crate::statistics::greatest_of::p_value;
+use crate::statistics::median::median;
 use std::f64::consts::TAU;
 
 /// A joint in one motion, at the full rate.
@@ -36,9 +37,7 @@ pub(in crate::diagnosis) struct Line {
     pub sigma: f64,
     /// Rms of the residual without what is slower, N.m or N, the median of the motions.
     pub rms: f64,
-    /// Its amplitude against the larger median of the orders on both sides of it, all motions together.
-    pub above: f64,
-    /// Probability that noise stands as far above at one order.
+    /// Probability that noise stands as far above the orders on both sides of it, all motions together.
     pub p_value: f64,
     /// Whether motors have lines at its order, so that it was looked for there.
     pub known: bool,
@@ -74,13 +73,12 @@ pub(in crate::diagnosis) fn lines(
         if shown.is_empty() || 2 * shown.len() <= able {
             continue;
         }
-        let median = |value: fn(&InMotion) -> f64| {
+        let usual = |value: fn(&InMotion) -> f64| {
             let mut values: Vec<f64> = shown.iter().map(|l| value(l)).collect();
-            values.sort_by(f64::total_cmp);
-            values[values.len() / 2]
+            median(&mut values)
         };
         let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
-        let Some((order, together)) = highest(&all, median(|l| l.order), resolved) else { continue };
+        let Some((order, together)) = highest(&all, usual(|l| l.order), resolved) else { continue };
         // A wave over the joint's angle has one phase in all motions: together they show it no worse than one by one.
         let around = Around::of(&all, order, resolved);
         if together.norm() < above * around.level {
@@ -91,11 +89,10 @@ pub(in crate::diagnosis) fn lines(
             cosine: together.c,
             sine: together.s,
             sigma: deviation(around.level),
-            rms: median(|l| l.rms),
-            above: together.norm() / around.level,
+            rms: usual(|l| l.rms),
             p_value: p_value(together.norm() / around.level, around.orders),
             known,
-            share: median(|l| l.share),
+            share: usual(|l| l.share),
         });
     }
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -133,6 +130,7 @@ enum Look {
 struct InMotion {
     order: f64,
     rms: f64,
+    /// Its amplitude against the larger median of the orders on both sides of it.
     above: f64,
     share: f64,
 }
@@ -208,16 +206,15 @@ struct Around {
 impl Around {
     fn of(samples: &[Sample], order: f64, step: f64) -> Self {
         let far = LINE_COVERED as f64 * step;
-        let above = Orders { first: order + far, step, count: LINE_AROUND };
         let below = Orders { first: order - far, step: -step, count: LINE_AROUND };
+        let above = Orders { first: order + far, step, count: LINE_AROUND };
         let sides = [below, above].map(|side| {
             let waves = side.all().zip(side.waves(samples));
             let mut norms: Vec<f64> = waves.filter(|(o, _)| *o > step).map(|(_, w)| w.norm()).collect();
-            norms.sort_by(f64::total_cmp);
-            norms
+            (median(&mut norms), norms.len())
         });
-        let median = |side: &Vec<f64>| side.get(upper_median(side.len())).copied().unwrap_or(0.0);
-        Self { level: sides.iter().map(median).fold(1e-300, f64::max), orders: sides.map(|s| s.len()) }
+        let [(below, _), (above, _)] = sides;
+        Self { level: below.max(above).max(1e-300), orders: sides.map(|(_, orders)| orders) }
     }
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::diagnosis::judging::testing::correlated;
 use crate::diagnosis::rules::LINE_MULTIPLES;
 use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
@@ -80,10 +81,9 @@ fn noise_that_lasts_falls_with_the_order_and_has_no_line_where_it_does() {
     for _ in 0..60 {
         let mut motion = motion(&mut rng, 0.8, 1.0, 0.0);
         let fading = (-1.0 / (rng.random_range(0.02..0.2) * RATE)).exp();
-        let mut slow = 0.0;
-        for residual in &mut motion.residual {
-            slow = fading * slow + (1.0 - fading * fading).sqrt() * normal(&mut rng);
-            *residual = 0.2 * *residual + slow;
+        let lasting = correlated(&mut rng, motion.residual.len(), fading);
+        for (residual, slow) in motion.residual.iter_mut().zip(lasting) {
+            *residual = 0.2 * *residual + (1.0 - fading * fading).sqrt() * slow;
         }
         false_lines += lines(&strokes(&[motion]), &[], &picked, 0.05).len();
     }

@@ -123,7 +123,7 @@ fn found(
     let mut findings: Vec<Finding> = ended.contacts.map(|c| of_contacts(robot, c)).into_iter().collect();
     findings.extend(effects);
     let settings = search.settings_of_next(settings);
-    findings.extend(line::findings(search, settings.least_confidence));
+    findings.extend(line::findings(search, &settings));
     let expected = model.context.reference.as_ref().map_or(0.0, |r| r.delay());
     let late = delay::finding(model, skew - expected, &settings)?;
     let named_skew = late.is_some().then_some(skew - expected);

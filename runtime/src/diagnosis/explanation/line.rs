@@ -5,23 +5,22 @@ use crate::diagnosis::explanation::finding::{named_on, told, unit_term};
 use crate::diagnosis::explanation::quantities::propagate;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::Finding;
-use crate::diagnosis::rules::{LINE_COVERED, SEARCHES};
-use crate::diagnosis::search::line::{JointLines, Tried};
+use crate::diagnosis::rules::LINE_COVERED;
+use crate::diagnosis::search::line::JointLines;
 use crate::diagnosis::search::state::Search;
+use crate::diagnosis::settings::Settings;
 use crate::effects::{EffectKind, EffectTerm, Form, Place};
 
 /// One finding per joint with lines that are not in the model already, with all of their orders.
 ///
 /// The amplitudes are those of the full rate: rows may be smoothed or filtered more than the wave can take.
-pub(in crate::diagnosis) fn findings(search: &Search<'_>, least_confidence: f64) -> Vec<Finding> {
-    let tried = search.lines.iter().fold(Tried::default(), |all, lines| Tried {
-        known: all.known + lines.tried.known,
-        whole: all.whole + lines.tried.whole,
-    });
-    let least = 1.0 - (1.0 - least_confidence) / SEARCHES;
-    let doubt = |line: &Line| if line.known { tried.known } else { tried.whole } as f64 * line.p_value;
+pub(in crate::diagnosis) fn findings(search: &Search<'_>, settings: &Settings) -> Vec<Finding> {
+    let of_all = |number: fn(&JointLines) -> usize| search.lines.iter().map(number).sum::<usize>() as f64;
+    let (known, tried) = (of_all(|lines| lines.known), of_all(|lines| lines.tried));
+    let level = 1.0 - settings.confidence_of_one_search();
+    let doubt = |line: &Line| if line.known { known } else { tried } * line.p_value;
     let of_joint = |(j, found): (usize, &JointLines)| {
-        let sure: Vec<&Line> = found.lines.iter().filter(|line| doubt(line) <= 1.0 - least).collect();
+        let sure: Vec<&Line> = found.lines.iter().filter(|line| doubt(line) <= level).collect();
         finding(search, j, (found, sure), doubt)
     };
     search.lines.iter().enumerate().filter_map(of_joint).collect()

@@ -15,6 +15,7 @@ pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod regression;
 pub(in crate::diagnosis) mod significance;
+pub(in crate::diagnosis) mod skew;
 #[cfg(test)]
 pub(in crate::diagnosis) mod testing;
 #[cfg(test)]

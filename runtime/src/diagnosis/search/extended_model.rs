@@ -7,8 +7,8 @@ use crate::diagnosis::candidates::nuisances::{
 };
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::explanation::delay::usual_deviation;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
+use crate::diagnosis::judging::skew::usual_deviation;
 use crate::diagnosis::rows::context::{Carried, Context};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
@@ -34,7 +34,7 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
 
 impl<'a> ExtendedModel<'a> {
     /// Without any effect; nuisances are always fitted along. Of these the skew of the torques is known to be small: what
-    /// is certainly there was taken out of the motions before.
+    /// was to be expected of it has been taken out of the motions.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.

@@ -15,19 +15,12 @@ pub(in crate::diagnosis) struct JointLines {
     pub resolution: f64,
     /// Standard deviation of the positions at which the joint moves, rad or m.
     pub spread: f64,
-    /// Orders that were tried.
-    pub tried: Tried,
+    /// Orders that motors are known to have.
+    pub known: usize,
+    /// All orders that were tried: those and the spectrum's.
+    pub tried: usize,
     /// Rms of the torque, N.m or N.
     pub torque: f64,
-}
-
-/// How many orders were tried.
-#[derive(Debug, Clone, Copy, Default)]
-pub(in crate::diagnosis) struct Tried {
-    /// Those that motors are known to have.
-    pub known: usize,
-    /// All of the spectrum besides.
-    pub whole: usize,
 }
 
 /// Lines of every joint in the recording that is diagnosed. None where there is a baseline: whether a line is new would
@@ -80,7 +73,8 @@ pub(in crate::diagnosis) fn all_lines(
             lines: new,
             resolution,
             spread: spread(&now, slowest[j]),
-            tried: Tried { known: known.len(), whole: known.len() + spectra[j].order.len() },
+            known: known.len(),
+            tried: known.len() + spectra[j].order.len(),
             torque: (squares / f64::from(count.max(1))).sqrt(),
         }
     })

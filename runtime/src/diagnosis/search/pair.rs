@@ -43,8 +43,8 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a single law of the joint of a pair, or one that shows there, explains as much, each of their numbers paid for: it may be one
-    /// that is not named because another joint could have it as well, and then two laws imitate it.
+    /// Whether a single law of the joint of a pair, or one that shows there, explains as much, each of their numbers paid
+    /// for: it may be one that is not named because another joint could have it as well, and then two laws imitate it.
     fn one_law_suffices(&self, pair: &[Accepted; 2]) -> Result<bool, SingularDesign> {
         let [window, other] = [0, 1].map(|k| pair[k].effect.properties().window);
         if window != other {
@@ -54,8 +54,8 @@ impl Search<'_> {
         let mut with = self.model.clone();
         with.terms.extend(pair.iter().cloned());
         with.refit()?;
-        let columns = &with.regression(window).term_columns;
-        let amplitudes = columns.iter().rev().take(pair.len()).map(|columns| columns.len()).sum::<usize>();
+        let columns = &with.regression(window).term_columns[self.model.terms.len()..];
+        let amplitudes = columns.iter().map(|columns| columns.len()).sum::<usize>();
         let shapes = pair.iter().map(|law| law.shape.len()).sum::<usize>();
         let penalty = penalty(self.tries());
         let worth = |gain: f64, numbers: usize| gain - penalty * numbers as f64;

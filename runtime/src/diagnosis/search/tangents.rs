@@ -48,9 +48,9 @@ fn weights(term: &Accepted, amplitude: &[f64]) -> Vec<f64> {
     term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed])
 }
 
-/// Derivatives of a term's torque on the rows that it is judged on by the base parameters, where its columns are made of these: the
-/// load of a gear, a torque that is heard. Differences over one standard deviation of each parameter, as far as it may be
-/// off; each with the place of the parameter.
+/// Derivatives of a term's torque on the rows that it is judged on by the base parameters, where its columns are made of
+/// these: the load of a gear, a torque that is heard. Differences over one standard deviation of each parameter, as far as
+/// it may be off; each with the place of the parameter.
 pub(in crate::diagnosis) fn along_parameters(
     model: &ExtendedModel<'_>,
     term: &Accepted,

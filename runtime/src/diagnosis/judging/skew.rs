@@ -1,0 +1,98 @@
+//! The skew of the torques behind the positions: measured before anything else, and how well it is known.
+
+use crate::diagnosis::candidates::trial::delay_columns;
+use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rules::{DELAY_DEVIATION, LONGEST_BLOCK};
+
+/// Skew of the torques behind the positions.
+pub(in crate::diagnosis) struct Skew {
+    /// s.
+    pub value: f64,
+    /// Its standard deviation, s: that of the fit, or as blocks of motion differ, whichever is larger.
+    pub sigma: f64,
+    pub evidence: Evidence,
+}
+
+impl Skew {
+    /// Of a design without a column for it.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn of(context: &Context<'_>, mut design: Design) -> Result<Self, SingularDesign> {
+        for column in delay_columns(context, &design) {
+            design.push(column);
+        }
+        design.refresh();
+        let fit = Fit::weighted(&design, &vec![1.0; design.joints])?;
+        let column = design.columns.len() - 1;
+        Ok(Self::known(fit.chi[column], (&design, &fit), column))
+    }
+
+    /// A skew that is known as well as the parameter of a column is.
+    pub fn known(value: f64, (design, fit): (&Design, &Fit), column: usize) -> Self {
+        let white = fit.variances()[column].max(0.0);
+        let rows = design.rows_within(LONGEST_BLOCK);
+        let by_blocks = fit.variance_by_blocks(design, &fit.residual(design), column, rows);
+        let (variance, widened, freedom) = match by_blocks {
+            Some(seen) => (white.max(seen.variance), white.max(seen.widened()), seen.freedom),
+            None => (white, white, f64::INFINITY),
+        };
+        let evidence = Evidence::student(value.abs() / variance.sqrt().max(1e-300), freedom);
+        Self { value, sigma: widened.sqrt(), evidence }
+    }
+
+    /// One minus the probability that there is none and it comes as far, in one direction or the other.
+    pub fn confidence(&self) -> f64 {
+        self.evidence.confidence(2)
+    }
+
+    /// What is to be expected of all skew, s, where so much of it was taken out of the motions before and skews are zero within
+    /// a standard deviation of so much: the best linear prediction, next to nothing where a skew is hardly known.
+    pub fn expected(&self, before: f64, deviation: f64) -> f64 {
+        let known = deviation * deviation / (deviation * deviation + self.sigma * self.sigma);
+        known * (before + self.value)
+    }
+}
+
+/// Standard deviation of skews before anything is known of one, s.
+pub(in crate::diagnosis) fn usual_deviation(context: &Context<'_>) -> f64 {
+    DELAY_DEVIATION.max(1.0 / context.rate())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::judging::testing::correlated;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64;
+
+    /// A skew of noise that lasts as long as a block, of which the column has the same memory.
+    fn of_noise(rng: &mut Pcg64) -> Skew {
+        const ROWS: usize = 600;
+        let (column, y) = (correlated(rng, ROWS, 0.9), correlated(rng, ROWS, 0.9));
+        let design = Design::made_up(1, &[(0, true)], ROWS, vec![column], y);
+        let fit = Fit::whole(&design, &[1.0]).expect("a small problem is regular");
+        Skew::known(fit.chi[0], (&design, &fit), 0)
+    }
+
+    #[test]
+    fn noise_that_lasts_is_no_certain_skew() {
+        let mut rng = Pcg64::seed_from_u64(41);
+        let (runs, level) = (2000, 0.01);
+        let told = (0..runs).filter(|_| of_noise(&mut rng).confidence() > 1.0 - level).count();
+        println!("{told} of {runs}");
+        assert!(told as f64 <= 2.5 * level * f64::from(runs), "{told} of {runs}");
+    }
+
+    #[test]
+    fn of_a_skew_that_is_hardly_known_next_to_nothing_is_expected() {
+        let known = |sigma| Skew { value: 0.02, sigma, evidence: Evidence::NONE };
+        approx::assert_relative_eq!(known(1e-6).expected(0.01, 0.01), 0.03, max_relative = 1e-6);
+        approx::assert_relative_eq!(known(0.01).expected(0.0, 0.01), 0.01, max_relative = 1e-12);
+        assert!(known(1.0).expected(0.0, 0.01) < 1e-5);
+    }
+}
