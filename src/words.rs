@@ -1,6 +1,6 @@
 //! Joints and confidences in words.
 
-use dynid_runtime::diagnosis::{CannotTell, Diagnosis, OnTest, Small, Standing};
+use dynid_runtime::diagnosis::{CannotTell, Diagnosis, OnTest, Small, Standing, Transient};
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::{Frame, JointIndex, Robot};
 use dynid_runtime::report::significant;
@@ -51,6 +51,16 @@ pub fn small_words(small: &Small) -> String {
         small.unit,
         significant(small.least, 2),
         small.unit
+    )
+}
+
+/// What was there at the beginning of the motion only, and is part of the model without being named.
+pub fn transient_words(transient: &Transient) -> String {
+    format!(
+        "{} on {}, which has faded after {} s (part of the model, so that parameters and laws are those of the motion after it)",
+        effect_words(&transient.effect),
+        joint_words(&transient.joints),
+        significant(transient.faded_after, 2)
     )
 }
 

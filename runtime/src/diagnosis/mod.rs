@@ -106,7 +106,7 @@ pub use experiment::{Distances, Question, distances, typical_laws};
 pub use outcome::{
     Alternative, BetweenMotions, CannotTell, Curve, Diagnosis, Errors, Estimated, Finding, FineLaw, HeldOut,
     Mismatch, NotJudged, OnTest, OrderSpectrum, ParameterShift, ParameterValue, Refuted, Removed, Sampling,
-    SearchOutcome, Small, Standing, StopReason, TorqueSeries, Unexplained, WithoutIt,
+    SearchOutcome, Small, Standing, StopReason, TorqueSeries, Transient, Unexplained, WithoutIt,
 };
 pub use portrait::{Portrait, imitators, portrait};
 pub use predict::{joint_scales, term_torques};

@@ -151,8 +151,14 @@ pub(super) const SHORTEST_BLOCK: f64 = 0.1;
 pub(super) const LAGS_PER_BLOCK: usize = 2;
 /// Autocorrelation below which residuals count as uncorrelated: 4 % of the variance in common. Judgement.
 pub(super) const UNCORRELATED: f64 = 0.2;
-/// Fewest units that a law of time may rest on, weighted by what they carry. Statistics: two degrees of freedom.
-pub(super) const LEAST_CARRYING_UNITS: f64 = 3.0;
+/// A law of time must be there with this confidence whichever unit of the recording is left out: else it is an event for all
+/// that is known. Statistics: a test of its own, of one law.
+pub(super) const WITHOUT_ANY_UNIT: f64 = 0.99;
+/// Part of its squares that a transient may have left when it has faded. Judgement: two time constants.
+pub(super) const FADED: f64 = 0.02;
+/// A transient has faded before so large a part of the shortest motion begins: what follows the recording has none of it.
+/// Judgement; TX-40 in `docs/evidence.md`, where it is over before half of the motion.
+pub(super) const LATE: f64 = 0.25;
 /// A body lies within so many times the lengths of the robot's table of the link that carries it. Mechanics: what is
 /// farther away than the robot reaches from end to end and back is not carried by it; the last link's own length is not in
 /// the table.

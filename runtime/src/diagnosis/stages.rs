@@ -178,6 +178,9 @@ impl<'a> Course<'a> {
                 return Ok(None);
             }
         }
+        if self.known.is_none() {
+            search.keep_transients(settings)?;
+        }
         Ok(Some(report))
     }
 

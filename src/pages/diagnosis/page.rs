@@ -12,7 +12,7 @@ use crate::pages::parameters::{parameters, relations};
 use crate::pages::provenance::provenance;
 use crate::pages::residuals::residuals;
 use crate::recorded::titled;
-use crate::words::{apart_words, small_words, standing_words};
+use crate::words::{apart_words, small_words, standing_words, transient_words};
 
 /// The whole page.
 pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String]) -> String {
@@ -30,6 +30,7 @@ pub fn page(title: &str, diagnosis: &Diagnosis, extras: &Extras, notes: &[String
     shifts(&mut page, diagnosis);
     cannot_tell(&mut page, diagnosis);
     standing(&mut page, diagnosis);
+    transients(&mut page, diagnosis);
     small(&mut page, diagnosis);
     unexplained(&mut page, diagnosis, extras);
     page.heading("Parameters with the findings in the model");
@@ -201,6 +202,14 @@ fn standing(page: &mut Page, diagnosis: &Diagnosis) {
     }
     page.heading("Also missing in both");
     page.paragraph(&format!("{}.", capital(&standing_words(diagnosis))));
+}
+
+fn transients(page: &mut Page, diagnosis: &Diagnosis) {
+    if diagnosis.transients.is_empty() {
+        return;
+    }
+    page.heading("Also there, and not told from an event");
+    page.list(diagnosis.transients.iter().map(|t| format!("{}.", capital(&transient_words(t)))));
 }
 
 fn small(page: &mut Page, diagnosis: &Diagnosis) {

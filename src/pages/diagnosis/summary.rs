@@ -10,6 +10,7 @@ use crate::output::table;
 use crate::recorded::{Measured, left_out_words, titled};
 use crate::words::{
     apart_words, confidence_words, effect_words, joint_words, part_words, small_words, standing_words,
+    transient_words,
 };
 
 /// The verdict, the errors and the findings for a terminal.
@@ -43,6 +44,10 @@ pub fn summary(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> S
     }
     if !diagnosis.standing.is_empty() {
         text.push_str(&format!("\n\nalso missing in both: {}", standing_words(diagnosis)));
+    }
+    if !diagnosis.transients.is_empty() {
+        let transients: Vec<String> = diagnosis.transients.iter().map(transient_words).collect();
+        text.push_str(&format!("\n\nalso there, and not told from an event: {}", transients.join("; ")));
     }
     if !diagnosis.small.is_empty() {
         let small: Vec<String> = diagnosis.small.iter().map(small_words).collect();

@@ -6,7 +6,9 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
-use crate::diagnosis::explanation::{covariance, curves, delay, free_form, line, rate, standing, words};
+use crate::diagnosis::explanation::{
+    covariance, curves, delay, free_form, line, rate, standing, transient, words,
+};
 use crate::diagnosis::judging::between_motions::between_motions;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::judging::hull::Curve;
@@ -22,7 +24,7 @@ use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Abscissa, EffectKind, Form, Place, SmoothingWindow};
+use crate::effects::{Abscissa, EffectKind, EffectTerm, Form, Place, SmoothingWindow};
 use crate::model::{JointIndex, Robot};
 
 /// What is known when a search has ended, besides the search.
@@ -61,6 +63,7 @@ pub(in crate::diagnosis) fn explain(
             cannot_tell.push(pair);
         }
     }
+    let (transients, effects) = transient::told_apart(model, effects);
     let (findings, held_out) = found(search, &ended, (effects, skew), settings)?;
 
     // 2. What it changes, and what it leaves.
@@ -81,6 +84,7 @@ pub(in crate::diagnosis) fn explain(
         verdict: Vec::new(),
         cannot_tell,
         small: Vec::new(),
+        transients,
         unexplained: curves::unexplained(model),
         shifts: shifts(robot, &standard.estimated, &after),
         standard: ended.rate.map_or(&standard.estimated, |wrong| &wrong.declared).clone(),
@@ -165,13 +169,14 @@ fn found(
 fn stand(model: &ExtendedModel<'_>, diagnosis: &mut Diagnosis, threads: usize) {
     let standing = standing::terms(model);
     diagnosis.standing = standing.iter().map(|(term, _)| standing::told(term)).collect();
-    let column = |f: &Finding| {
-        let is =
-            |t: &Accepted| t.effect == f.term.effect && t.place == f.term.place && t.shape == f.term.shape;
+    let column = |term: &EffectTerm| {
+        let is = |t: &Accepted| t.effect == term.effect && t.place == term.place && t.shape == term.shape;
         let range = &model.slow.term_columns[model.terms.iter().position(is)?];
-        (range.len() == f.term.amplitude.len() && f.term.transmission().is_none()).then_some(range.start)
+        (range.len() == term.amplitude.len() && term.transmission().is_none()).then_some(range.start)
     };
-    let found = diagnosis.findings.iter().map(|f| (&f.term, column(f)));
+    let found = diagnosis.findings.iter().map(|f| &f.term);
+    let own = found.chain(diagnosis.transients.iter().map(|t| &t.term));
+    let found = own.map(|term| (term, column(term)));
     let all: Vec<_> = found.chain(standing.iter().map(|(term, first)| (term, *first))).collect();
     let upper = covariance::upper(model, &all, threads);
     diagnosis.covariance = upper;

@@ -14,4 +14,5 @@ pub(in crate::diagnosis) mod rate;
 pub(in crate::diagnosis) mod standard_model;
 pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod standstill;
+pub(in crate::diagnosis) mod transient;
 pub(in crate::diagnosis) mod words;

@@ -54,6 +54,7 @@ pub(in crate::diagnosis) fn explain(
         },
         mismatch,
         small: Vec::new(),
+        transients: Vec::new(),
         cannot_tell: loads(robot, rest),
         unexplained: Unexplained { per_joint: vec![0.0; robot.joints()], ..Unexplained::default() },
         verdict: Vec::new(),

@@ -74,10 +74,7 @@ pub(in crate::diagnosis) fn of_user(
     untried: &[UserLaw],
     d: &Diagnosis,
 ) -> Vec<String> {
-    let named = |law: &UserLaw| {
-        let terms = d.findings.iter().map(|f| &f.term).chain(d.standing.iter().map(|s| &s.term));
-        terms.into_iter().any(|term| term.place == Place::Law(*law))
-    };
+    let named = |law: &UserLaw| d.terms().iter().any(|term| term.place == Place::Law(*law));
     let words = |law: &UserLaw| {
         let number = robot.joint_number(JointIndex(law.joint())).0;
         let what = format!("Your law {} on joint {number}", law.id());

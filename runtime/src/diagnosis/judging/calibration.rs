@@ -28,14 +28,19 @@ pub(in crate::diagnosis) struct Calibrated {
     pub lambda: f64,
     /// Degrees of freedom that this mean is known with.
     pub freedom: f64,
-    /// Units of the recording that the law is spread over: their number if evenly, fewer if few of them hold most of it.
-    pub carrying: f64,
+    /// Least Wald statistic where one unit of the recording is left out; 0 where the law then turns round.
+    pub without_any: f64,
 }
 
 impl Calibrated {
     /// How sure it is that the law is there.
     pub fn evidence(&self) -> Evidence {
         Evidence::fisher(self.squares / self.lambda, self.numbers, self.freedom)
+    }
+
+    /// How sure it is whichever unit of the recording is left out.
+    pub fn evidence_without_any(&self) -> Evidence {
+        Evidence::fisher(self.without_any / self.lambda, self.numbers, self.freedom)
     }
 }
 
@@ -55,9 +60,10 @@ pub(in crate::diagnosis) struct Law<'a> {
     pub residual: &'a [f64],
     /// Whether it may be there in all motions, so that only what differs in the recording counts.
     pub common: bool,
-    /// Whether it is a trend: a number of the model that changes with time. It is then no more than an accident of how
-    /// this number differs from unit to unit, which within one unit does not show. The first so many companions of its
-    /// joints are the columns of such numbers.
+    /// Whether it is a trend: a number of the model that changes with time.
+    pub is_trend: bool,
+    /// A trend of one joint is no more than an accident of how this number differs from unit to unit, which within one unit
+    /// does not show. The first so many companions of its joint are the columns of such numbers.
     pub trend_of: usize,
 }
 
@@ -106,10 +112,12 @@ pub(in crate::diagnosis) fn calibrate(
     let own = Variance { value: 1.0 + (variance.value - 1.0).max(0.0) * longer, ..variance };
     let known = between_motions(regressors, law).filter(|between| between.value > own.value);
     let Variance { value: lambda, freedom } = known.unwrap_or(own);
-    let target: Vec<&DMatrix<f64>> =
-        products.units.iter().zip(&units.units).filter(|(_, u)| u.target).map(|(m, _)| m).collect();
-    let carrying = carrying(&whole, &target, p, k);
-    Some(Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, carrying })
+    let without_any = if law.is_trend && !change {
+        without_any(&whole, &products.units, &found, (p, k))
+    } else {
+        found.squares
+    };
+    Some(Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, without_any })
 }
 
 /// What a law explains that another one in the model does not.
@@ -287,19 +295,15 @@ pub(super) fn prior(whole: &DMatrix<f64>, others: &[Option<Variance>], m: usize,
     })
 }
 
-/// How many of these units carry what a law has of its own beside the first `p` columns.
-fn carrying(whole: &DMatrix<f64>, units: &[&DMatrix<f64>], p: usize, k: usize) -> f64 {
-    let Some((factor, scale)) = factored(&whole.view((0, 0), (p, p)).into_owned()) else { return 0.0 };
-    let scale = DMatrix::from_diagonal(&scale);
-    let x = &scale * factor.solve(&(&scale * whole.view((0, p), (p, k))));
-    let own = |unit: &&DMatrix<f64>| {
-        let cross = unit.view((0, p), (p, k)).transpose() * &x;
-        let made = x.transpose() * unit.view((0, 0), (p, p)) * &x;
-        (unit.view((p, p), (k, k)) - 2.0 * cross + made).trace().max(0.0)
+/// The least statistic of a law that was found in all of the motion, where one of its units is left out; 0 where it turns round
+/// without one (deletion diagnostics: Cook 1977).
+fn without_any(whole: &DMatrix<f64>, units: &[DMatrix<f64>], found: &Wald, (p, k): (usize, usize)) -> f64 {
+    let of_rest = |unit: &DMatrix<f64>| {
+        let rest = whole - unit;
+        let left = Wald::of(&rest, &rest, (p, k), false)?;
+        (left.product(&found.amplitude) > 0.0).then_some(left.squares)
     };
-    let own: Vec<f64> = units.iter().map(own).collect();
-    let squares = own.iter().map(|e| e * e).sum::<f64>();
-    if squares > 0.0 { own.iter().sum::<f64>().powi(2) / squares } else { 0.0 }
+    units.iter().map(|unit| of_rest(unit).unwrap_or(0.0)).fold(found.squares, f64::min)
 }
 
 #[cfg(test)]

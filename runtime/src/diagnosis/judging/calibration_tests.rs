@@ -26,7 +26,12 @@ fn alone(
     common: bool,
 ) -> Option<Calibrated> {
     let background = Background::new(units, regressors, residual, 1);
-    calibrate(units, regressors, &background, &Law { columns: law, residual, common, trend_of: 0 })
+    calibrate(
+        units,
+        regressors,
+        &background,
+        &Law { columns: law, residual, common, is_trend: false, trend_of: 0 },
+    )
 }
 
 fn wave(rng: &mut Pcg64, rows: usize) -> Vec<f64> {

@@ -184,6 +184,19 @@ pub struct Standing {
     pub term: EffectTerm,
 }
 
+/// A law of time that is certain to be there and cannot be told from an event: part of the model, and no finding.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Transient {
+    /// Effect.
+    pub effect: String,
+    /// Numbers j of the joints; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// So many seconds after the beginning of the motion nearly nothing is left of it.
+    pub faded_after: f64,
+    /// Its term in the model.
+    pub term: EffectTerm,
+}
+
 /// An effect that was accepted first and did not hold beside the others.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Removed {

@@ -10,7 +10,7 @@ pub use drawn::{Curve, FineLaw, OrderSpectrum, TorqueSeries};
 pub use errors::{Errors, HeldOut, Mismatch, Unexplained};
 pub use finding::{
     Alternative, CannotTell, Finding, NotJudged, OnTest, ParameterValue, Refuted, Removed, Small, Standing,
-    WithoutIt,
+    Transient, WithoutIt,
 };
 
 use crate::effects::EffectTerm;
@@ -111,6 +111,9 @@ pub struct Diagnosis {
     /// Laws of a reference: missing in the standard model, and no news.
     #[serde(default)]
     pub standing: Vec<Standing>,
+    /// What was there at the beginning of the motion and cannot be told from an event.
+    #[serde(default)]
+    pub transients: Vec<Transient>,
     /// What nothing explains.
     pub unexplained: Unexplained,
     /// The verdict in plain sentences.
@@ -152,9 +155,11 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// All that the model has beside its parameters: the terms of the findings, then those that a reference has already.
+    /// All that the model has beside its parameters: the terms of the findings, those of transients, and those that a reference
+    /// has already.
     pub fn terms(&self) -> Vec<EffectTerm> {
         let found = self.findings.iter().map(|f| &f.term);
-        found.chain(self.standing.iter().map(|s| &s.term)).cloned().collect()
+        let transients = self.transients.iter().map(|t| &t.term);
+        found.chain(transients).chain(self.standing.iter().map(|s| &s.term)).cloned().collect()
     }
 }

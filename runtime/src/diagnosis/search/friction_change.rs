@@ -164,6 +164,7 @@ impl Search<'_> {
             inflation,
             explained_fraction: 0.0,
             rivals,
+            is_transient: false,
         });
         self.refit_and_update()
     }
@@ -191,7 +192,7 @@ impl Search<'_> {
         let friction: Vec<Vec<f64>> =
             bench.friction[joint][..2].iter().map(|c| regressors.on_all_rows(joint, c)).collect();
         let judged = |columns| {
-            let law = Law { columns, residual, common: false, trend_of: 0 };
+            let law = Law { columns, residual, common: false, is_trend: false, trend_of: 0 };
             let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
             Some((law, calibrated))
         };

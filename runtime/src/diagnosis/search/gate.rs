@@ -8,7 +8,7 @@ use crate::diagnosis::judging::calibration::{Calibrated, Law, calibrate};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::white_products::Background;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{LEAST_CARRYING_UNITS, LINE_COVERED, MOST_COMPARED, WAVE_SEEN};
+use crate::diagnosis::rules::{LINE_COVERED, MOST_COMPARED, WAVE_SEEN, WITHOUT_ANY_UNIT};
 use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::Search;
@@ -67,6 +67,17 @@ pub(in crate::diagnosis) struct Gate {
     pub size: Size,
     /// Residual of the model with it.
     pub left: Vec<f64>,
+    /// Whether it is a law of time that shows in so few units that it is an event for all that is known: whatever else happened
+    /// then is not told from it.
+    pub is_event: bool,
+}
+
+impl Gate {
+    /// How many times those of a white residual without variation between units its standard deviations are.
+    pub(super) fn inflation(&self) -> f64 {
+        let squares = self.calibrated.squares / self.calibrated.lambda;
+        (self.gain / squares.max(1e-300)).max(1.0).sqrt()
+    }
 }
 
 /// What a round has worked out at one level: evidence of the model as it is on the rows of each window, and of each candidate.
@@ -124,8 +135,18 @@ pub(super) fn own_part(regression: &Regression, candidate: &Candidate, trial: us
 }
 
 impl Search<'_> {
-    /// Evidence and size of a candidate of a round beside the model as it is, worked out once.
+    /// Evidence and size of a candidate of a round beside the model as it is, worked out once; `None` where it is no law.
     pub(super) fn gate<'b>(&self, round: &'b RoundEvidence, ranked: &[Ranked], k: usize) -> Option<&'b Gate> {
+        self.gate_of_any(round, ranked, k).filter(|gate| !gate.is_event)
+    }
+
+    /// As [`Self::gate`], of events too.
+    pub(super) fn gate_of_any<'b>(
+        &self,
+        round: &'b RoundEvidence,
+        ranked: &[Ranked],
+        k: usize,
+    ) -> Option<&'b Gate> {
         round.gates[k].get_or_init(|| self.work_out(round, &ranked[k])).as_ref()
     }
 
@@ -146,12 +167,11 @@ impl Search<'_> {
             .get_or_init(|| Background::new(&bench.units, &regressors, &regression.residual(), self.threads));
         let law = self.law(ranked, &columns, &left);
         let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
-        // A law of time that shows in few units is an event: whatever else happened then is not told from it.
-        if candidate.is_trend() && !self.model.change && calibrated.carrying < LEAST_CARRYING_UNITS {
-            return None;
-        }
+        let is_event = candidate.is_trend()
+            && !self.model.change
+            && calibrated.evidence_without_any().confidence(1) < WITHOUT_ANY_UNIT;
         let size = bench.largest_size(design, &ranked.verdict.shows_on, &change, &left)?;
-        Some(Gate { gain, calibrated, size, left })
+        Some(Gate { gain, calibrated, size, left, is_event })
     }
 
     /// Whether a law repeats itself with its shape, as waves do, and the reference has it. The phase of a wave of a motor may
@@ -185,6 +205,7 @@ impl Search<'_> {
             columns,
             residual,
             common: self.model.change && properties.standing_friction,
+            is_trend: candidate.is_trend(),
             trend_of: if candidate.is_trend() && candidate.own.len() == 1 { LEVELS } else { 0 },
         }
     }
@@ -208,12 +229,7 @@ impl Search<'_> {
         if self.model.change && gate.size.law < gate.size.needed {
             return Outcome::Small(gate.size);
         }
-        let squares = calibrated.squares / calibrated.lambda;
-        Outcome::Passes {
-            confidence,
-            significance: evidence.significance,
-            inflation: (gate.gain / squares.max(1e-300)).max(1.0).sqrt(),
-        }
+        Outcome::Passes { confidence, significance: evidence.significance, inflation: gate.inflation() }
     }
 
     /// Laws that are certainly there beside the model as it is, and too small to be named.

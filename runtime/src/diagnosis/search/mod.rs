@@ -24,4 +24,5 @@ pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod state;
 pub(in crate::diagnosis) mod tangents;
 pub(in crate::diagnosis) mod term;
+pub(in crate::diagnosis) mod transient;
 pub(in crate::diagnosis) mod tuning;

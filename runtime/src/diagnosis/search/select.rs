@@ -167,7 +167,7 @@ impl Search<'_> {
     }
 
     /// The first of them that hold, by their place in the ranking.
-    fn holding(&self, ranked: &[Ranked], settings: &Settings) -> Vec<usize> {
+    pub(super) fn holding(&self, ranked: &[Ranked], settings: &Settings) -> Vec<usize> {
         (0..ranked.len())
             .filter(|&k| {
                 let (regression, candidate) = self.of(&ranked[k]);

@@ -107,8 +107,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Goes on from a model without effects with what was found, but without these laws at their places. A change of
-    /// friction is named last, and so once more.
+    /// Goes on from a model without effects with what was found, but without these laws at their places. Changes of friction
+    /// and transients come last, and so once more.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
@@ -119,7 +119,9 @@ impl<'a> Search<'a> {
     ) -> Result<(), SingularDesign> {
         let mut found = std::mem::replace(&mut self.model, without_effects).terms;
         found.retain(|t| {
-            t.effect != EffectKind::FrictionLevelChange && !excluded.contains(&(t.effect, t.place))
+            t.effect != EffectKind::FrictionLevelChange
+                && !t.is_transient
+                && !excluded.contains(&(t.effect, t.place))
         });
         self.model.terms = found;
         self.rejected.clear();

@@ -25,6 +25,9 @@ pub(in crate::diagnosis) struct Accepted {
     /// Fraction of what held-out motion left open when it was accepted: what its rivals' fractions compare with.
     pub explained_fraction: f64,
     pub rivals: Vec<Rival>,
+    /// Whether it is certain, has faded before the motion ends, and cannot be told from an event: part of the model, without a
+    /// name.
+    pub is_transient: bool,
 }
 
 impl Accepted {
@@ -43,6 +46,7 @@ impl Accepted {
             inflation: 1.0,
             explained_fraction: 0.0,
             rivals: Vec::new(),
+            is_transient: false,
         }
     }
 }
