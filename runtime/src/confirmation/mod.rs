@@ -3,8 +3,8 @@
 //! Evidence inside one recording cannot exclude that a law imitates something that this motion has and other motion has
 //! not. Where there is a test recording, each finding is therefore held against it: the part of it that is there
 //! ([`OnTest`]) must be more than one half, or its joints are predicted worse with it; it must be told from nothing where
-//! the motion could have shown it; it must not certainly make the other joints worse; and a factor must be the same. What
-//! fails is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by
+//! the motion could have shown it; it must not certainly make the other joints worse; and a factor must be the same. That is
+//! asked with the parameters that were found beside it: those of a model without it imitate it on several joints. What fails is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by
 //! it: of a finding that stays, only that it did not fail is known from it.
 
 mod intervals;
@@ -102,8 +102,16 @@ fn held_against_test(
         return Ok(Vec::new());
     }
     let (all, delay) = (diagnosis.terms(), diagnosis.delay);
-    let mut predictors = vec![Predictor { chi: &diagnosis.model.chi, effects: &all, delay }];
+    let whole = Predictor { chi: &diagnosis.model.chi, effects: &all, delay };
+    let mut predictors = vec![whole];
     predictors.extend(without.iter().map(|(_, chi, effects)| Predictor { chi, effects, delay }));
+    // A factor by itself, with the parameters that were found beside it.
+    let factors: Vec<(usize, Vec<EffectTerm>)> = (0..diagnosis.findings.len())
+        .filter(|&k| diagnosis.findings[k].term.effect.properties().is_factor)
+        .map(|k| (k, all.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, term)| term.clone()).collect()))
+        .collect();
+    let first_factor = predictors.len();
+    predictors.extend(factors.iter().map(|(_, effects)| Predictor { effects, ..whole }));
     let evaluation = evaluate(model, &predictors, &test.motions, &test.settings, &[])?;
     let mut failing = Vec::new();
     let mut parts = Vec::new();
@@ -111,7 +119,8 @@ fn held_against_test(
         let finding = &diagnosis.findings[*k];
         let joints = joints_of(model, finding);
         let intervals = Intervals::new(&finding.term, model.robot().joints(), &test.motions);
-        let slope_on = |joints| Slope::of(&evaluation, [which, 0], joints, &intervals);
+        let slope_of = |which, joints| Slope::of(&evaluation, [which, 0], joints, &intervals);
+        let slope_on = |joints| slope_of(which, joints);
         let Some(slope) = slope_on(Some(&joints)) else { continue };
         let models = [predictors[which], predictors[0]];
         if finding.term.effect.properties().window == SmoothingWindow::Fast
@@ -125,7 +134,12 @@ fn held_against_test(
         let on_all = slope_on(None);
         let own = slope.judgement();
         let harms_others = own == Judgement::Stands && on_all.as_ref().is_some_and(Slope::certainly_harms);
-        let is_another = finding.term.effect.properties().is_factor && slope.certainly_differs();
+        let factor = factors.iter().position(|(factor, _)| factor == k);
+        let is_another = factor.is_some_and(|i| {
+            // A factor has one amplitude.
+            let known = finding.term.sigma[0] / finding.term.amplitude[0].abs();
+            slope_of(first_factor + i, Some(&joints)).is_some_and(|slope| slope.certainly_differs(known))
+        });
         let fails = match own {
             Judgement::Stands => harms_others || is_another,
             Judgement::Harms => true,

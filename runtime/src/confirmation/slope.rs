@@ -107,9 +107,10 @@ impl Slope {
         self.margin().is_some_and(|margin| self.value < NEUTRAL - margin)
     }
 
-    /// Whether another size than that of the law is certain.
-    pub(super) fn certainly_differs(&self) -> bool {
-        self.margin().is_some_and(|margin| (self.value - 1.0).abs() > SAME + margin)
+    /// Whether another size than that of the law is certain, which is itself known to a relative standard deviation.
+    pub(super) fn certainly_differs(&self, known: f64) -> bool {
+        let both = Self { sigma: self.sigma.map(|sigma| sigma.hypot(known)), ..*self };
+        both.margin().is_some_and(|margin| (self.value - 1.0).abs() > SAME + margin)
     }
 
     /// What a slope differs by from the true one only in rare cases; `None` where that is not known.
@@ -192,10 +193,12 @@ mod tests {
     #[test]
     fn a_factor_of_another_size_is_told_and_one_of_the_same_size_is_not() {
         let mut rng = Pcg64::seed_from_u64(3);
-        let mut differs =
-            |there: f64| (0..1000).filter(|_| slope(there, 0.1, 8, &mut rng).certainly_differs()).count();
-        assert!(differs(1.0) < 10);
-        assert!(differs(1.1) < 40, "a tenth is allowed");
-        assert!(differs(0.55) > 800);
+        let mut differs = |there: f64, known: f64| {
+            (0..1000).filter(|_| slope(there, 0.1, 8, &mut rng).certainly_differs(known)).count()
+        };
+        assert!(differs(1.0, 0.0) < 10);
+        assert!(differs(1.1, 0.0) < 40, "a tenth is allowed");
+        assert!(differs(0.55, 0.0) > 800);
+        assert!(differs(0.55, 0.3) < 50, "a factor that is itself known badly may be of that size");
     }
 }
