@@ -11,8 +11,8 @@ use dynid_runtime::model::Model;
 
 const SEED: u64 = 5;
 /// Coulomb friction of joint 1 that fades, N.m, and its time constant, s.
-const FADES: f64 = 2.0;
-const TAU: f64 = 0.25;
+const FADES: f64 = 1.5;
+const TAU: f64 = 0.3;
 /// That which stays, N.m.
 const COULOMB: f64 = 3.0;
 
