@@ -102,6 +102,7 @@ fn named(text: &mut String, told: &Told<'_>) {
     for finding in &told.found.findings {
         finding_words(text, finding);
     }
+    transients(text, told.found);
 }
 
 fn finding_words(text: &mut String, finding: &Finding) {
@@ -131,6 +132,20 @@ fn finding_words(text: &mut String, finding: &Finding) {
         .collect();
     if !others.is_empty() {
         let _ = writeln!(text, "  Considered instead: {}.", others.join("; "));
+    }
+}
+
+fn transients(text: &mut String, found: &Diagnosis) {
+    for transient in &found.transients {
+        let joints: Vec<String> = transient.joints.iter().map(ToString::to_string).collect();
+        let _ = writeln!(
+            text,
+            "\nNot named, because nothing tells it from an event, and in the model all the same, so that parameters and laws are \
+             those of the motion after it: {} on joint {}, which has faded after {} s.",
+            EffectKind::name_of(&transient.effect),
+            joints.join(" and "),
+            significant(transient.faded_after, 2)
+        );
     }
 }
 
