@@ -10,10 +10,9 @@ use dynid_runtime::model_file::{Identified, RecordedFrom};
 use dynid_runtime::recording::Trajectory;
 
 use crate::arguments::Source;
-use crate::commands::diagnose::of_the_same_robot;
 use crate::failure::{Failure, file_failure};
 use crate::provenance::Provenance;
-use crate::recorded::{Measured, measure};
+use crate::recorded::{Measured, measure, of_the_same_robot};
 
 /// What a model that is saved as `model` says of the recording that it is from.
 ///

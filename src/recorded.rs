@@ -7,6 +7,7 @@ use dynid_runtime::estimation::{
     ObserveRecordingError, ObservedRecording, RecordedSettings, observe_recording,
 };
 use dynid_runtime::model::Robot;
+use dynid_runtime::model_file::difference;
 use dynid_runtime::plausibility::Judged;
 use dynid_runtime::recording::{Manifest, RecordingError, RowReport, Side, Trajectory, load};
 use dynid_runtime::signal::{Motion, SignalError, SpeedFault, contradicting_speeds, prepare_all};
@@ -271,4 +272,21 @@ pub fn left_out_words(left_out: &LeftOut) -> Vec<String> {
     words.extend(rows.notes.iter().cloned());
     words.extend(left_out.too_short.iter().map(|what| format!("left out: {what}")));
     words
+}
+
+/// Another recording, where it is one of the same robot.
+///
+/// # Errors
+/// [`Failure::Input`] naming the recording, and what of its robot is another.
+pub fn of_the_same_robot(other: Measured, measured: &Measured, path: &Path) -> Result<Measured, Failure> {
+    let [robot, its] = [measured, &other].map(|m| m.dynamics.model().robot());
+    match difference(its, robot) {
+        None => Ok(other),
+        Some(what) => Err(Failure::Input(format!(
+            "{}: a recording of {}, not of the {} that is diagnosed ({what}); record the same robot, or correct robot: there",
+            path.display(),
+            its.name,
+            robot.name
+        ))),
+    }
 }

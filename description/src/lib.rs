@@ -30,6 +30,7 @@ mod nominal;
 mod parameter;
 mod robot;
 mod standard;
+mod standard_parameter;
 
 pub use base_parameter::BaseParameter;
 pub use coupling::{Between, Coupling, CouplingLaw};
@@ -40,6 +41,7 @@ pub use frame::{Frame, JointKind};
 pub use joint::{JointIndex, JointNumber};
 pub use limits::Limits;
 pub use nominal::Nominal;
-pub use parameter::{ParameterKind, StandardParameter};
+pub use parameter::ParameterKind;
 pub use robot::Robot;
 pub use standard::standard_parameters;
+pub use standard_parameter::StandardParameter;

@@ -9,6 +9,7 @@ use datafusion::prelude::{SessionConfig, SessionContext};
 use futures::TryStreamExt;
 
 use crate::cluster;
+use crate::columns::plain_columns;
 use crate::error::{FleetError, Result};
 use crate::functions::{WorkTable, register};
 
@@ -37,11 +38,6 @@ pub fn embedded() -> SessionContext {
     );
     register(&context);
     context
-}
-
-/// Tables read from Parquet have the kinds of columns that dynid's functions take and give: no views.
-pub(crate) fn plain_columns(config: SessionConfig) -> SessionConfig {
-    config.set_bool("datafusion.execution.parquet.schema_force_view_types", false)
 }
 
 impl Engine {

@@ -7,6 +7,7 @@
 
 mod cells;
 pub mod cluster;
+mod columns;
 pub mod commands;
 pub mod day;
 pub mod diagnose;

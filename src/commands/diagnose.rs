@@ -14,7 +14,7 @@ use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Progress, Settings, di
 use dynid_runtime::estimation::choose_bandwidth;
 use dynid_runtime::law_file;
 use dynid_runtime::model::{JointIndex, Robot};
-use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified, difference};
+use dynid_runtime::model_file::{Covariance, EvaluatedRows, Identified};
 use dynid_runtime::report::capital;
 use dynid_runtime::signal::{Preparation, SpeedFault, contradicting_speeds};
 use dynid_runtime::simulation::replay::{ClosedLoop, replay};
@@ -27,7 +27,7 @@ use crate::failure::Failure;
 use crate::origin::recorded_from;
 use crate::output::{Bar, can_write, print, write, write_json};
 use crate::pages::diagnosis::{Extras, page, summary};
-use crate::recorded::{Measured, left_out_words, measure};
+use crate::recorded::{Measured, left_out_words, measure, of_the_same_robot};
 use crate::speeds::{and_of_speeds, speed_words};
 
 use compare::{Test, no_gain_words, tested};
@@ -163,23 +163,6 @@ fn hand_out(
         write(path, &page(&measured.title, diagnosis, extras, &left_out_words(&measured.rows)))?;
     }
     Ok(())
-}
-
-/// Another recording, where it is one of the same robot.
-///
-/// # Errors
-/// [`Failure::Input`] naming the recording, and what of its robot is another.
-pub fn of_the_same_robot(other: Measured, measured: &Measured, path: &Path) -> Result<Measured, Failure> {
-    let [robot, its] = [measured, &other].map(|m| m.dynamics.model().robot());
-    match difference(its, robot) {
-        None => Ok(other),
-        Some(what) => Err(Failure::Input(format!(
-            "{}: a recording of {}, not of the {} that is diagnosed ({what}); record the same robot, or correct robot: there",
-            path.display(),
-            its.name,
-            robot.name
-        ))),
-    }
 }
 
 /// The settings of a diagnosis as they were asked for.

@@ -9,6 +9,7 @@ use crate::coaxial::links_between;
 use crate::document::Urdf;
 use crate::ellipsoid_yaml::ellipsoids;
 use crate::frames::{Frames, Row, frames};
+use crate::import_options::ImportOptions;
 use crate::joint::{Joint, JointType};
 use crate::link_bounds::Meshes;
 use crate::mistake::{Mistake, shown};
@@ -16,28 +17,8 @@ use crate::pose::Pose;
 use crate::text::{angle, length, number, plain, quoted, tidy, variable};
 use crate::tree::{Tree, too_many};
 use dynid_description::ParameterKind;
-use dynid_description::bounds::{MAX_FRAMES, NEGLIGIBLE};
+use dynid_description::bounds::MAX_FRAMES;
 use dynid_description::{JointKind, Motion};
-
-/// What of a URDF is taken, and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ImportOptions {
-    /// Name of the link that does not move: frame 0; the root where it is not given.
-    pub base: Option<String>,
-    /// Name of the last link of a chain; every joint beyond the base moves where it is not given.
-    pub tip: Option<String>,
-    /// Angles this close to a multiple of pi/4, rad, are taken for it.
-    pub snap: f64,
-    /// Gravity in the frame of the URDF's root link, m/s2.
-    pub gravity: [f64; 3],
-}
-
-impl Default for ImportOptions {
-    /// The whole tree, gravity along -z of the root. Below the tolerance an angle is a rounding error for dynid's tables too.
-    fn default() -> Self {
-        Self { base: None, tip: None, snap: NEGLIGIBLE, gravity: [0.0, 0.0, -9.81] }
-    }
-}
 
 /// A URDF as a robot.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use roxmltree::{Document, Node};
 
 use crate::body::Body;
 use crate::document::Urdf;
-use crate::import::ImportOptions;
+use crate::import_options::ImportOptions;
 use crate::mistake::Mistake;
 use crate::pose::Pose;
 use crate::skeleton::{Skeleton, Unlike, matched};

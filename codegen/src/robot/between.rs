@@ -1,6 +1,6 @@
 //! Springs between two points: which points, and which joints change their distance.
 
-use super::couplings::Known;
+use super::coupled_robot::Known;
 use super::document::Node;
 use super::magnitudes::within;
 use super::reader::Reader;

@@ -1,10 +1,11 @@
 //! Friction between links or of a tendon, and springs: what the table says acts on several joints at once.
 
 use super::between::{joints_of, read_points};
+use super::coupled_robot::Known;
 use super::document::{Node, Value};
 use super::drive_table::DriveTable;
+use super::identifier::check_identifier;
 use super::magnitudes::within;
-use super::parse::check_identifier;
 use super::reader::{Fields, Reader};
 use super::table::TableRow;
 use crate::exact::{Number, Span, decimal};
@@ -14,16 +15,6 @@ use dynid_description::{Between, Coupling, CouplingLaw, DependentFrame, JointKin
 
 const FRICTION_KEYS: [&str; 2] = ["joints", "name"];
 const SPRING_KEYS: [&str; 6] = ["joint", "joints", "between", "law", "rest", "name"];
-
-/// What an entry is checked against.
-pub(super) struct Known<'a> {
-    /// Numbers j of the joints.
-    pub joints: Vec<usize>,
-    pub frames: &'a [TableRow],
-    pub dependent: &'a [DependentFrame],
-    drive: &'a DriveTable,
-    pub constants: &'a [(String, f64)],
-}
 
 /// Reads `friction` and `springs`, in this order.
 pub(super) fn read_couplings(

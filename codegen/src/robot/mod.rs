@@ -59,6 +59,7 @@
 //! ```
 
 mod between;
+mod coupled_robot;
 mod couplings;
 mod diagnostic;
 mod document;
@@ -67,6 +68,7 @@ mod drive_table;
 mod ellipsoids;
 mod expression;
 mod formula;
+mod identifier;
 mod known;
 mod magnitudes;
 mod parse;

@@ -1,29 +1,13 @@
 //! Reading expressions: numbers, names, operators, parentheses and functions. What they mean is said by an [`Algebra`]:
 //! the entries of a robot's table and a user's laws are read by the same parser.
 
+mod error;
 mod tokens;
 
+use error::error;
 use tokens::{Token, tokenize};
 
-/// What is wrong with an expression and where: characters from its start.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FormulaError {
-    /// Characters from the start of the text.
-    pub offset: usize,
-    /// What was found and what was expected.
-    pub message: String,
-}
-
-impl FormulaError {
-    /// An error at a character.
-    pub fn new(offset: usize, message: impl Into<String>) -> Self {
-        Self { offset, message: message.into() }
-    }
-}
-
-fn error<T>(offset: usize, message: impl Into<String>) -> Result<T, FormulaError> {
-    Err(FormulaError::new(offset, message))
-}
+pub use error::FormulaError;
 
 /// What the parts of an expression mean.
 pub trait Algebra {

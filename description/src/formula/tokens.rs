@@ -1,6 +1,6 @@
 //! From the text of an expression to numbers, names and symbols.
 
-use super::{FormulaError, error};
+use super::error::{FormulaError, error};
 
 /// Longest expression that is read, in operators, names and numbers; bounds every recursion over an expression.
 const MAX_TOKENS: usize = 200;

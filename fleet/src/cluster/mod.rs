@@ -14,7 +14,7 @@ use ballista::prelude::{SessionConfigExt, SessionContextExt};
 use datafusion::execution::{SessionState, SessionStateBuilder};
 use datafusion::prelude::{SessionConfig, SessionContext};
 
-use crate::engine::plain_columns;
+use crate::columns::plain_columns;
 use crate::error::{FleetError, Result};
 use crate::functions::register;
 

@@ -11,7 +11,7 @@
 //! That ratios do not gain holds as far as the predictions of the unchanged robot are as wide as they should be; that is
 //! what simulations check.
 
-use crate::alarm::Kind;
+use crate::Kind;
 use crate::filter::{Estimated, Filter, Outliers, Reading};
 
 /// Part of the capital that is for the comparison with the siblings.

@@ -1,7 +1,7 @@
 //! What evidence promises.
 
 use super::*;
-use crate::dispersion::Memory;
+use crate::memory::Memory;
 use crate::testing::Noise;
 
 const WHITE: Memory = Memory { share: 0.0, rho: 0.5 };

@@ -4,7 +4,7 @@
 //!
 //! Everything is in standard deviations of the robot's day-to-day variation.
 
-use crate::dispersion::Memory;
+use crate::memory::Memory;
 use statrs::function::gamma::ln_gamma;
 
 /// Level, temperature, load, memory, change.

@@ -1,6 +1,7 @@
 //! The days of a fleet, one after the other. Nothing here looks at a later day.
 
-use crate::alarm::{Alarm, Raised};
+use crate::Alarm;
+use crate::alarm::Raised;
 use crate::clean::{Clean, Day, clean};
 use crate::discoveries::{Weights, rejected};
 use crate::meanwhile::{Meanwhile, meanwhile};

@@ -40,6 +40,7 @@ mod filter;
 mod fleet;
 mod meanwhile;
 mod member;
+mod memory;
 mod page;
 mod robust;
 mod settings;
@@ -53,10 +54,9 @@ mod trend;
 mod types;
 mod words;
 
-pub use alarm::{Alarm, Kind};
 pub use page::{FindingFact, Labels, Pages, RecordingFact, RobotFacts};
 pub use settings::Settings;
-pub use types::{Observation, Series, SiblingComparison, Trend, Watched};
+pub use types::{Alarm, Kind, Observation, Series, SiblingComparison, Trend, Watched};
 pub use words::{plus_minus, signed, significant};
 
 /// Trends and alarms of a fleet.

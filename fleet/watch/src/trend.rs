@@ -3,7 +3,7 @@
 //! Kendall, Rank Correlation Methods (1975); Hamed and Rao, A modified Mann-Kendall trend test for autocorrelated data,
 //! J. Hydrology 204 (1998); Sen, JASA 63 (1968).
 
-use crate::dispersion::Memory;
+use crate::memory::Memory;
 use crate::robust::median;
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::cmp::Ordering;

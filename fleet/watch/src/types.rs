@@ -1,6 +1,5 @@
 //! What goes in and what comes out.
 
-use crate::Alarm;
 use serde::Serialize;
 
 /// One parameter of one robot, estimated from the recordings of one day.
@@ -100,4 +99,54 @@ pub struct SiblingComparison {
     pub spread: f64,
     /// How many of them this robot is off.
     pub deviations: f64,
+}
+
+/// How a series changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Kind {
+    /// The value moves a little every day.
+    Drift,
+    /// The value jumped and stays.
+    Step,
+    /// The value is not what robots with the same table have, since the first day.
+    UnlikeSiblings,
+}
+
+/// A change that somebody should look at. At most one is raised for a series.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Alarm {
+    /// Name of the robot.
+    pub robot: String,
+    /// Name of the robot table.
+    pub table: String,
+    /// Name of the parameter.
+    pub parameter: String,
+    /// Unit of the parameter.
+    pub unit: String,
+    /// Day on which it was raised, days since 1970-01-01.
+    pub day: i64,
+    /// Most likely day on which it began.
+    pub began: i64,
+    /// Days between which it began with a probability of nine tenths.
+    pub began_between: (i64, i64),
+    /// How it changed.
+    pub kind: Kind,
+    /// By how much, up to the day of the alarm, in `unit`. For [`Kind::UnlikeSiblings`] the difference from their median.
+    pub change: f64,
+    /// Standard deviation of `change`.
+    pub change_sigma: f64,
+    /// Level before the change; the siblings' median for [`Kind::UnlikeSiblings`].
+    pub before: f64,
+    /// Evidence against "nothing has changed" on the day of the alarm, at most 1e300.
+    pub e_value: f64,
+    /// Siblings that had days before the change and after it; for [`Kind::UnlikeSiblings`] those compared with.
+    pub siblings: usize,
+    /// Median of the changes of these siblings from before `began` to the day of the alarm, as identified, in `unit`; `None`
+    /// where there are none, and for [`Kind::UnlikeSiblings`].
+    pub siblings_change: Option<f64>,
+    /// What it is of, when and how much it changed, in plain words.
+    pub sentence: String,
 }

@@ -25,6 +25,7 @@ mod covariance;
 mod error;
 mod fingerprint;
 mod identified;
+mod reference;
 mod robot_yaml;
 mod rows;
 mod table;

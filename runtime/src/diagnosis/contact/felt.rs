@@ -1,9 +1,9 @@
 //! What every joint feels of a push, and the force that explains it.
 
 use crate::diagnosis::contact::force::{JointRow, UnitForces, as_torques};
-use crate::diagnosis::contact::moving::told;
 use crate::diagnosis::contact::scan::Noise;
 use crate::diagnosis::contact::squares::{Squares, mean_beside};
+use crate::diagnosis::contact::windows::told;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{FELT, FORCE_EXPLAINS, FORCE_LEAVES, LINKS_ALIKE, UNDETERMINED_FORCE};

@@ -4,7 +4,7 @@ use crate::diagnosis::contact::curves::curves;
 use crate::diagnosis::contact::felt::{Around, Felt, wrench};
 use crate::diagnosis::contact::scan::{Noise, Pushed, Track, scan, together};
 use crate::diagnosis::contact::search::Contacts;
-use crate::diagnosis::contact::windows::duration;
+use crate::diagnosis::contact::windows::{duration, told};
 use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
@@ -140,11 +140,6 @@ pub(in crate::diagnosis) fn confirmed(
         }
     }
     (!contacts.wrenches.is_empty()).then_some(contacts)
-}
-
-/// Confidence of a window.
-pub(super) fn told(doubt: f64) -> f64 {
-    (1.0 - doubt).clamp(0.0, crate::diagnosis::rules::HIGHEST_CONFIDENCE)
 }
 
 /// The pushes of another look, whose model was fitted without them, at the times at which they were found.

@@ -1,6 +1,6 @@
 //! Windows of time from instants that were pushed or not.
 
-use crate::diagnosis::rules::SHORTEST_PUSH;
+use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, SHORTEST_PUSH};
 
 /// Windows in which instants follow each other as pushed, gaps shorter than a shortest push closed, those shorter than
 /// it left out. `instants` are times with whether they were pushed, in order.
@@ -19,6 +19,11 @@ pub(in crate::diagnosis) fn windows(instants: impl Iterator<Item = (f64, bool)>)
 /// Duration of windows, s.
 pub(in crate::diagnosis) fn duration(windows: &[[f64; 2]]) -> f64 {
     windows.iter().map(|w| w[1] - w[0]).sum()
+}
+
+/// Confidence of a window.
+pub(super) fn told(doubt: f64) -> f64 {
+    (1.0 - doubt).clamp(0.0, HIGHEST_CONFIDENCE)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What a report draws: residuals over the variable that reveals an effect, and torques before and after.
 
+use crate::diagnosis::explanation::binned::binned;
 use crate::diagnosis::explanation::fine_law::fine_law;
 use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::explanation::standard_model::StandardModelFit;
@@ -14,7 +15,6 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{Abscissa, EffectKind, Place, Variable};
 use crate::model::{JointIndex, JointKind};
-use crate::statistics::bins::Bins;
 
 /// The variable that reveals a law with these numbers, on a joint at a sample of a motion.
 pub(in crate::diagnosis) fn abscissa(
@@ -107,22 +107,6 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
         if properties.along_motion { format!("{name} (torques along the motion)") } else { name };
     curve.unit = model.context.scales[joint].kind.torque_unit().into();
     Some(curve)
-}
-
-/// Means over bins with equally many rows; (variable, residual, law).
-pub(in crate::diagnosis) fn binned(rows: Vec<(f64, f64, f64)>) -> Curve {
-    let mut curve = Curve::default();
-    for bin in Bins::over(rows, BINS, |row| row.0).iter() {
-        let n = bin.len() as f64;
-        let mean = |f: fn(&(f64, f64, f64)) -> f64| bin.iter().map(f).sum::<f64>() / n;
-        let (x, r, l) = (mean(|b| b.0), mean(|b| b.1), mean(|b| b.2));
-        let spread = bin.iter().map(|b| (b.1 - r).powi(2)).sum::<f64>() / n;
-        curve.x.push(x);
-        curve.residual.push(r);
-        curve.law.push(l);
-        curve.error.push((spread / n).sqrt());
-    }
-    curve
 }
 
 /// Share of the variance of `residual` that bins over a variable explain, beyond what bins explain by chance.

@@ -1,6 +1,6 @@
 //! A law over any variables, for a person: its variables, its swing, its curves with their band, a short formula.
 
-use crate::diagnosis::explanation::curves::binned;
+use crate::diagnosis::explanation::binned::binned;
 use crate::diagnosis::explanation::proposal::{Point, propose};
 use crate::diagnosis::outcome::Curve;
 use crate::diagnosis::rows::free::values;

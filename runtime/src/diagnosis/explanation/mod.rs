@@ -1,5 +1,6 @@
 //! Explanation: from accepted effects to numbers, curves and sentences.
 
+mod binned;
 pub(in crate::diagnosis) mod covariance;
 pub(in crate::diagnosis) mod curves;
 pub(in crate::diagnosis) mod delay;

@@ -5,10 +5,12 @@
 //! such parameters. The best physically possible fit therefore tells whether the recording can be this robot's.
 
 mod body;
+mod constraint;
 mod ellipsoid;
 mod interior_point;
 mod near_prior;
 mod newton_step;
+mod prior;
 mod prior_problem;
 mod prior_weight;
 mod problem;
@@ -22,9 +24,11 @@ use crate::model::Robot;
 use problem::Problem;
 
 pub use body::{NearestBody, nearest_body};
+pub use constraint::Constraint;
 pub use ellipsoid::{ellipsoid_margin, uniform_body};
-pub use near_prior::{EllipsoidBound, NearPrior, NearPriorError, Prior, near_prior};
-pub use release::{Constraint, Released, released};
+pub use near_prior::{EllipsoidBound, NearPrior, near_prior};
+pub use prior::{NearPriorError, Prior};
+pub use release::{Released, released};
 
 /// The best fit whose parameters belong to real bodies and whose friction dissipates.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@ use super::*;
 use crate::estimation::physical::pseudo_inertia::pseudo_inertia;
 use crate::estimation::physical::testing::{arm, prior, rod, sigmas, standard};
 use crate::estimation::physical::{Constraint, released};
-use crate::model::{Drive, Frame, JointKind, Limits};
+use crate::model::{Drive, Ellipsoid, Frame, JointKind, Limits};
 use nalgebra::DVector;
 
 fn is_body(near: &NearPrior, frame: usize) -> bool {

@@ -3,13 +3,13 @@
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
+use super::constraint::Constraint;
 use super::ellipsoid::{coefficients, ellipsoid_margin, pseudo_of, uniform_body};
 use super::interior_point::factored;
-use super::near_prior::{NearPriorError, Prior};
 use super::newton_step::Step;
+use super::prior::{NearPriorError, Prior};
 use super::problem::{Combination, parameter, rotors};
 use super::pseudo_inertia::{pseudo_inertia, unit_inertia};
-use super::release::Constraint;
 use crate::model::{ParameterKind, Robot};
 
 /// Uncertainty of a base parameter, relative to its size, below which it is as good as exact: what is written with fewer

@@ -23,7 +23,7 @@
 use nalgebra::DVector;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::near_prior::NearPriorError;
+use super::prior::NearPriorError;
 use super::prior_problem::Search;
 
 /// The first weight of the prior, with which the data hardly count, and the factor from one to the next.

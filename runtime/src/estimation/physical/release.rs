@@ -2,19 +2,11 @@
 
 use nalgebra::DMatrix;
 
-use super::near_prior::{NearPriorError, Prior, check};
+use super::constraint::Constraint;
+use super::prior::{NearPriorError, Prior, check};
 use super::prior_problem::Search;
 use super::prior_weight::path;
 use crate::model::Robot;
-
-/// What must hold of one part of a robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Constraint {
-    /// The body of a frame, 0-based, has a density that is nowhere negative, and is within its ellipsoid.
-    Body(usize),
-    /// The rotor inertia of a motor, 0-based, is positive.
-    Rotor(usize),
-}
 
 /// What the rest of a robot could have if one constraint were none.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 //! A planar arm, and priors of its bodies.
 
-use super::near_prior::Prior;
+use super::prior::Prior;
 use crate::model::{Drive, Frame, JointKind, Limits, ParameterKind, Robot};
 use nalgebra::DMatrix;
 

@@ -1,7 +1,7 @@
 //! How well the variance of an estimate is known, whose noise was itself estimated.
 
 use super::autoregression::Autoregression;
-use super::covariance::Innovations;
+use super::innovations::Innovations;
 use super::noise::Noise;
 use crate::statistics::student::student_factor;
 use nalgebra::{DMatrix, DVector};

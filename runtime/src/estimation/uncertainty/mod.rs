@@ -4,8 +4,11 @@ mod autoregression;
 mod between;
 mod covariance;
 mod freedom;
+mod innovations;
 mod noise;
 mod series;
+mod solved;
 mod variance_function;
 
-pub(super) use covariance::{Solved, covariance, variances};
+pub(super) use covariance::{covariance, variances};
+pub(super) use solved::Solved;

@@ -2,7 +2,10 @@
 
 use std::io::Read;
 
-use super::container::{Fields, LONGEST_CHUNK};
+use super::fields::Fields;
+
+/// Longest chunk, packed and unpacked. Writers make chunks of 0.8 to 4 MB.
+pub(super) const LONGEST_CHUNK: u64 = 1 << 27;
 
 /// What stands before the records of a chunk.
 pub(super) struct ChunkHeader {

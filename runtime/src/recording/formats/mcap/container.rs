@@ -9,7 +9,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
-use super::chunk::{ChunkHeader, unpack};
+use super::chunk::{ChunkHeader, LONGEST_CHUNK, unpack};
 use crate::regular_file;
 
 pub(super) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
@@ -27,8 +27,6 @@ pub(super) mod op {
 
 /// Longest record outside of a chunk that is read; a longer one is passed over. Pictures are shorter.
 const LONGEST: u64 = 1 << 26;
-/// Longest chunk, packed and unpacked. Writers make chunks of 0.8 to 4 MB.
-pub(super) const LONGEST_CHUNK: u64 = 1 << 27;
 
 /// The records of one file.
 pub(super) struct Records {
@@ -236,33 +234,5 @@ impl Records {
             }
         }
         Ok(true)
-    }
-}
-
-/// Fields of a record one after another; little-endian.
-pub(super) struct Fields<'a>(pub &'a [u8]);
-
-impl<'a> Fields<'a> {
-    pub fn take(&mut self, length: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(length)?;
-        self.0 = rest;
-        Some(taken)
-    }
-
-    pub fn u16(&mut self) -> Option<u16> {
-        Some(u16::from_le_bytes(self.take(2)?.try_into().ok()?))
-    }
-
-    pub fn u32(&mut self) -> Option<u32> {
-        Some(u32::from_le_bytes(self.take(4)?.try_into().ok()?))
-    }
-
-    pub fn u64(&mut self) -> Option<u64> {
-        Some(u64::from_le_bytes(self.take(8)?.try_into().ok()?))
-    }
-
-    pub fn text(&mut self) -> Option<String> {
-        let length = self.u32()? as usize;
-        Some(String::from_utf8_lossy(self.take(length)?).into_owned())
     }
 }

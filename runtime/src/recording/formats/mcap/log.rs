@@ -3,8 +3,9 @@
 use std::collections::{HashMap, VecDeque};
 use std::path::PathBuf;
 
-use super::container::{Fields, Found, Records, op};
+use super::container::{Found, Records, op};
 use super::definition::Definition;
+use super::fields::Fields;
 use super::message::Kind;
 use super::topics::{Channel, Schema};
 use super::{error, says};

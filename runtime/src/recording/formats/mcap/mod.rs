@@ -12,6 +12,7 @@ mod chunk;
 mod container;
 mod decoder;
 mod definition;
+mod fields;
 mod log;
 mod merge;
 mod message;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::PathBuf;
 
-use super::container::{Fields, Found, Records, op};
+use super::container::{Found, Records, op};
 use super::definition::Definition;
+use super::fields::Fields;
 use crate::recording::look::Topic;
 
 /// A channel as its record says it.
