@@ -1,6 +1,7 @@
 //! Accepted effects as part of a model: their torques on any motion.
 
 use super::error::DiagnosisError;
+use super::reference::Reference;
 use super::rows::context::{Carried, Context};
 use super::rows::scales::scales;
 use super::rows::signals::Signals;
@@ -75,4 +76,15 @@ pub(super) fn torques_on(
         }
     }
     Ok(out)
+}
+
+impl Reference {
+    /// Torques of its laws on motions: `[motion][j][t]`.
+    pub(super) fn torques(
+        &self,
+        model: &dyn Model,
+        signals: &[Signals],
+    ) -> Result<Vec<Vec<Vec<f64>>>, DiagnosisError> {
+        torques_on(model, self.chi(), self.effects(), signals)
+    }
 }

@@ -6,13 +6,10 @@
 //! are the inverse of the noise this is the normal equation of rows of the earlier recording that nobody has kept
 //! (recursive least squares; Ljung, System Identification, 11.2).
 
-use super::error::DiagnosisError;
 use super::outcome::{BetweenMotions, Diagnosis};
-use super::predict::torques_on;
 use super::rows::prior::Prior;
-use super::rows::signals::Signals;
 use crate::effects::EffectTerm;
-use crate::model::{Model, ParameterKind, Robot};
+use crate::model::{ParameterKind, Robot};
 use nalgebra::DMatrix;
 
 /// A model of the robot before it changed.
@@ -108,6 +105,11 @@ impl Reference {
         &self.between_motions
     }
 
+    /// Its base parameters.
+    pub fn chi(&self) -> &[f64] {
+        &self.chi
+    }
+
     /// Its laws.
     pub fn effects(&self) -> &[EffectTerm] {
         &self.effects
@@ -177,15 +179,6 @@ impl Reference {
         // The amplitudes have been taken out of the torques: what they differ by is zero.
         let mean = known.iter().map(|&k| self.chi.get(k).copied().unwrap_or(0.0)).collect();
         Prior::of_covariance(&covariance, mean, known)
-    }
-
-    /// Torques of its laws on motions: `[motion][j][t]`.
-    pub(super) fn torques(
-        &self,
-        model: &dyn Model,
-        signals: &[Signals],
-    ) -> Result<Vec<Vec<Vec<f64>>>, DiagnosisError> {
-        torques_on(model, &self.chi, &self.effects, signals)
     }
 }
 

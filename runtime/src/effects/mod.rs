@@ -28,6 +28,7 @@ mod form;
 mod free_law;
 mod gear_load;
 mod joint_law;
+mod named_law;
 mod place;
 mod quantity;
 mod rigid_body;

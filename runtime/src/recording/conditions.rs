@@ -1,27 +1,12 @@
 //! Conditions under which a recording was made: temperature and load, which nothing but comparisons of days uses.
 
-use serde::Deserialize;
-
+use super::condition::Condition;
 use super::files::{Clock, Files, Source};
 use super::manifest::Window;
-use super::{Column, Manifest, RecordingError};
+use super::{Manifest, RecordingError};
 
 /// Rows taken from a file at a time.
 const BLOCK: usize = 4096;
-
-/// Columns of a condition. They are read by [`conditions`] alone: a row without a readable temperature is as right as the others.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Condition {
-    /// The file, where it is not the trajectory's.
-    #[serde(default)]
-    pub file: Option<String>,
-    /// Any number; their mean counts.
-    pub columns: Vec<Column>,
-    /// Of a temperature `degC`, `K` or `degF`; of a load what a person calls it, the same for all recordings of a robot.
-    #[serde(default)]
-    pub unit: Option<String>,
-}
 
 /// Units of temperatures with their names, °C a unit and the zero of the unit in °C.
 const TEMPERATURES: [(&[&str], f64, f64); 3] = [

@@ -1,8 +1,9 @@
 //! The files of a window: which columns are wanted of each, and where time comes from.
 
-use super::formats::{self, Format, Stamps};
+use super::format::{Format, Stamps};
+use super::formats;
+use super::manifest::STAMP;
 use super::manifest::{Channel, Manifest, Time, Window};
-use super::manifest_reader::STAMP;
 use super::unit::Unit;
 use super::{Column, RecordingError, Rows};
 

@@ -6,10 +6,13 @@ use serde::Deserialize;
 
 use super::RecordingError;
 use super::column::Column;
-use super::conditions::Condition;
+use super::condition::Condition;
 use super::manifest_values::{number, numbers, one_byte, one_or_many};
 use super::unit::Unit;
 use super::yaml::Node;
+
+/// The column of a log that holds the stamps of its messages, in s since the first.
+pub(super) const STAMP: &str = "header.stamp";
 
 /// A recording as its manifest describes it. Files are named relative to the manifest.
 ///

@@ -6,8 +6,8 @@ use serde::Deserialize;
 
 use super::RecordingError;
 use super::column::Column;
-use super::conditions::Condition;
-use super::manifest::{Channel, Layout, Manifest, MessageFields, Side, Time, Window};
+use super::condition::Condition;
+use super::manifest::{Channel, Layout, Manifest, MessageFields, STAMP, Side, Time, Window};
 use super::manifest_values::number;
 use super::unit::{Quantity, Unit};
 use crate::regular_file;
@@ -20,9 +20,6 @@ const NEEDED: [&str; 4] = ["robot", "time", "position", "torque"];
 /// Where a log does not say what its torques are.
 const SAY_THE_UNIT: &str = "`effort` is N.m with some drivers and the motor's current with others, so it must be said \
     which: `torque: {unit: N.m}`, or `torque: {unit: A, gain: [...]}` with N.m per ampere";
-
-/// The column of a log that holds the stamps of its messages, in s since the first.
-pub(super) const STAMP: &str = "header.stamp";
 
 /// Most trajectories of a recording: each of them reads its file from the beginning.
 const MOST_TRAJECTORIES: usize = 2000;

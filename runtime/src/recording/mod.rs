@@ -26,12 +26,14 @@
 
 mod channel;
 mod column;
+mod condition;
 mod conditions;
 mod error;
 mod fields;
 mod files;
 #[cfg(test)]
 mod folder;
+mod format;
 mod formats;
 mod layout_guess;
 mod load;
@@ -49,6 +51,7 @@ mod report;
 mod rows;
 mod screen;
 mod table;
+mod topic;
 mod trajectory;
 mod unit;
 mod window;
@@ -56,11 +59,12 @@ mod write;
 pub mod yaml;
 
 pub use column::Column;
-pub use conditions::{Condition, Conditions, conditions};
+pub use condition::Condition;
+pub use conditions::{Conditions, conditions};
 pub use error::RecordingError;
 pub use formats::is_log;
 pub use load::{Loader, Recording, load};
-pub use look::{Channels, Contents, Role, Series, Topic, channels, look};
+pub use look::{Channels, Contents, Role, Series, channels, look};
 pub use manifest::{Channel, Layout, Manifest, MessageFields, Side, Time, Window};
 pub use names::{meant, nearest};
 pub use reach::Reach;
@@ -68,6 +72,7 @@ pub use regear::regear;
 pub use report::{Cut, LeftOutRow, MOST_LEFT_OUT, Reason, RowReport};
 pub use rows::Rows;
 pub use table::TableReader;
+pub use topic::Topic;
 pub use trajectory::Trajectory;
 pub use unit::{Quantity, Unit};
 pub use write::{Columns, DataFormat, JointFields, JointLog, manifest_text, manifest_text_as, write_rows};

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::formats::Format;
+use super::format::Format;
 use super::{Column, Reason, RecordingError, Rows};
 use crate::regular_file;
 

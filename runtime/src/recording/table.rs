@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::fields::{blanks_at, find, is_passed_over, no_text, split};
-use super::formats::Format;
+use super::format::Format;
 use super::layout_guess::remedy;
 use super::number::{Field, parse_field, plain_decimal};
 use super::{Column, Layout, Reason, RecordingError, Rows};

@@ -13,6 +13,7 @@
 mod alone;
 mod axis;
 mod escape;
+mod figure;
 mod html;
 mod numbers;
 mod plot;

@@ -5,8 +5,9 @@
 //! resonance turns the phase.
 
 use crate::diagnosis::candidates::trial::{dense, gathered};
-use crate::diagnosis::rows::context::{Context, Series};
+use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::series::Series;
 use crate::diagnosis::rules::NOISE_OCTAVES;
 use crate::signal::Butterworth;
 

@@ -1,8 +1,9 @@
 //! A shape of an effect at a place as columns on the rows, and their inner products with the design.
 
-use crate::diagnosis::rows::context::{Context, Series};
+use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::dot;
+use crate::diagnosis::rows::series::Series;
 use crate::effects::{EffectKind, EffectTerm, Place};
 use nalgebra::DMatrix;
 

@@ -2,19 +2,11 @@
 
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::reference::Reference;
-use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::links::Links;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
-use crate::diagnosis::rows::user::user_columns;
-use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
-    Transmission, body_columns, derivable, derivative,
-};
+use crate::effects::{EffectKind, EffectTerm, Form, Place, Scale, Transmission, derivable};
 use crate::model::{Link, Model, RecursiveModel, Robot};
 use std::sync::{Arc, OnceLock};
-
-/// One column in one motion at the full rate: the joints that it acts on, with their torques.
-pub(in crate::diagnosis) type Series = Vec<(usize, Vec<f64>)>;
 
 /// A body that was found on the robot. It is not among the parameters `chi`, but the joints carry it: laws that follow the
 /// load feel it.
@@ -48,18 +40,18 @@ impl Carried {
 #[derive(Clone)]
 pub(in crate::diagnosis) struct Context<'a> {
     pub model: &'a dyn Model,
-    engine: Arc<RecursiveModel>,
-    tables: Vec<Link<f64>>,
+    pub(super) engine: Arc<RecursiveModel>,
+    pub(super) tables: Vec<Link<f64>>,
     pub signals: &'a [Signals],
     pub torques: Vec<ModelTorques>,
     pub scales: Vec<Scale>,
     /// Base parameters, without the bodies that were found.
     pub chi: Vec<f64>,
-    carried: Vec<Carried>,
-    links: Vec<OnceLock<Links>>,
+    pub(super) carried: Vec<Carried>,
+    pub(super) links: Vec<OnceLock<Links>>,
     /// Torques of gravity, `[j][t]` of each motion.
-    gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
-    inertias: Vec<OnceLock<[f64; 2]>>,
+    pub(super) gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
+    pub(super) inertias: Vec<OnceLock<[f64; 2]>>,
     /// Transmissions that are known in physical units, per joint.
     pub transmissions: Vec<(usize, Transmission)>,
     /// The robot before it changed, as a model.
@@ -143,7 +135,7 @@ impl<'a> Context<'a> {
     }
 
     /// Base parameters of the robot in a motion with what it carries there.
-    fn chi_in(&self, signal: usize) -> Vec<f64> {
+    pub(super) fn chi_in(&self, signal: usize) -> Vec<f64> {
         let mut chi = self.chi.clone();
         let is_there = |body: &&Carried| body.in_baseline || self.signals[signal].is_target;
         for body in self.carried.iter().filter(is_there) {
@@ -163,197 +155,5 @@ impl<'a> Context<'a> {
 
     pub fn tables(&self) -> &[Link<f64>] {
         &self.tables
-    }
-
-    /// The columns of an effect in one motion, one per amplitude; none where the effect cannot be at the place.
-    pub fn series(&self, signal: usize, effect: EffectKind, place: Place, shape: &[f64]) -> Vec<Series> {
-        let columns = match effect.form() {
-            Form::Joint(law) if place == Place::Robot => Some(self.of_all_joints(signal, law, shape)),
-            Form::Joint(law) => {
-                place.joint().map(|j| self.of_joint(signal, law, ([j, j], &self.scales[j]), shape))
-            }
-            Form::Heard(law) => {
-                place.hears().map(|[on, j]| self.of_joint(signal, law, ([on, j], &self.scales[j]), shape))
-            }
-            Form::Sensitivity(law) => place.variant().map(|v| self.derivatives(signal, law, v, shape)),
-            Form::Compliance(_) => place.joint().map(|j| vec![self.compliant(signal, j, shape)]),
-            Form::Body(_) => place.link().map(|frame| self.body(signal, frame)),
-            Form::Coupled => place.pair().map(|joints| self.coupled(signal, joints, shape)),
-            Form::Free => place.joint().and_then(|j| free_columns(self, signal, j, shape)),
-            Form::User => place.law().and_then(|law| user_columns(self, signal, law, shape)),
-            Form::Window => None,
-        };
-        columns.unwrap_or_default()
-    }
-
-    /// The same of a law that is part of a model, with the scales that it was made with.
-    pub fn series_of_term(&self, signal: usize, term: &EffectTerm) -> Vec<Series> {
-        match (term.effect.form(), term.place, term.scale) {
-            (Form::Joint(law), Place::Joint(j), Some(scale)) => {
-                self.of_joint(signal, law, ([j, j], &scale.into()), &term.shape)
-            }
-            (Form::Heard(law), place, Some(scale)) => place.hears().map_or_else(Vec::new, |joints| {
-                self.of_joint(signal, law, (joints, &scale.into()), &term.shape)
-            }),
-            _ => self.series(signal, term.effect, term.place, &term.shape),
-        }
-    }
-
-    /// A law that all joints have together.
-    fn of_all_joints(&self, signal: usize, law: &dyn JointLaw, shape: &[f64]) -> Vec<Series> {
-        let mut columns: Vec<Series> = vec![Series::new(); law.amplitudes(shape)];
-        for (j, scale) in self.scales.iter().enumerate() {
-            for (all, own) in columns.iter_mut().zip(self.of_joint(signal, law, ([j, j], scale), shape)) {
-                all.extend(own);
-            }
-        }
-        columns
-    }
-
-    /// What gravity asks for in a motion, `[j][t]`.
-    fn gravity(&self, signal: usize) -> &[Vec<f64>] {
-        self.gravity[signal].get_or_init(|| {
-            let at_rest = self.signals[signal].at_rest();
-            ModelTorques::new(self.model, &self.chi_in(signal), &at_rest).link
-        })
-    }
-
-    /// The law of joint `j` as a torque on joint `on`.
-    fn of_joint(
-        &self,
-        signal: usize,
-        law: &dyn JointLaw,
-        ([on, j], scale): ([usize; 2], &Scale),
-        shape: &[f64],
-    ) -> Vec<Series> {
-        let s = &self.signals[signal];
-        let torques = &self.torques[signal];
-        let gravity = law.needs_gravity(shape).then(|| &self.gravity(signal)[j]);
-        let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
-        let mut out = vec![0.0; columns.len()];
-        let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));
-        for t in 0..s.len() {
-            memory = law.advance(shape, memory, s.q[j][t] - before);
-            before = s.q[j][t];
-            let dq = s.dq[j][t];
-            let at = At {
-                time: s.time(t),
-                q: s.q[j][t],
-                dq,
-                sign: if dq > 0.0 { 1.0 } else { -1.0 },
-                load: torques.rigid[j][t],
-                link: torques.link[j][t],
-                gravity: gravity.map_or(0.0, |g| g[t]),
-                torque: torques.total[j][t],
-                friction: torques.friction[j][t],
-            };
-            law.law(scale, shape, &at, memory, &mut out);
-            for (column, &value) in columns.iter_mut().zip(&out) {
-                column[t] = value;
-            }
-        }
-        columns.into_iter().map(|c| vec![(on, c)]).collect()
-    }
-
-    /// Derivatives with respect to the variant `v`, or to all together, on the way to the error `at`.
-    fn derivatives(&self, signal: usize, law: &dyn Sensitivity, v: usize, at: &[f64]) -> Vec<Series> {
-        let robot = self.model.robot();
-        let variants = law.variants(robot);
-        let wanted = if law.together() { &variants[..] } else { variants.get(v..=v).unwrap_or_default() };
-        let (s, chi) = (&self.signals[signal], self.chi_in(signal));
-        let mut columns: Vec<Series> = (0..wanted.len())
-            .map(|which| {
-                let mut out = vec![Vec::new(); s.q.len()];
-                derivative(
-                    &self.engine,
-                    robot.gravity,
-                    &chi,
-                    &Direction { effect: law, variants: wanted, which, at },
-                    [&s.q, &s.dq, &s.ddq, &s.jerk],
-                    &mut out,
-                );
-                out.into_iter().enumerate().collect()
-            })
-            .collect();
-        if !at.is_empty() {
-            columns.extend(law.uncovered(robot, &s.q).into_iter().map(|column| vec![column]));
-        }
-        columns
-    }
-
-    fn coupled(&self, signal: usize, [a, b]: [usize; 2], shape: &[f64]) -> Vec<Series> {
-        let s = &self.signals[signal];
-        let Some(&ratio) = shape.first() else { return Vec::new() };
-        let law = CoupledRotor { ratio };
-        let mut columns = vec![[vec![0.0; s.len()], vec![0.0; s.len()]]; 3];
-        for t in 0..s.len() {
-            let values = law.columns([s.dq[a][t], s.dq[b][t]], [s.ddq[a][t], s.ddq[b][t]]);
-            for (column, value) in columns.iter_mut().zip(values) {
-                column[0][t] = value[0];
-                column[1][t] = value[1];
-            }
-        }
-        columns.into_iter().map(|[x, y]| vec![(a, x), (b, y)]).collect()
-    }
-
-    fn body(&self, signal: usize, frame: usize) -> Vec<Series> {
-        let s = &self.signals[signal];
-        let n = s.q.len();
-        let mut full = vec![vec![vec![0.0; s.len()]; n]; 10];
-        let mut at: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; n]);
-        let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        for t in 0..s.len() {
-            for j in 0..n {
-                (q[j], dq[j], ddq[j]) = (s.q[j][t], s.dq[j][t], s.ddq[j][t]);
-            }
-            body_columns(self.model.robot(), &self.tables, frame, [&q, &dq, &ddq], &mut at);
-            for (column, values) in full.iter_mut().zip(&at) {
-                for j in 0..n {
-                    column[j][t] = values[j];
-                }
-            }
-        }
-        full.into_iter().map(|column| column.into_iter().enumerate().collect()).collect()
-    }
-
-    /// The transmission that a scale-free shape means on a joint in these motions.
-    pub fn transmission(&self, j: usize, shape: &[f64]) -> Transmission {
-        if let Some((_, known)) = self.transmissions.iter().find(|(k, _)| *k == j) {
-            return *known;
-        }
-        let [least, median] = self.inertias[j].get_or_init(|| self.inertia(j));
-        let (least, median) = (*least, *median);
-        Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].kind)
-    }
-
-    /// Least and median inertia that a joint moves in these motions.
-    fn inertia(&self, j: usize) -> [f64; 2] {
-        let mut inertia: Vec<f64> = (0..self.signals.len())
-            .flat_map(|k| self.links(k).inertia(j).iter().step_by(7).copied().collect::<Vec<_>>())
-            .collect();
-        inertia.sort_by(f64::total_cmp);
-        let least = inertia.first().copied().unwrap_or(1.0).max(1e-6);
-        [least, inertia.get(inertia.len() / 2).copied().unwrap_or(1.0).max(least)]
-    }
-
-    fn compliant(&self, signal: usize, j: usize, shape: &[f64]) -> Series {
-        let t = self.transmission(j, shape);
-        let motion = (&self.signals[signal], &self.torques[signal]);
-        self.links(signal).compliant((self.model, &self.chi_in(signal)), motion, j, &t)
-    }
-
-    /// How a joint with a transmission of this shape rings in a motion, from a stretch and from a rate at its start.
-    pub fn ringing(&self, signal: usize, j: usize, shape: &[f64]) -> Vec<Series> {
-        let t = self.transmission(j, shape);
-        self.links(signal).ringing((self.model, &self.chi_in(signal)), &self.signals[signal], j, &t)
-    }
-
-    /// The torques on all joints that an acceleration of joint j asks for in a motion.
-    pub fn inertial(&self, signal: usize, j: usize, acceleration: &[f64]) -> Series {
-        self.links(signal).inertial(j, acceleration)
-    }
-
-    fn links(&self, signal: usize) -> &Links {
-        self.links[signal].get_or_init(|| Links::new(self.model, &self.chi_in(signal), &self.signals[signal]))
     }
 }

@@ -1,6 +1,7 @@
 //! Columns of a law over any variables.
 
-use crate::diagnosis::rows::context::{Context, Series};
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::series::Series;
 use crate::effects::{FreeLaw, Seen, SinceReversal, Variable};
 
 /// The columns of a law on joint `j` with a shape in one motion; `None` where the shape means no law.

@@ -1,6 +1,6 @@
 //! What links ask for through compliant transmissions, and what a link behind one adds to the torques.
 
-use crate::diagnosis::rows::context::Series;
+use crate::diagnosis::rows::series::Series;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{LEAST_LINK_INERTIA, POSITION_STEP};
 use crate::effects::{LinkSide, Stretch, Transmission, deflection, stretch_at_start};

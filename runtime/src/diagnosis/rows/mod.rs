@@ -1,6 +1,7 @@
 //! Rows: torques and columns of a recording, where a joint surely moves.
 
 mod by_blocks;
+mod columns;
 pub(in crate::diagnosis) mod context;
 pub(in crate::diagnosis) mod design;
 pub(in crate::diagnosis) mod fit;
@@ -11,5 +12,6 @@ pub(in crate::diagnosis) mod motion;
 pub(in crate::diagnosis) mod prior;
 pub(in crate::diagnosis) mod scales;
 pub(in crate::diagnosis) mod selection;
+pub(in crate::diagnosis) mod series;
 pub(in crate::diagnosis) mod signals;
 pub(in crate::diagnosis) mod user;

@@ -1,7 +1,8 @@
 //! Columns of a law that the user wrote down.
 
-use crate::diagnosis::rows::context::{Context, Series};
+use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::free::values;
+use crate::diagnosis::rows::series::Series;
 use crate::effects::UserLaw;
 
 /// The columns of a law with a shape in one motion; `None` where the robot has not all of its variables.

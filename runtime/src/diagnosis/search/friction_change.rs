@@ -16,7 +16,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
 use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::certainty::of_amplitudes;
-use crate::diagnosis::search::gate::SmallLaw;
+use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;

@@ -11,9 +11,10 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{LINE_COVERED, MOST_COMPARED, WAVE_SEEN, WITHOUT_ANY_UNIT};
 use crate::diagnosis::search::bench::Size;
 use crate::diagnosis::search::round::Ranked;
+use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, Form, Place, SmoothingWindow};
+use crate::effects::{Form, SmoothingWindow};
 use crate::parallel;
 use std::sync::OnceLock;
 
@@ -47,15 +48,6 @@ pub(in crate::diagnosis) enum Outcome {
     Small(Size),
     /// Nothing shows that it is there.
     Fails,
-}
-
-/// A law that is there and too small to be named.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::diagnosis) struct SmallLaw {
-    pub effect: EffectKind,
-    pub place: Place,
-    pub own: Vec<usize>,
-    pub size: Size,
 }
 
 /// A law's evidence and size.

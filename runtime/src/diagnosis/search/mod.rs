@@ -20,6 +20,7 @@ pub(in crate::diagnosis) mod round;
 pub(in crate::diagnosis) mod run;
 pub(in crate::diagnosis) mod select;
 mod sharpen;
+pub(in crate::diagnosis) mod small_law;
 pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod state;
 pub(in crate::diagnosis) mod tangents;

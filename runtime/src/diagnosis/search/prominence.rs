@@ -9,7 +9,8 @@
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::search::bench::Size;
-use crate::diagnosis::search::gate::{SmallLaw, own_part};
+use crate::diagnosis::search::gate::own_part;
+use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 

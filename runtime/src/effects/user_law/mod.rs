@@ -9,7 +9,6 @@ mod linear;
 mod range;
 mod saved;
 
-use super::catalogue::EffectKind;
 use super::quantity::Parameter;
 use super::shape::ShapeSearch;
 use super::variable::Variable;
@@ -72,12 +71,8 @@ impl UserLaw {
     /// Most different variables.
     pub const MOST_VARIABLES: usize = 32;
 
-    /// A law of a joint (0-based) from its text and the ranges of its shapes.
-    ///
-    /// # Errors
-    /// An id that is none or one of the catalogue; a text that is no law, or in which a constant that is not declared as
-    /// a shape does not stand before a term; a range without an end, or of what is not in the law.
-    pub fn new(
+    /// As [`Self::new`], under any name.
+    pub(super) fn under_any_name(
         id: &str,
         joint: usize,
         text: &str,
@@ -253,9 +248,6 @@ fn check_id(id: &str) -> Result<(), LawError> {
         let what =
             format!("expected lower-case letters, digits and underscores, at most {LONGEST_ID}, as magnet_2");
         return wrong("id", what);
-    }
-    if EffectKind::from_id(id).is_some() || id == EffectKind::UserLaw.id() {
-        return wrong("id", format!("'{id}' is an effect of the catalogue; choose another name"));
     }
     Ok(())
 }

@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::formats::{self, Wanted};
 use super::layout_guess::{self, Guess};
 use super::npy::NpyReader;
+use super::topic::Topic;
 use super::{Column, Layout, RecordingError, Rows};
 pub use roles::{Channels, Role, channels};
 pub use series::Series;
@@ -19,19 +20,6 @@ use series::Watched;
 
 /// Rows read at a time.
 const AT_ONCE: usize = 4096;
-
-/// What a log published under one name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Topic {
-    /// Its name.
-    pub name: String,
-    /// Type of its messages.
-    pub kind: String,
-    /// How they are encoded; `cdr` in ROS 2.
-    pub encoding: String,
-    /// How many there are.
-    pub count: u64,
-}
 
 /// What is in a data file.
 #[derive(Debug, Clone, Serialize)]

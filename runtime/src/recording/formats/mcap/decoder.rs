@@ -5,8 +5,8 @@ use super::definition::Definition;
 use super::message::{FIELDS, Joints, Kind, Signal};
 use super::path::Path;
 use super::plan::Plan;
-use crate::recording::look::Topic;
 use crate::recording::names::{listed, meant};
+use crate::recording::topic::Topic;
 
 /// Reads the wanted signals of messages.
 pub(super) enum Decoder {

@@ -10,7 +10,7 @@ use super::message::Kind;
 use super::topics::{Channel, Schema};
 use super::{error, says};
 use crate::recording::RecordingError;
-use crate::recording::look::Topic;
+use crate::recording::topic::Topic;
 
 /// The messages of one topic.
 pub(super) struct Log {

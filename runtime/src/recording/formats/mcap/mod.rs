@@ -28,8 +28,8 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::recording::RecordingError;
-use crate::recording::look::Topic;
 use crate::recording::names::meant;
+use crate::recording::topic::Topic;
 pub(in crate::recording) use bag::files_of;
 pub(in crate::recording) use begun::begun;
 use container::Records;

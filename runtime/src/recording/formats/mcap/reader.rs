@@ -7,8 +7,9 @@ use super::log::{Log, Received};
 use super::merge::Merge;
 use super::message::{FIELDS, Kind};
 use super::{bag, chosen, error, topics_of};
-use crate::recording::formats::{Format, Wanted};
-use crate::recording::look::Topic;
+use crate::recording::format::Format;
+use crate::recording::formats::Wanted;
+use crate::recording::topic::Topic;
 use crate::recording::{Column, RecordingError, Rows};
 
 /// Messages after which a signal that no message had is given up, if no row is complete yet.

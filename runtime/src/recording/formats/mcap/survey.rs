@@ -6,7 +6,7 @@ use super::message::{self, Kind};
 use super::{bag, chosen, error, fits, log::Log, topics_of, walk};
 use crate::recording::RecordingError;
 use crate::recording::formats::Survey;
-use crate::recording::look::Topic;
+use crate::recording::topic::Topic;
 
 /// Messages of a log by which its joints are told, and those of a type that is read by its definition.
 const SURVEYED: u64 = 2000;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use super::container::{Found, Records, op};
 use super::definition::Definition;
 use super::fields::Fields;
-use crate::recording::look::Topic;
+use crate::recording::topic::Topic;
 
 /// A channel as its record says it.
 #[derive(Debug, Clone)]
