@@ -6,14 +6,13 @@ use std::sync::Arc;
 use dynid::arguments::{DiagnosisOptions, Source};
 use dynid::commands::diagnose::compare::{Test, fitted, tested};
 use dynid::commands::diagnose::{
-    confirmation_failure, contradicting, diagnosis_failure, for_programs, improved, mistakes,
-    of_the_same_robot, tell_speeds,
+    confirmation_failure, contradicting, diagnosis_failure, for_programs, improved, mistakes, tell_speeds,
 };
 use dynid::failure::Failure;
 use dynid::output::write;
 use dynid::pages::Prior;
 use dynid::pages::diagnosis::{Extras, page, summary};
-use dynid::recorded::{Measured, left_out_words};
+use dynid::recorded::{Measured, left_out_words, of_the_same_robot};
 use dynid::speeds::{and_of_speeds, speed_words};
 use dynid_runtime::confirmation::diagnose_and_confirm;
 use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings};

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use dynid::arguments::Source;
-use dynid::recorded::of_the_same_robot;
-use dynid::recorded::{LeftOut, Measured, left_out_words, measure};
+use dynid::recorded::{LeftOut, Measured, left_out_words, measure, of_the_same_robot};
 use dynid_runtime::recording::{Side, Trajectory};
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2};

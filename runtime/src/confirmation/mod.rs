@@ -4,8 +4,9 @@
 //! not. Where there is a test recording, each finding is therefore held against it: the part of it that is there
 //! ([`OnTest`]) must be more than one half, or its joints are predicted worse with it; it must be told from nothing where
 //! the motion could have shown it; it must not certainly make the other joints worse; and a factor must be the same. That is
-//! asked with the parameters that were found beside it: those of a model without it imitate it on several joints. What fails is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by
-//! it: of a finding that stays, only that it did not fail is known from it.
+//! asked with the parameters that were found beside it: those of a model without it imitate it on several joints. What fails
+//! is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by it: of a
+//! finding that stays, only that it did not fail is known from it.
 
 mod intervals;
 mod slope;
@@ -136,8 +137,8 @@ fn held_against_test(
         let harms_others = own == Judgement::Stands && on_all.as_ref().is_some_and(Slope::certainly_harms);
         let factor = factors.iter().position(|(factor, _)| factor == k);
         let is_another = factor.is_some_and(|i| {
-            // A factor has one amplitude.
-            let known = finding.term.sigma[0] / finding.term.amplitude[0].abs();
+            let numbers = finding.term.sigma.iter().zip(&finding.term.amplitude);
+            let known = numbers.map(|(sigma, a)| sigma / a.abs()).fold(0.0, f64::max);
             slope_of(first_factor + i, Some(&joints)).is_some_and(|slope| slope.certainly_differs(known))
         });
         let fails = match own {

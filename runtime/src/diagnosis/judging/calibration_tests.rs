@@ -205,3 +205,32 @@ fn of_two_laws_the_true_one_is_told_apart_only_where_it_is_well_ahead() {
     assert!(weak[1] <= 4 && strong[1] <= 4, "{weak:?} {strong:?}");
     assert!(weak[0] < 50 && strong[0] > 100, "{weak:?} {strong:?}");
 }
+
+/// How sure a trend is, and how sure whichever unit is left out, of which so much is there in the first unit and in the others.
+fn trend(rng: &mut Pcg64, first: f64, others: f64) -> [f64; 2] {
+    let (files, rows) = (12, 12 * ROWS);
+    let units = units(files, false);
+    let shared = vec![wave(rng, rows), wave(rng, rows)];
+    let column = wave(rng, rows);
+    let there = |t: usize| if t < ROWS { first } else { others };
+    let law = vec![(0..rows).map(|t| there(t) * column[t]).collect::<Vec<f64>>()];
+    let residual = noise(rng, rows);
+    let y: Vec<f64> = (0..rows).map(|t| residual[t] + shared[0][t] + law[0][t]).collect();
+    let all = 0..rows;
+    let regressors = Regressors { shared: &shared, ..plain(&y, &all) };
+    let background = Background::new(&units, &regressors, &residual, 1);
+    let law = Law { columns: &law, residual: &residual, common: false, is_trend: true, trend_of: 0 };
+    let calibrated = calibrate(&units, &regressors, &background, &law).expect("a law");
+    [calibrated.evidence(), calibrated.evidence_without_any()].map(|evidence| evidence.confidence(1))
+}
+
+#[test]
+fn a_trend_that_a_single_unit_shows_is_sure_only_with_it() {
+    let mut rng = Pcg64::seed_from_u64(41);
+    for _ in 0..20 {
+        let [sure, without] = trend(&mut rng, 4.0, 0.0);
+        assert!(sure > 0.8 && without < 0.5, "{sure} {without}");
+        let [sure, without] = trend(&mut rng, 2.0, 2.0);
+        assert!(sure > 0.99 && without > 0.99, "{sure} {without}");
+    }
+}

@@ -59,7 +59,7 @@ pub(in crate::diagnosis) struct Gate {
     pub size: Size,
     /// Residual of the model with it.
     pub left: Vec<f64>,
-    /// Whether it is a law of time that shows in so few units that it is an event for all that is known: whatever else happened
+    /// Whether it is a law of time that rests on a single unit, and so an event for all that is known: whatever else happened
     /// then is not told from it.
     pub is_event: bool,
 }
