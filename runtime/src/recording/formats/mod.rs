@@ -13,7 +13,7 @@ use std::path::Path;
 use super::Columns;
 #[cfg(not(feature = "mcap"))]
 use super::JointLog;
-use super::format::{Format, Stamps};
+use super::format::Format;
 use super::npy::NpyReader;
 use super::table::TableReader;
 use super::topic::Topic;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 
-use super::{Format, Stamps};
+use crate::recording::format::{Format, Stamps};
 use crate::recording::names::{listed, meant};
 use crate::recording::{self, Reason, RecordingError, Rows};
 use crate::regular_file;
