@@ -5,7 +5,7 @@ use crate::base::BaseSet;
 use crate::mechanics::Equations;
 use crate::robot::{DriveTable, Expression, RobotTable, TableRow};
 use crate::symbolic::Point;
-use dynid_description::{BaseParameter, DependentFrame, JointKind, Limits, MAX_TERMS, ParameterKind};
+use dynid_description::{BaseParameter, DependentFrame, JointKind, MAX_TERMS, ParameterKind};
 use std::f64::consts::FRAC_PI_2;
 
 /// A row of a table: sigma, alpha, d, theta, r, as in the reference file.
@@ -31,21 +31,7 @@ pub fn serial(name: &str, gravity: [f64; 3], rows: &[Row]) -> RobotTable {
         .collect();
     let n = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let gear = (0..n).map(|i| (0..n).map(|j| if i == j { 1.0 } else { 0.0 }).collect()).collect();
-    RobotTable {
-        name: name.to_owned(),
-        description: String::new(),
-        gravity,
-        constants: Vec::new(),
-        frames,
-        dependent: Vec::new(),
-        drive: DriveTable { gear, coupled_friction: Vec::new() },
-        couplings: Vec::new(),
-        known: Vec::new(),
-        fixed: Vec::new(),
-        ellipsoids: Vec::new(),
-        limits: Limits::default(),
-        nominal: None,
-    }
+    RobotTable::of_frames(name, gravity, frames, DriveTable { gear, coupled_friction: Vec::new() })
 }
 
 /// Makes frames move with several joints, and several frames with one: some keep a variable of their own beside others, some

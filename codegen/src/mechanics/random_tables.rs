@@ -7,8 +7,8 @@ use super::model::{Equations, Variant};
 use crate::base::base_set;
 use crate::robot::{DriveTable, Expression, RobotTable, TableRow};
 use crate::testing::{Random, all_parameters, make_dependent};
+use dynid_description::JointKind;
 use dynid_description::ParameterKind;
-use dynid_description::{JointKind, Limits};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 type Matrix = [[f64; 4]; 4];
@@ -40,21 +40,7 @@ fn random_robot(random: &mut Random) -> RobotTable {
     }
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let gravity = if pick(2) == 0 { [0.0, 0.0, -9.81] } else { [1.3, -4.0, 8.0] };
-    RobotTable {
-        name: "random".to_owned(),
-        description: String::new(),
-        gravity,
-        constants: Vec::new(),
-        frames,
-        dependent: Vec::new(),
-        drive: DriveTable::direct(joints),
-        couplings: Vec::new(),
-        known: Vec::new(),
-        fixed: Vec::new(),
-        ellipsoids: Vec::new(),
-        limits: Limits::default(),
-        nominal: None,
-    }
+    RobotTable::of_frames("random", gravity, frames, DriveTable::direct(joints))
 }
 
 /// One whose frames move with several joints, and several with one.

@@ -81,6 +81,25 @@ pub struct NominalValues {
 }
 
 impl RobotTable {
+    /// A robot of which nothing but its frames, their drives and gravity, m/s2 in frame 0, is said.
+    pub fn of_frames(name: &str, gravity: [f64; 3], frames: Vec<TableRow>, drive: DriveTable) -> Self {
+        Self {
+            name: name.to_owned(),
+            description: String::new(),
+            gravity,
+            constants: Vec::new(),
+            frames,
+            dependent: Vec::new(),
+            drive,
+            couplings: Vec::new(),
+            known: Vec::new(),
+            fixed: Vec::new(),
+            ellipsoids: Vec::new(),
+            limits: Limits::default(),
+            nominal: None,
+        }
+    }
+
     /// The frames that are joints, in order: index in `frames` of joint 0, 1, ...
     pub fn joint_frames(&self) -> Vec<usize> {
         (0..self.frames.len()).filter(|&k| self.frames[k].kind != JointKind::Fixed).collect()

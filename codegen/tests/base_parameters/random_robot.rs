@@ -1,7 +1,7 @@
 //! Random tables, and what makes them harder.
 
 use dynid_codegen::robot::{DriveTable, Expression, RobotTable, TableRow};
-use dynid_description::{Coupling, CouplingLaw, DependentFrame, JointKind, Limits};
+use dynid_description::{Coupling, CouplingLaw, DependentFrame, JointKind};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use std::borrow::Cow;
@@ -80,8 +80,14 @@ pub fn make_dependent(robot: &mut RobotTable, random: &mut Pcg64) {
 
 pub fn table(robot: &RobotTable) -> String {
     let mut text = format!(
-        "gravity {:?} gear {:?} {:?} {:?}\n",
-        robot.gravity, robot.drive.gear, robot.drive.coupled_friction, robot.dependent
+        "gravity {:?} gear {:?} {:?} {:?} {:?} known {:?} {:?}\n",
+        robot.gravity,
+        robot.drive.gear,
+        robot.drive.coupled_friction,
+        robot.dependent,
+        robot.couplings,
+        robot.known,
+        robot.fixed
     );
     for f in &robot.frames {
         text.push_str(&format!(
@@ -131,21 +137,7 @@ pub fn random_robot(random: &mut Pcg64) -> RobotTable {
     };
     let joints = frames.iter().filter(|f| f.kind != JointKind::Fixed).count();
     let drive = random_drive(random, joints);
-    RobotTable {
-        name: "random".to_owned(),
-        description: String::new(),
-        gravity,
-        constants: Vec::new(),
-        frames,
-        dependent: Vec::new(),
-        drive,
-        couplings: Vec::new(),
-        known: Vec::new(),
-        fixed: Vec::new(),
-        ellipsoids: Vec::new(),
-        limits: Limits::default(),
-        nominal: None,
-    }
+    RobotTable::of_frames("random", gravity, frames, drive)
 }
 
 fn random_angle(random: &mut Pcg64, general: bool) -> Expression {

@@ -109,7 +109,7 @@ fn held_against_test(
     // A factor by itself, with the parameters that were found beside it.
     let factors: Vec<(usize, Vec<EffectTerm>)> = (0..diagnosis.findings.len())
         .filter(|&k| diagnosis.findings[k].term.effect.properties().is_factor)
-        .map(|k| (k, all.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, term)| term.clone()).collect()))
+        .map(|k| (k, terms_but(diagnosis, k)))
         .collect();
     let first_factor = predictors.len();
     predictors.extend(factors.iter().map(|(_, effects)| Predictor { effects, ..whole }));
@@ -215,12 +215,15 @@ fn without(diagnosis: &Diagnosis, k: usize) -> Option<(Vec<f64>, Vec<EffectTerm>
             ))
         }
         (_, None) if finding.term.distortion().is_some() => None,
-        (_, None) => {
-            let mut effects = diagnosis.terms();
-            effects.remove(k);
-            Some((diagnosis.model.chi.clone(), effects))
-        }
+        (_, None) => Some((diagnosis.model.chi.clone(), terms_but(diagnosis, k))),
     }
+}
+
+/// The terms of a model but for that of a finding.
+fn terms_but(diagnosis: &Diagnosis, k: usize) -> Vec<EffectTerm> {
+    let mut terms = diagnosis.terms();
+    terms.remove(k);
+    terms
 }
 
 /// Relative error of a model of an evaluation on the joints of a finding, of all joints for the whole robot.

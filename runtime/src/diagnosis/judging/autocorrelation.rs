@@ -13,7 +13,7 @@ impl Places {
         let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
         let motion = |signal: usize| {
             let rows = design.of_signal(joint, signal).into_iter().flat_map(|(range, _)| range);
-            rows.map(|r| (design.rows[r].centre / design.spacing(signal), r)).collect()
+            rows.map(|r| (design.place(r), r)).collect()
         };
         Self((0..motions).map(motion).collect())
     }

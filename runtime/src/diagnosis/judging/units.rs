@@ -30,20 +30,11 @@ pub(in crate::diagnosis) struct Units {
 impl Units {
     /// Units of a design: as long as the recording's motions where there is a baseline, else about ten.
     pub fn of(design: &Design) -> Self {
-        let files = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
+        let spans = design.spans();
+        let files = spans.len();
         let fresh: Vec<bool> =
             (0..files).map(|f| design.segments.iter().any(|s| s.signal == f && s.is_target)).collect();
-        // First and last place of each motion, counted in rows.
-        let mut spans = vec![(usize::MAX, 0); files];
-        for row in &design.rows {
-            let place = row.centre / design.spacing(row.signal);
-            let span = &mut spans[row.signal];
-            *span = (span.0.min(place), span.1.max(place));
-        }
-        let seconds = |f: usize| match spans[f] {
-            (first, last) if first <= last => (last - first + 1) as f64 * design.step,
-            _ => 0.0,
-        };
+        let seconds = |f: usize| spans[f].len() as f64 * design.step;
         let sum = |target: bool| (0..files).filter(|&f| fresh[f] == target).map(seconds).sum::<f64>();
         let motions = fresh.iter().filter(|f| **f).count().max(1) as f64;
         let target_duration = sum(true) / motions;
@@ -65,10 +56,9 @@ impl Units {
         let duration = cut.iter().map(|&f| seconds(f)).sum::<f64>()
             / cut.iter().map(|&f| counts[f]).sum::<usize>().max(1) as f64;
         let place = |r: usize| {
-            let row = design.rows[r];
-            let (first, last) = spans[row.signal];
-            let place = row.centre / design.spacing(row.signal);
-            let unit = first_unit[row.signal] + (place - first) * counts[row.signal] / (last - first + 1);
+            let (motion, place) = (design.rows[r].signal, design.place(r));
+            let span = &spans[motion];
+            let unit = first_unit[motion] + (place - span.start) * counts[motion] / span.len();
             (unit, place)
         };
         let (rows, stretches) =

@@ -219,6 +219,24 @@ impl Design {
         (self.kernels[signal].len() / 2).max(1)
     }
 
+    /// Where a row is on the grid of its motion, in rows.
+    pub fn place(&self, row: usize) -> usize {
+        let RowAt { signal, centre, .. } = self.rows[row];
+        centre / self.spacing(signal)
+    }
+
+    /// The places of each motion from its first row to its last, over all joints; an empty range where it has none.
+    pub fn spans(&self) -> Vec<Range<usize>> {
+        let motions = self.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
+        let mut spans = vec![0..0; motions];
+        for (r, row) in self.rows.iter().enumerate() {
+            let (place, span) = (self.place(r), &mut spans[row.signal]);
+            let start = if span.end == 0 { place } else { span.start.min(place) };
+            *span = start..span.end.max(place + 1);
+        }
+        spans
+    }
+
     /// Rows in a stretch of motion of this duration, s.
     pub fn rows_within(&self, duration: f64) -> usize {
         (duration / self.step).ceil() as usize

@@ -14,38 +14,26 @@ use crate::diagnosis::settings::Settings;
 
 /// When columns have faded: nearly none of their squares come later than so many seconds after the beginning of a motion.
 pub(in crate::diagnosis) fn faded_after(design: &Design, columns: &[Vec<f64>]) -> f64 {
-    let ages = ages(design);
+    let spans = design.spans();
+    // Rows since the first one of the motion.
+    let ages: Vec<usize> =
+        (0..design.rows.len()).map(|r| design.place(r) - spans[design.rows[r].signal].start).collect();
     let squares = |r: usize| columns.iter().map(|c| c[r] * c[r]).sum::<f64>();
     let mut rows: Vec<usize> = (0..ages.len()).collect();
-    rows.sort_by(|&a, &b| ages[b].total_cmp(&ages[a]));
+    rows.sort_by_key(|&r| std::cmp::Reverse(ages[r]));
     let all: f64 = rows.iter().map(|&r| squares(r)).sum();
     let mut later = 0.0;
     let last = rows.into_iter().find(|&r| {
         later += squares(r);
         later > FADED * all
     });
-    last.map_or(0.0, |r| ages[r])
-}
-
-/// Time of each row since the first row of its motion, s.
-fn ages(design: &Design) -> Vec<f64> {
-    let place = |r: usize| design.rows[r].centre / design.spacing(design.rows[r].signal);
-    let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
-    let mut first = vec![usize::MAX; motions];
-    for (r, row) in design.rows.iter().enumerate() {
-        first[row.signal] = first[row.signal].min(place(r));
-    }
-    (0..design.rows.len()).map(|r| (place(r) - first[design.rows[r].signal]) as f64 * design.step).collect()
+    last.map_or(0.0, |r| ages[r] as f64 * design.step)
 }
 
 /// Duration of the shortest motion, s.
 fn shortest(design: &Design) -> f64 {
-    let motions = design.segments.iter().map(|s| s.signal + 1).max().unwrap_or(0);
-    let mut last = vec![0.0_f64; motions];
-    for (age, row) in ages(design).into_iter().zip(&design.rows) {
-        last[row.signal] = last[row.signal].max(age);
-    }
-    last.into_iter().fold(f64::INFINITY, f64::min)
+    let rows = design.spans().into_iter().map(|span| span.len().saturating_sub(1)).min();
+    rows.unwrap_or(0) as f64 * design.step
 }
 
 impl Search<'_> {
