@@ -38,6 +38,9 @@ struct Rows {
     columns: Vec<usize>,
     rows: usize,
     upper: Vec<f64>,
+    /// Rows of [W Y] that the moments of reversals take; of a group only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    reversals: Vec<Vec<f64>>,
     /// Used, at a standstill, fixed, outside of windows, at the edges; of a group only.
     counts: Option<[usize; 5]>,
 }
@@ -59,6 +62,7 @@ pub(crate) fn write(observation: &Observation, robot: &Robot) -> Result<Vec<u8>,
         columns: e.columns.clone(),
         rows: e.factor.rows(),
         upper: e.factor.upper(),
+        reversals: e.reversals.clone(),
         counts,
     };
     let counts = |l: &LeftOut| Some([l.used, l.standstill, l.fixed, l.windows, l.edges]);
@@ -155,7 +159,17 @@ fn read_equation(e: &Rows, motions: usize, base: usize) -> Result<EquationFactor
     }
     let factor = Factor::from_upper(e.columns.len(), e.rows, &e.upper);
     let factor = factor.ok_or("factors whose triangles are not complete")?;
-    Ok(EquationFactor { trajectory: e.trajectory, equation: e.equation, columns: e.columns.clone(), factor })
+    let fits = |row: &Vec<f64>| row.len() == e.columns.len() + 1 && row.iter().all(|x| x.is_finite());
+    if !e.reversals.iter().all(fits) {
+        return Err("factors whose rows of reversals are not complete".to_owned());
+    }
+    Ok(EquationFactor {
+        trajectory: e.trajectory,
+        equation: e.equation,
+        columns: e.columns.clone(),
+        factor,
+        reversals: e.reversals.clone(),
+    })
 }
 
 fn read_noise(all: &[Vec<f64>], groups: &[EquationFactor]) -> Result<Vec<DMatrix<f64>>, String> {

@@ -36,6 +36,7 @@ fn observation(unknowns: &[&str], dense: &[Dense], blocks: usize) -> Observation
         equation: d.equation,
         columns: d.columns.clone(),
         factor: factor(&d.w, &d.y, rows),
+        reversals: Vec::new(),
     };
     let trajectories = dense.iter().map(|d| d.trajectory + 1).max().unwrap();
     let time_blocks = (0..trajectories)

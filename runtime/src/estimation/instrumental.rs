@@ -6,7 +6,7 @@ use super::observe::{EquationFactor, Equations, ExtraColumns, Observation};
 use super::residuals::{per_equation, relative_error};
 use super::solve::RANK_TOLERANCE;
 use super::uncertainty::{Solved, variances};
-use super::weights::{residual_norm, spread, stack};
+use super::weights::{spread, stack};
 use super::{EquationError, Estimate, ParameterEstimate};
 use crate::model::{Model, States};
 use crate::signal::Motion;
@@ -86,8 +86,8 @@ impl InstrumentalEstimate {
         });
         let own = |e: &EquationError| {
             let alike = |g: &&EquationFactor| (g.trajectory, g.equation) == (e.trajectory, e.equation);
-            let group = torques.groups.iter().find(alike).filter(|g| g.factor.norm_y() > 0.0);
-            let relative_error = group.map(|g| residual_norm(g, &self.chi) / g.factor.norm_y());
+            let group = torques.groups.iter().find(alike).filter(|g| g.squares_measured() > 0.0);
+            let relative_error = group.map(|g| (g.squares_left(&self.chi) / g.squares_measured()).sqrt());
             EquationError { relative_error, ..e.clone() }
         };
         Estimate {

@@ -62,7 +62,7 @@ pub struct EquationError {
     pub sigma: Option<f64>,
     /// ||Y - W chi|| / ||Y|| over the rows that were used; `None` where all torques Y are zero.
     pub relative_error: Option<f64>,
-    /// Rows that were used.
+    /// Rows that were used, less one for each dry friction whose moments of reversal were an unknown.
     pub rows: usize,
 }
 
@@ -103,7 +103,7 @@ pub struct Estimate {
     pub relative_error: Option<f64>,
     /// The same per equation.
     pub per_equation: Vec<Option<f64>>,
-    /// Rows that were used, all equations.
+    /// Rows of all equations: the sum of those of `errors`.
     pub rows: usize,
     /// Rows minus parameters.
     pub degrees_of_freedom: usize,

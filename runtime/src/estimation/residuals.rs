@@ -2,7 +2,6 @@
 
 use super::observe::Observation;
 use super::outcome::EquationError;
-use super::weights::residual_norm;
 
 /// The errors of each equation in each trajectory; `sigma` are those of the weights, one per group.
 pub(super) fn errors_of(
@@ -17,8 +16,8 @@ pub(super) fn errors_of(
         .zip(sigma)
         .filter(|(g, _)| g.factor.rows() > 0)
         .map(|(g, &sigma)| {
-            let residual = residual_norm(g, chi);
-            let (rows, norm_y) = (g.factor.rows(), g.factor.norm_y());
+            let residual = g.squares_left(chi).sqrt();
+            let (rows, norm_y) = (g.factor.rows(), g.squares_measured().sqrt());
             let sigma = if weighted { sigma } else { residual / (rows as f64).sqrt() };
             EquationError {
                 trajectory: g.trajectory,
@@ -37,9 +36,8 @@ pub fn per_equation(observation: &Observation, chi: &[f64]) -> Vec<Option<f64>> 
     (0..equations)
         .map(|equation| {
             let own = observation.groups.iter().filter(|g| g.equation == equation);
-            let (e, y) = own.fold((0.0, 0.0), |(e, y), g| {
-                (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2))
-            });
+            let (e, y) =
+                own.fold((0.0, 0.0), |(e, y), g| (e + g.squares_left(chi), y + g.squares_measured()));
             ratio(e.sqrt(), y.sqrt())
         })
         .collect()
@@ -50,7 +48,7 @@ pub fn relative_error(observation: &Observation, chi: &[f64]) -> Option<f64> {
     let (e, y) = observation
         .groups
         .iter()
-        .fold((0.0, 0.0), |(e, y), g| (e + residual_norm(g, chi).powi(2), y + g.factor.norm_y().powi(2)));
+        .fold((0.0, 0.0), |(e, y), g| (e + g.squares_left(chi), y + g.squares_measured()));
     ratio(e.sqrt(), y.sqrt())
 }
 

@@ -191,11 +191,10 @@ fn weighted_error(observation: &Observation, estimate: &Estimate, chi: &[f64]) -
             .iter()
             .find(|g| g.trajectory == error.trajectory && g.equation == error.equation);
         let Some(group) = group else { continue };
-        let own: Vec<f64> = group.columns.iter().map(|&u| chi[u]).collect();
         // A group of zeros adds nothing to either sum.
         let sigma = error.sigma.unwrap_or(1.0);
-        residual += (group.factor.residual_norm(&own) / sigma).powi(2);
-        whole += (group.factor.norm_y() / sigma).powi(2);
+        residual += group.squares_left(chi) / sigma.powi(2);
+        whole += group.squares_measured() / sigma.powi(2);
     }
     if whole > 0.0 { (residual / whole).sqrt() } else { 0.0 }
 }

@@ -104,6 +104,7 @@ fn beyond_powers(mut observed: Observation, base: usize) -> Observation {
             let order: Vec<usize> = extra.iter().chain(&own).copied().collect();
             group.factor = group.factor.select(&order).beyond(extra.len());
             group.columns = own.iter().map(|&c| group.columns[c]).collect();
+            group.reversals.clear();
         }
     }
     observed.unknowns.truncate(base);

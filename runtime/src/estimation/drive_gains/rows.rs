@@ -117,7 +117,13 @@ impl<'a> Both<'a> {
                 Some(_) => group.factor.times(&change),
                 None => Factor::new(columns.len()),
             };
-            groups.push(EquationFactor { trajectory, equation: group.equation, columns, factor });
+            groups.push(EquationFactor {
+                trajectory,
+                equation: group.equation,
+                columns,
+                factor,
+                reversals: Vec::new(),
+            });
             if let (Some(from), Some(group)) = (all_rows.get(place), groups.last()) {
                 rows.push(changed_rows(from, group, &change, joint.is_some()));
             }

@@ -124,6 +124,7 @@ fn join(groups: &mut Vec<EquationFactor>, group: EquationFactor) -> usize {
             if group.factor.rows() > 0 {
                 groups[place].factor.merge(&group.factor);
             }
+            groups[place].reversals.extend(group.reversals);
             place
         }
         None => {

@@ -6,6 +6,7 @@ mod merge;
 mod noise_of_columns;
 mod observation;
 mod prepared;
+mod reversals;
 // Its plans are for the evaluator, which needs the feature.
 #[cfg_attr(not(feature = "diagnosis"), allow(dead_code))]
 mod row_plan;
@@ -57,16 +58,21 @@ pub fn observe(
         .zip(rows)
         .zip(motions)
         .map(|((source, MotionRows { decimator, grid, selection }), motion)| {
-            let equations = source.equations();
-            Prepared { source, motion, decimator, grid, equations, selection }
+            let own = source.equations();
+            let reversals = match equations {
+                Equations::Torque => reversals::columns(model.robot(), motion, &decimator, grid),
+                Equations::Power { .. } => vec![Vec::new(); own.len()],
+            };
+            Prepared { source, motion, decimator, grid, equations: own, selection, reversals }
         })
         .collect();
     if prepared.iter().all(|p| p.selection.iter().all(|s| s.left_out.used == 0)) {
         let left_out = prepared.iter().flat_map(|p| &p.selection).map(|s| &s.left_out);
         return Err(ObserveError::NoRows { reason: select::why_nothing(left_out, motions, settings.band) });
     }
-    let (blocks, rows) = work::run(&prepared, settings, progress);
-    let groups = work::merge(&prepared, &blocks, settings.threads);
+    let (mut blocks, mut rows) = work::run(&prepared, settings, progress);
+    let mut groups = work::merge(&prepared, &blocks, settings.threads);
+    reversals::eliminate(&prepared, &mut groups, &mut blocks, rows.as_mut());
     let robot = model.robot();
     let (unknowns, exact) = unknowns(robot, equations, extra);
     let joint = |rows: &LeftOut| match equations {

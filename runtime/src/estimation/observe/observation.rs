@@ -16,8 +16,10 @@ pub struct EquationFactor {
     pub equation: usize,
     /// Unknown of each column of the factor, ascending.
     pub columns: Vec<usize>,
-    /// R of [W Y].
+    /// R of [W Y], of what the moments leave at which dry friction changes its sign: they are unknown, and eliminated.
     pub factor: Factor,
+    /// What they take: further rows of [W Y], which count in errors and not in the fit. Of whole groups only.
+    pub reversals: Vec<Vec<f64>>,
 }
 
 /// The equations of one stretch of one trajectory.
@@ -73,8 +75,30 @@ impl EquationFactor {
             |&(unknown, value): &(usize, f64)| Some((self.columns.binary_search(&unknown).ok()?, value));
         let held: Vec<(usize, f64)> = fixed.iter().filter_map(place).collect();
         let is_free = |unknown: &usize| fixed.iter().all(|(known, _)| known != unknown);
-        let columns = self.columns.iter().copied().filter(is_free).collect();
-        EquationFactor { columns, factor: self.factor.hold(&held), ..*self }
+        let columns: Vec<usize> = self.columns.iter().copied().filter(is_free).collect();
+        let hold = |row: &Vec<f64>| {
+            let y = row[self.columns.len()] - held.iter().map(|&(l, value)| value * row[l]).sum::<f64>();
+            let left = (0..self.columns.len()).filter(|l| is_free(&self.columns[*l])).map(|l| row[l]);
+            left.chain([y]).collect()
+        };
+        let reversals = self.reversals.iter().map(hold).collect();
+        EquationFactor { columns, factor: self.factor.hold(&held), reversals, ..*self }
+    }
+
+    /// Sum of the squares of Y - W chi over all rows, for all unknowns of the observation.
+    pub(crate) fn squares_left(&self, chi: &[f64]) -> f64 {
+        let own: Vec<f64> = self.columns.iter().map(|&u| chi[u]).collect();
+        let left = |row: &Vec<f64>| {
+            let predicted: f64 = row.iter().zip(&own).map(|(w, x)| w * x).sum();
+            (row[own.len()] - predicted).powi(2)
+        };
+        self.factor.residual_norm(&own).powi(2) + self.reversals.iter().map(left).sum::<f64>()
+    }
+
+    /// Sum of the squares of Y over all rows.
+    pub(crate) fn squares_measured(&self) -> f64 {
+        let of_row = |row: &Vec<f64>| row[self.columns.len()].powi(2);
+        self.factor.norm_y().powi(2) + self.reversals.iter().map(of_row).sum::<f64>()
     }
 }
 

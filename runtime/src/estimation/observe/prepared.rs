@@ -12,4 +12,6 @@ pub(super) struct Prepared<'a> {
     pub grid: KeptRows,
     pub equations: Vec<EquationColumns>,
     pub selection: Vec<Selection>,
+    /// For each equation the columns of the moments at which dry friction changes its sign ([`super::reversals`]).
+    pub reversals: Vec<Vec<Vec<f64>>>,
 }

@@ -84,8 +84,8 @@ pub(super) fn merge(prepared: &[Prepared<'_>], blocks: &[TimeBlock], threads: us
 
 fn empty(trajectory: usize, equation: usize, p: &Prepared<'_>) -> EquationFactor {
     let columns: Vec<usize> = p.equations[equation].unknowns.iter().map(|&(_, u)| u).collect();
-    let factor = Factor::new(columns.len());
-    EquationFactor { trajectory, equation, columns, factor }
+    let factor = Factor::new(p.reversals[equation].len() + columns.len());
+    EquationFactor { trajectory, equation, columns, factor, reversals: Vec::new() }
 }
 
 fn rows_of(chunk: &Chunk) -> Range<usize> {
@@ -106,8 +106,9 @@ fn chunks_of(trajectory: usize, p: &Prepared<'_>, most: usize) -> Vec<Chunk> {
     blocks.chunks(chunk).map(|blocks| Chunk { trajectory, blocks: blocks.to_vec() }).collect()
 }
 
-/// Rows of one equation on their way into a factor.
-struct Pending {
+/// Rows of one equation on their way into a factor: the columns of its reversals, those of W, and Y.
+struct Pending<'a> {
+    reversals: &'a [Vec<f64>],
     columns: Vec<usize>,
     rows: usize,
     /// Column by column, BLOCK_ROWS each.
@@ -115,10 +116,12 @@ struct Pending {
     factor: Factor,
 }
 
-impl Pending {
-    fn push(&mut self, values: &[f64]) {
-        for (block, &column) in self.block.chunks_exact_mut(BLOCK_ROWS).zip(&self.columns) {
-            block[self.rows] = values[column];
+impl Pending<'_> {
+    fn push(&mut self, row: usize, values: &[f64]) {
+        let reversals = self.reversals.iter().map(|column| column[row]);
+        let all = reversals.chain(self.columns.iter().map(|&column| values[column]));
+        for (block, value) in self.block.chunks_exact_mut(BLOCK_ROWS).zip(all) {
+            block[self.rows] = value;
         }
         self.rows += 1;
         if self.rows == BLOCK_ROWS {
@@ -133,14 +136,16 @@ impl Pending {
 }
 
 fn run_chunk(p: &Prepared<'_>, chunk: &Chunk, keep_rows: bool) -> (Vec<TimeBlock>, Vec<f64>) {
-    let mut pending: Vec<Pending> = p
+    let mut pending: Vec<Pending<'_>> = p
         .equations
         .iter()
-        .map(|e| Pending {
+        .zip(&p.reversals)
+        .map(|(e, reversals)| Pending {
+            reversals,
             columns: e.unknowns.iter().map(|&(column, _)| column).chain([e.y]).collect(),
             rows: 0,
-            block: vec![0.0; (e.unknowns.len() + 1) * BLOCK_ROWS],
-            factor: Factor::new(e.unknowns.len()),
+            block: vec![0.0; (reversals.len() + e.unknowns.len() + 1) * BLOCK_ROWS],
+            factor: Factor::new(reversals.len() + e.unknowns.len()),
         })
         .collect();
     let time = |row: usize| p.motion.start + (p.grid.first + row * p.grid.step) as f64 / p.motion.rate;
@@ -151,7 +156,7 @@ fn run_chunk(p: &Prepared<'_>, chunk: &Chunk, keep_rows: bool) -> (Vec<TimeBlock
     decimate(&*p.source, &p.decimator, p.grid, rows_of(chunk), |row, values| {
         for (pending, selection) in pending.iter_mut().zip(&p.selection) {
             if selection.used[row] {
-                pending.push(values);
+                pending.push(row, values);
             }
         }
         if keep_rows {

@@ -18,13 +18,16 @@ impl Autoregression {
         Autoregression { predictors: vec![Vec::new()], deviations: vec![variance.sqrt()] }
     }
 
-    /// By the recursion of Levinson and Durbin from the autocovariances of lags 0, 1, ... of `count` values, with the
-    /// order by Akaike's criterion with the correction for few values (Hurvich and Tsai 1989).
+    /// By the recursion of Levinson and Durbin from the autocovariances of lags 0, 1, ... of `count` values. The order is that
+    /// of Akaike's criterion with the correction for few values (Hurvich and Tsai 1989), or the cube root of their number
+    /// where that is more: the criterion asks how well the next value is predicted, while variances of slow columns ask for
+    /// the density at low frequencies, for which the order has to grow with the values, slower than that root (Berk 1974).
     pub fn of(autocovariance: &[f64], count: f64) -> Self {
         let Some((&variance, lags)) = autocovariance.split_first() else { return Self::white(0.0) };
         let mut all = Self::white(variance);
         let (mut best, mut least) = (0, f64::INFINITY);
         let mut left = variance;
+        let least_order = count.cbrt() as usize;
         for order in 0..=lags.len() {
             if order > 0 {
                 let before = &all.predictors[order - 1];
@@ -45,7 +48,7 @@ impl Autoregression {
                 break;
             }
             let criterion = count * left.ln() + 2.0 * count * (order as f64 + 1.0) / spare;
-            if criterion < least {
+            if criterion < least || order <= least_order {
                 (best, least) = (order, criterion);
             }
         }
@@ -147,8 +150,9 @@ mod tests {
     #[test]
     fn an_autoregression_is_found_from_its_autocovariances() {
         let found = Autoregression::of(&second_order(), 1000.0);
-        assert_eq!(found.order(), 2);
-        assert!((found.predictors[2][0] - 0.6).abs() < 1e-12 && (found.predictors[2][1] - 0.2).abs() < 1e-12);
+        let (own, beyond) = found.predictors[found.order()].split_at(2);
+        assert!((own[0] - 0.6).abs() < 1e-12 && (own[1] - 0.2).abs() < 1e-12);
+        assert!(beyond.iter().all(|a| a.abs() < 1e-12));
         assert!((found.deviation().powi(2) - 2.0).abs() < 1e-12);
     }
 
@@ -192,9 +196,18 @@ mod tests {
     }
 
     #[test]
-    fn white_noise_has_no_memory() {
+    fn noise_that_is_nearly_white_is_nearly_its_own_innovations() {
         let found = Autoregression::of(&[4.0, 0.01, -0.02, 0.01], 500.0);
-        assert_eq!((found.order(), found.memory(400)), (0, 0));
-        assert_eq!(found.innovations(&[3.0, 5.0]), [1.5, 2.5]);
+        for (innovation, expected) in found.innovations(&[3.0, 5.0]).iter().zip([1.5, 2.5]) {
+            assert!((innovation - expected).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn the_order_grows_with_the_cube_root_of_the_values() {
+        let nearly_white: Vec<f64> = (0..30).map(|l| if l == 0 { 4.0 } else { 0.01 }).collect();
+        for (count, order) in [(100.0, 4), (1001.0, 10), (8001.0, 20)] {
+            assert_eq!(Autoregression::of(&nearly_white, count).order(), order);
+        }
     }
 }
