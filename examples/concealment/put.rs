@@ -57,6 +57,7 @@ impl Joint {
                 range,
                 centre: 0.0,
                 torque: 1.0,
+                start: 0.0,
                 duration: 10.0,
                 gear,
                 fast: 0.0,

@@ -9,6 +9,7 @@ const SCALE: Scale = Scale {
     range: 3.0,
     centre: 0.0,
     torque: 40.0,
+    start: 0.0,
     duration: 12.0,
     gear: 100.0,
     fast: 0.0,

@@ -163,8 +163,10 @@ impl EffectTerm {
                 return wrong(format!("scale.{field}"), format!("{value}: it must be positive"));
             }
         }
-        if !s.duration.is_finite() {
-            return wrong("scale.duration", "it is not a finite number".to_owned());
+        for (field, value) in [("start", s.start), ("duration", s.duration)] {
+            if !value.is_finite() {
+                return wrong(format!("scale.{field}"), "it is not a finite number".to_owned());
+            }
         }
         Ok(())
     }

@@ -16,7 +16,9 @@ pub struct Scale {
     pub centre: f64,
     /// Largest torque of the standard model, N.m or N.
     pub torque: f64,
-    /// Latest time in any motion, s.
+    /// Earliest time in any motion, s.
+    pub start: f64,
+    /// From there to the latest time in any motion, s.
     pub duration: f64,
     /// Motor turns per joint turn, or rad of the motor per metre.
     pub gear: f64,
@@ -34,11 +36,17 @@ impl Scale {
         range: 1.0,
         centre: 0.0,
         torque: 1.0,
+        start: 0.0,
         duration: 1.0,
         gear: 1.0,
         fast: 0.0,
         kind: JointKind::Revolute,
     };
+
+    /// Time since the motions began, s, at a time; none before, where a law of time is what it was at their beginning.
+    pub fn age(&self, time: f64) -> f64 {
+        (time - self.start).max(0.0)
+    }
 }
 
 /// One joint at one instant.

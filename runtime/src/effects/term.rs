@@ -111,6 +111,8 @@ pub struct TermScale {
     #[serde(default)]
     pub centre: f64,
     pub torque: f64,
+    #[serde(default)]
+    pub start: f64,
     pub duration: f64,
     pub gear: f64,
     #[serde(default)]
@@ -128,6 +130,7 @@ impl TermScale {
             range: s.range,
             centre: s.centre,
             torque: s.torque,
+            start: s.start,
             duration: s.duration,
             gear: s.gear,
             fast: s.fast,
@@ -154,6 +157,7 @@ impl From<TermScale> for Scale {
             range: s.range,
             centre: s.centre,
             torque: s.torque,
+            start: s.start,
             duration: s.duration,
             gear: s.gear,
             fast: s.fast,

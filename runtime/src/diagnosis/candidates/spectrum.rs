@@ -116,6 +116,7 @@ mod tests {
         range: 2.0,
         centre: 0.0,
         torque: 1.0,
+        start: 0.0,
         duration: 40.0,
         gear: 50.0,
         fast: 0.0,

@@ -175,8 +175,7 @@ fn stand(model: &ExtendedModel<'_>, diagnosis: &mut Diagnosis, threads: usize) {
         (range.len() == term.amplitude.len() && term.transmission().is_none()).then_some(range.start)
     };
     let found = diagnosis.findings.iter().map(|f| &f.term);
-    let own = found.chain(diagnosis.transients.iter().map(|t| &t.term));
-    let found = own.map(|term| (term, column(term)));
+    let found = found.map(|term| (term, column(term)));
     let all: Vec<_> = found.chain(standing.iter().map(|(term, first)| (term, *first))).collect();
     let upper = covariance::upper(model, &all, threads);
     diagnosis.covariance = upper;

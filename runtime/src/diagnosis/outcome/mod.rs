@@ -111,7 +111,8 @@ pub struct Diagnosis {
     /// Laws of a reference: missing in the standard model, and no news.
     #[serde(default)]
     pub standing: Vec<Standing>,
-    /// What was there at the beginning of the motion and cannot be told from an event.
+    /// What was there at the beginning of the motion and cannot be told from an event. The parameters were found beside it;
+    /// it is no part of what is saved.
     #[serde(default)]
     pub transients: Vec<Transient>,
     /// What nothing explains.
@@ -155,11 +156,10 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// All that the model has beside its parameters: the terms of the findings, those of transients, and those that a reference
-    /// has already.
+    /// What the model takes to other motion beside its parameters: the terms of the findings, and those that a reference has
+    /// already. Transients stay with the motion that they were in.
     pub fn terms(&self) -> Vec<EffectTerm> {
         let found = self.findings.iter().map(|f| &f.term);
-        let transients = self.transients.iter().map(|t| &t.term);
-        found.chain(transients).chain(self.standing.iter().map(|s| &s.term)).cloned().collect()
+        found.chain(self.standing.iter().map(|s| &s.term)).cloned().collect()
     }
 }

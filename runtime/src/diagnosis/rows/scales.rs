@@ -12,7 +12,9 @@ pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: 
     let n = robot.joints();
     let kinds = robot.joint_kinds();
     let speeds = top_speeds(signals, n);
-    let duration = signals.iter().map(|s| s.time(s.len().max(1) - 1)).fold(0.0, f64::max);
+    let moving = || signals.iter().filter(|s| s.len() > 0);
+    let start = moving().map(|s| s.time(0)).reduce(f64::min).unwrap_or(0.0);
+    let duration = moving().map(|s| s.time(s.len() - 1) - start).fold(0.0, f64::max);
     let mut torque = vec![0.0_f64; n];
     for s in signals {
         for (j, series) in ModelTorques::new(model, chi, s).total.iter().enumerate() {
@@ -30,6 +32,7 @@ pub(in crate::diagnosis) fn scales(model: &dyn Model, signals: &[Signals], chi: 
                 range: (high - low).max(1e-9),
                 centre: if low <= high { 0.5 * (low + high) } else { 0.0 },
                 torque: torque[j].max(1e-9),
+                start,
                 duration,
                 gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),
                 fast: fast[j],

@@ -18,7 +18,7 @@ const WORDS: Words = Words {
         ("viscous", "viscous friction that fades"),
         ("coulomb", "Coulomb friction that fades"),
         ("tau", "time constant"),
-        ("t", "time in the motion"),
+        ("t", "time since the motion began"),
     ],
     put_in: "the law as a torque of the joint",
 };
@@ -91,7 +91,7 @@ impl JointLaw for FrictionDrift {
     }
 
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        let faded = (-at.time / shape[1]).exp();
+        let faded = (-scale.age(at.time) / shape[1]).exp();
         let viscous = at.dq / scale.speed * faded;
         let coulomb = at.sign * faded;
         if shape[0] < 0.5 {
@@ -120,5 +120,33 @@ impl JointLaw for FrictionDrift {
         }
         out.push(Parameter::new("tau", shape[1], 0.0, "s"));
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn friction_fades_from_the_beginning_of_the_motion_on_and_is_what_it_was_then_before() {
+        let scale = Scale { start: 10.0, ..Scale::UNIT };
+        let coulomb = |time: f64| {
+            let mut out = [0.0];
+            let at = At {
+                time,
+                q: 0.0,
+                dq: 1.0,
+                sign: 1.0,
+                load: 0.0,
+                link: 0.0,
+                gravity: 0.0,
+                torque: 0.0,
+                friction: 0.0,
+            };
+            FrictionDrift.law(&scale, &[1.0, 2.0], &at, 0.0, &mut out);
+            out[0]
+        };
+        assert_eq!((coulomb(10.0), coulomb(3.0)), (1.0, 1.0));
+        assert!((coulomb(12.0) - (-1.0_f64).exp()).abs() < 1e-12);
     }
 }

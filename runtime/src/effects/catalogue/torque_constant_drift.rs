@@ -54,7 +54,7 @@ const LINE: f64 = 5.0;
 /// The effect.
 pub(super) struct TorqueConstantDrift;
 
-/// Part of the way to the end of the recording that a change has come, at a time; `shape` is its time constant and the
+/// Part of the way to the end of the recording that a change has come, at a time since it began; `shape` is its time constant and the
 /// duration of the recording, s.
 fn way(shape: &[f64], time: f64) -> f64 {
     let gone = |t: f64| -(-t / shape[0]).exp_m1();
@@ -122,8 +122,8 @@ impl JointLaw for TorqueConstantDrift {
         false
     }
 
-    fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        out[0] = at.torque * way(shape, at.time);
+    fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
+        out[0] = at.torque * way(shape, scale.age(at.time));
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
