@@ -1,9 +1,9 @@
 //! What is made of a recording: every method, as the command line runs it.
 
-use dynid_runtime::estimation::observe::{Equations, Observation, ObserveSettings, observe};
+use dynid_runtime::estimation::observe::{Equations, Observation, ObserveError, ObserveSettings, observe};
 use dynid_runtime::estimation::{
-    EstimateSettings, Instruments, Method, PIECE, Piecewise, RecordedSettings, estimate,
-    instrumental_variables, observe_trajectories,
+    EstimateSettings, Instruments, Method, RecordedSettings, Take, estimate, instrumental_variables,
+    observe_in_pieces, observe_trajectories,
 };
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::{DidimSettings, Experiment, didim, simulated_motions};
@@ -48,28 +48,18 @@ pub fn all(case: &Case<'_>, recording: &Recording, band: Option<f64>, wanted: &[
     outcomes
 }
 
-/// The equations as `dynid identify` has them: of a recording with more rows than are kept, piece by piece.
+/// The equations as `dynid identify` has them: of a recording with more rows than are held, piece by piece.
 fn observed(
     case: &Case<'_>,
     trajectories: &[Trajectory],
     equations: Equations,
     settings: &RecordedSettings,
 ) -> Observation {
-    let mut rows = 0;
-    let longer = |t: &Trajectory| {
-        rows += t.time.len();
-        rows > PIECE
+    let mut read = |take: &mut Take<'_, ObserveError>| {
+        trajectories.iter().try_for_each(|piece| take(piece.clone(), piece.name.clone()))
     };
-    let Some(last) = trajectories.iter().position(longer) else {
-        let whole = observe_trajectories(trajectories, case.model, &[equations], settings, None).unwrap();
-        return whole.observations.into_iter().next().unwrap();
-    };
-    let (first, others) = trajectories.split_at(last + 1);
-    let (preparation, rows) = settings.chosen(first).unwrap();
-    let equations = [equations];
-    let (mut all, _) = Piecewise::new(case.model, &equations, first.to_vec(), preparation, rows).unwrap();
-    others.iter().for_each(|piece| all.add(piece).unwrap());
-    all.finish().unwrap().0.into_iter().next().unwrap()
+    let (whole, ()) = observe_in_pieces(case.model, &[equations], settings, &mut read, None).unwrap();
+    whole.observations.into_iter().next().unwrap()
 }
 
 /// Instrumental variables and DIDIM: both simulate the motions that were planned, from the parameters of IDIM-WLS.

@@ -86,8 +86,8 @@ pub use physical::{
 };
 pub use piecewise::Piecewise;
 pub use recorded::{
-    ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, observe_recording,
-    observe_trajectories,
+    ObserveRecordingError, ObservedRecording, PIECE, RecordedSettings, Take, observe_in_pieces,
+    observe_recording, observe_trajectories,
 };
 #[cfg(feature = "diagnosis")]
 pub use reduced::{Reduced, ReducedError, ReducedEstimate};

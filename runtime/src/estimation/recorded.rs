@@ -92,8 +92,8 @@ impl From<SignalError> for ObserveRecordingError {
 
 /// Reads the rows of a recording within a `window` of time, s, and observes them.
 ///
-/// A recording of more than [`PIECE`] rows is read, prepared, observed and dropped piece by piece; the band and the
-/// speeds of standstill then are those of its first pieces. `progress` is told of a shorter one only.
+/// A recording of more than [`PIECE`] rows is read, prepared, observed and dropped piece by piece
+/// ([`observe_in_pieces`]). `progress` is told of a shorter one only.
 ///
 /// # Errors
 /// Files that cannot be read or do not fit the robot, a window without rows, motions that cannot be filtered or
@@ -106,38 +106,109 @@ pub fn observe_recording(
     settings: &RecordedSettings,
     progress: Option<Progress<'_>>,
 ) -> Result<ObservedRecording, ObserveRecordingError> {
-    let mut pieces = Pieces {
-        loader: Loader::new(manifest, model.robot(), PIECE)?,
-        window,
-        names: vec![None; manifest.trajectories.len()],
+    let mut read = |take: &mut Take<'_, ObserveRecordingError>| {
+        let mut pieces = Pieces {
+            loader: Loader::new(manifest, model.robot(), PIECE)?,
+            window,
+            names: vec![None; manifest.trajectories.len()],
+        };
+        let mut is_empty = true;
+        while let Some((trajectory, piece)) = pieces.next()? {
+            is_empty = false;
+            let motion = pieces.motion_of(trajectory, &piece);
+            take(piece, motion)?;
+        }
+        if is_empty {
+            let window = window.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            return Err(ObserveRecordingError::NothingInWindow { window });
+        }
+        Ok(pieces.loader.into_report())
     };
-    let mut first = Vec::new();
-    let (mut rows, mut long) = (0, false);
-    while !long && let Some(piece) = pieces.next()? {
-        rows += piece.1.time.len();
-        first.push(piece);
-        long = rows > PIECE;
+    let (observed, rows) = observe_in_pieces(model, equations, settings, &mut read, progress)?;
+    Ok(ObservedRecording { rows, ..observed })
+}
+
+/// Takes the next piece of a recording, and the name of the motion that it is of.
+pub type Take<'a, E> = dyn FnMut(Trajectory, String) -> Result<(), E> + 'a;
+
+/// Observes a recording that `read` hands over piece by piece. One of more than [`PIECE`] rows is not held: its pieces are
+/// prepared, observed and dropped, and the band and the speeds of standstill are those of its first ones.
+///
+/// Of a recording in whose band the correction for the noise of the encoders is too uncertain ([`observe_trajectories`])
+/// a long one is read once more, for a narrower band. What `read` returned the last time is given back.
+///
+/// # Errors
+/// Those of `read`, and motions that cannot be filtered or observed.
+pub fn observe_in_pieces<R, E: From<ObserveError>>(
+    model: &dyn Model,
+    equations: &[Equations],
+    settings: &RecordedSettings,
+    read: &mut dyn FnMut(&mut Take<'_, E>) -> Result<R, E>,
+    progress: Option<Progress<'_>>,
+) -> Result<(ObservedRecording, R), E> {
+    let mut once = |settings: &RecordedSettings| {
+        let mut first: Vec<(Trajectory, String)> = Vec::new();
+        let (mut rows, mut long) = (0, None);
+        let returned = read(&mut |piece, motion| {
+            let Some(long) = &mut long else {
+                rows += piece.time.len();
+                first.push((piece, motion));
+                if rows > PIECE {
+                    long = Some(Long::begin(std::mem::take(&mut first), model, equations, settings)?);
+                }
+                return Ok(());
+            };
+            long.all.add(&Trajectory { name: motion, ..piece }).map_err(E::from)
+        })?;
+        let observed = match long {
+            Some(long) => long.finish()?,
+            None => {
+                let whole: Vec<Trajectory> = first.into_iter().map(|(piece, _)| piece).collect();
+                observe_trajectories(&whole, model, equations, settings, progress)?
+            }
+        };
+        Ok::<_, E>((observed, returned))
+    };
+    let observed = once(settings)?;
+    if settings.band.is_none()
+        && !observed.0.whole
+        && let Some(narrower) = narrower_band(&observed.0)
+    {
+        // Short motions may have no rows in a narrow band.
+        return Ok(once(&RecordedSettings { band: Some(narrower), ..settings.clone() }).unwrap_or(observed));
     }
-    if first.is_empty() {
-        let window = window.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        return Err(ObserveRecordingError::NothingInWindow { window });
+    Ok(observed)
+}
+
+/// A recording that is too long to be held, on its way.
+struct Long<'a> {
+    all: Piecewise<'a>,
+    motions: Vec<Motion>,
+    settings: ObserveSettings,
+    speeds: Vec<SpeedFault>,
+}
+
+impl<'a> Long<'a> {
+    fn begin(
+        first: Vec<(Trajectory, String)>,
+        model: &'a dyn Model,
+        equations: &'a [Equations],
+        settings: &RecordedSettings,
+    ) -> Result<Self, ObserveError> {
+        let named = |(piece, name)| Trajectory { name, ..piece };
+        let first: Vec<Trajectory> = first.into_iter().map(named).collect();
+        let (preparation, settings) = settings.chosen(&first)?;
+        let speeds = contradicting_speeds(&first, &preparation);
+        let (all, motions) = Piecewise::new(model, equations, first, preparation, settings.clone())?;
+        Ok(Self { all, motions, settings, speeds })
     }
-    if !long {
-        let trajectories: Vec<Trajectory> = first.into_iter().map(|(_, piece)| piece).collect();
-        let observed = observe_trajectories(&trajectories, model, equations, settings, progress)?;
-        return Ok(ObservedRecording { rows: pieces.loader.into_report(), ..observed });
+
+    fn finish(self) -> Result<ObservedRecording, ObserveError> {
+        let Self { all, motions, settings, speeds } = self;
+        let (observations, left_out) = all.finish()?;
+        let rows = RowReport::default();
+        Ok(ObservedRecording { observations, motions, whole: false, settings, rows, speeds, left_out })
     }
-    let first: Vec<Trajectory> =
-        first.into_iter().map(|(window, piece)| pieces.named(window, piece)).collect();
-    let (preparation, settings) = settings.chosen(&first)?;
-    let speeds = contradicting_speeds(&first, &preparation);
-    let (mut all, motions) = Piecewise::new(model, equations, first, preparation, settings.clone())?;
-    while let Some((window, piece)) = pieces.next()? {
-        all.add(&pieces.named(window, piece))?;
-    }
-    let (observations, left_out) = all.finish()?;
-    let rows = pieces.loader.into_report();
-    Ok(ObservedRecording { observations, motions, whole: false, settings, rows, speeds, left_out })
 }
 
 /// A correction for the noise of the encoders may be this share of the standard deviation beside it: what is not known
@@ -187,12 +258,7 @@ pub fn observe_trajectories(
     }
     // Noise in WT W grows with the fifth power of the band, so that once is enough but for rounding.
     for _ in 0..2 {
-        let ratio = widest.observations.first().map_or(0.0, largest_correction);
-        let band = widest.settings.band;
-        let narrower = Bandwidth::up_to(band * (CORRECTION / ratio).powf(0.2));
-        if ratio <= CORRECTION || narrower >= band {
-            break;
-        }
+        let Some(narrower) = narrower_band(&widest) else { break };
         // Short motions may have no rows in a narrow band.
         let Ok(next) = observed(&RecordedSettings { band: Some(narrower), ..settings.clone() }) else {
             break;
@@ -202,13 +268,22 @@ pub fn observe_trajectories(
     Ok(widest)
 }
 
+/// The band in which the correction for the noise of the encoders is at most [`CORRECTION`], where it is more.
+fn narrower_band(observed: &ObservedRecording) -> Option<f64> {
+    let ratio = observed.observations.first().map_or(0.0, largest_correction);
+    let band = observed.settings.band;
+    let narrower = Bandwidth::up_to(band * (CORRECTION / ratio).powf(0.2));
+    (ratio > CORRECTION && narrower < band).then_some(narrower)
+}
+
 /// The largest correction for the noise of the encoders, in units of the standard deviation beside it; zero where some
 /// parameters have nothing but noise to tell them apart, as they have in every band.
 fn largest_correction(observation: &Observation) -> f64 {
     if observation.noise_of_columns.is_none() {
         return 0.0;
     }
-    let settings = EstimateSettings { r_sigma: None, block_sigmas: false, ..EstimateSettings::default() };
+    let block_sigmas = observation.rows.is_none();
+    let settings = EstimateSettings { r_sigma: None, block_sigmas, ..EstimateSettings::default() };
     let found = estimate(observation, &settings);
     if found.warnings.contains(&Warning::NoisyColumns) {
         return 0.0;
@@ -244,11 +319,11 @@ impl Pieces<'_> {
         Ok(None)
     }
 
-    /// A piece under the name of the first piece of its trajectory: together they are one motion.
-    fn named(&mut self, window: usize, mut piece: Trajectory) -> Trajectory {
-        if let Some(name) = self.names.get_mut(window) {
-            piece.name = name.get_or_insert(piece.name).clone();
+    /// Name of the motion that a piece is of: that of the first piece of its trajectory.
+    fn motion_of(&mut self, trajectory: usize, piece: &Trajectory) -> String {
+        match self.names.get_mut(trajectory) {
+            Some(name) => name.get_or_insert_with(|| piece.name.clone()).clone(),
+            None => piece.name.clone(),
         }
-        piece
     }
 }
