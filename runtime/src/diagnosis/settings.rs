@@ -126,6 +126,14 @@ impl Settings {
         Self { least_confidence: self.confidence_at(rules::LEVEL_BESIDE_LAWS), ..self.clone() }
     }
 
+    /// The confidence that one law of a model needs, so that something is missing for certain.
+    pub(super) fn confidence_of_first(&self, effect: EffectKind) -> f64 {
+        match effect {
+            EffectKind::FreeForm => self.least_confidence,
+            _ => self.confidence_at(rules::LEVEL_OF_CATALOGUE),
+        }
+    }
+
     /// The confidence that a law needs to stay, less than to be taken: its variation is estimated anew in each round.
     pub(super) fn confidence_to_stay(&self) -> f64 {
         self.confidence_at(rules::LEVEL_TO_STAY)
@@ -161,12 +169,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beside_a_law_twice_the_level_is_enough_and_to_stay_less_still() {
+    fn beside_a_law_a_higher_level_is_enough_and_to_stay_less_still() {
         let first = Settings::default();
         let next = first.beside_laws();
         let level = |settings: &Settings| 1.0 - settings.least_confidence;
-        approx::assert_relative_eq!(level(&next), 2.0 * level(&first), max_relative = 1e-9);
+        let times = rules::LEVEL_BESIDE_LAWS;
+        approx::assert_relative_eq!(level(&next), times * level(&first), max_relative = 1e-9);
+        assert!(times > 1.0);
         assert!(next.confidence_to_stay() < next.least_confidence);
+        assert_eq!(first.confidence_of_first(EffectKind::FreeForm), first.least_confidence);
+        assert!(first.confidence_of_first(EffectKind::Spring) > first.least_confidence);
         assert_eq!(
             Settings { least_confidence: 0.0, ..Settings::default() }.beside_laws().least_confidence,
             0.5

@@ -97,7 +97,8 @@ impl Search<'_> {
                 (sure && !excluded).then_some(Changed { joint: j, change, significance, confidence })
             })
             .collect();
-        if self.model.terms.is_empty() && changed.iter().all(|c| c.confidence < settings.least_confidence) {
+        let of_first = settings.confidence_of_first(EffectKind::FrictionLevelChange);
+        if self.model.terms.is_empty() && changed.iter().all(|c| c.confidence < of_first) {
             changed.clear();
         }
         self.small.clear();

@@ -63,7 +63,8 @@ impl Search<'_> {
     /// Takes all laws out where none of them is certain enough to be the first.
     fn take_out_without_first(&mut self, settings: &Settings) -> Result<(), SingularDesign> {
         let terms = &mut self.model.terms;
-        if terms.is_empty() || terms.iter().any(|term| term.confidence >= settings.least_confidence) {
+        let is_first = |term: &Accepted| term.confidence >= settings.confidence_of_first(term.effect);
+        if terms.is_empty() || terms.iter().any(is_first) {
             return Ok(());
         }
         self.rejected.append(terms);
