@@ -35,7 +35,8 @@ use prepared::Prepared;
 use row_plan::{MotionRows, motion_rows};
 
 /// Observes motions: evaluates the model at the full rate in blocks, decimates Y and every column of W with one
-/// linear-phase filter, leaves out the rows that say nothing, and reduces the rest to orthogonal factors.
+/// linear-phase filter, leaves out the rows that say nothing, and reduces the rest to orthogonal factors. Of the torque
+/// equations the unknown moments at which dry friction changes its sign are eliminated.
 ///
 /// Neither W nor any of its columns is ever held at the full rate.
 ///

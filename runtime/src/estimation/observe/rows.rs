@@ -1,6 +1,7 @@
 //! The decimated rows themselves, for residuals.
 
-/// All decimated rows of one equation of one motion, used or not.
+/// All decimated rows of one equation of one motion, used or not, less what the moments take at which dry friction changes
+/// its sign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     /// Index of the motion.
