@@ -40,7 +40,7 @@ pub(super) fn columns(
 }
 
 /// Speed of a combination of joints at each sample.
-fn speed(motion: &Motion, form: &[(usize, f64)]) -> Vec<f64> {
+pub(super) fn speed(motion: &Motion, form: &[(usize, f64)]) -> Vec<f64> {
     let samples = motion.q.first().map_or(0, Vec::len);
     let mut speed = vec![0.0; samples];
     for &(joint, coefficient) in form {
@@ -101,7 +101,7 @@ pub(super) fn eliminate(
         places.iter().position(|&place| place == (trajectory, equation)).map(|g| &taken[g])
     };
     for equation in blocks.iter_mut().flat_map(|b| &mut b.equations) {
-        if let Some(taken) = of(equation.trajectory, equation.equation) {
+        if let Some(taken) = of(equation.trajectory, equation.equation).filter(|taken| taken.turns > 0) {
             equation.factor = equation.factor.times(&taken.elimination());
         }
     }
@@ -124,6 +124,9 @@ struct Taken {
 impl Taken {
     /// Eliminates them from the factor of a group, whose first `turns` columns are theirs.
     fn from_group(group: &mut EquationFactor, turns: usize) -> Taken {
+        if turns == 0 {
+            return Taken { turns, told: Vec::new(), part: DMatrix::zeros(0, group.columns.len() + 1) };
+        }
         let factor = &group.factor;
         let told: Vec<usize> = (0..turns)
             .filter(|&l| {

@@ -1,6 +1,7 @@
 //! Which rows are used: standstill, joints that are fixed, windows of time.
 
 use super::error::ObserveError;
+use super::reversals::speed;
 use super::settings::{Equations, ObserveSettings};
 use super::standstill::Standstill;
 use crate::model::{JointNumber, ParameterKind, Robot, StandardParameter};
@@ -157,11 +158,10 @@ fn leave_out_turning_combinations(
     let combined = |p: &&StandardParameter| matches!(p.kind, ParameterKind::Fcm | ParameterKind::Fcc);
     for parameter in robot.standard.iter().filter(combined) {
         let form = robot.acts_on(parameter);
-        let speed = |t: usize| form.iter().map(|&(j, c)| c * motion.dq[j][t]).sum::<f64>();
+        let speed = speed(motion, &form);
         for (row, at) in grid.centres().enumerate() {
-            let around = at.saturating_sub(reach)..(at + reach + 1).min(motion.dq[0].len());
-            let now = speed(at);
-            if around.into_iter().any(|t| speed(t) * now < 0.0) {
+            let around = &speed[at.saturating_sub(reach)..(at + reach + 1).min(speed.len())];
+            if around.iter().any(|v| v * speed[at] < 0.0) {
                 form.iter().for_each(|&(j, _)| moving[j][row] = false);
             }
         }
