@@ -450,9 +450,9 @@ pub(super) const SCAN_EDGE: f64 = 0.1;
 pub(super) const SCAN_IMPACT: f64 = 0.12;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(super) const SCAN_PRESENT: f64 = 0.7;
-/// False alarms per recording in which nothing else was found. Statistics: the share of this search, one of [`SEARCHES`], in
-/// one in a hundred recordings; size and power in the tests of `scan`.
-pub(super) const SCAN_LEVEL: f64 = 0.0025;
+/// False alarms per recording in which nothing else was found. Statistics: one in a thousand, as of the laws of the catalogue
+/// together; size and power in the tests of `scan`.
+pub(super) const SCAN_LEVEL: f64 = 1e-3;
 /// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
 /// largest means knows nothing of; pushes of a hand are mostly far beyond.
 pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-4;

@@ -139,9 +139,9 @@ impl Settings {
         self.confidence_at(rules::LEVEL_TO_STAY)
     }
 
-    /// The confidence that what a search of its own finds needs, of those that share the level.
+    /// The confidence that a law of the catalogue needs which a search of its own finds, of those that share the level.
     pub(super) fn confidence_of_one_search(&self) -> f64 {
-        self.confidence_at(1.0 / rules::SEARCHES)
+        self.confidence_at(rules::LEVEL_OF_CATALOGUE / rules::SEARCHES)
     }
 
     /// The confidence at so many times the level.

@@ -11,7 +11,7 @@ use crate::diagnosis::rules::{
     LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
     LINE_PICKED_ABOVE, LINE_SLOWER,
 };
-use crate::statistics::greatest_of::p_value;
+use crate::statistics::greatest_of::highest_p_value;
 use crate::statistics::median::median;
 use std::f64::consts::TAU;
 
@@ -37,7 +37,8 @@ pub(in crate::diagnosis) struct Line {
     pub sigma: f64,
     /// Rms of the residual without what is slower, N.m or N, the median of the motions.
     pub rms: f64,
-    /// Probability that noise stands as far above the orders on both sides of it, all motions together.
+    /// Probability that noise stands as far above the orders on both sides of it anywhere near the order that was asked for, all
+    /// motions together.
     pub p_value: f64,
     /// Whether motors have lines at its order, so that it was looked for there.
     pub known: bool,
@@ -90,7 +91,7 @@ pub(in crate::diagnosis) fn lines(
             sine: together.s,
             sigma: deviation(around.level),
             rms: usual(|l| l.rms),
-            p_value: p_value(together.norm() / around.level, around.orders),
+            p_value: highest_p_value(together.norm() / around.level, around.orders, resolved * spread(&all)),
             known,
             share: usual(|l| l.share),
         });
@@ -187,6 +188,17 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
 fn highest(samples: &[Sample], order: f64, step: f64) -> Option<(f64, Wave)> {
     let near = Orders { first: order - 0.5 * step, step: 0.125 * step, count: 9 };
     near.all().zip(near.waves(samples)).max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()))
+}
+
+/// Standard deviation of the angles at which there is noise: how fast a wave of noise changes with its order.
+fn spread(samples: &[Sample]) -> f64 {
+    let mean = |of: &dyn Fn(&Sample) -> f64| {
+        let sums =
+            samples.iter().fold((0.0, 0.0), |(sum, all), s| (sum + s.r * s.r * of(s), all + s.r * s.r));
+        sums.0 / sums.1.max(f64::MIN_POSITIVE)
+    };
+    let centre = mean(&|s| s.q);
+    mean(&|s| (s.q - centre).powi(2)).sqrt()
 }
 
 /// Standard deviation of the parts of waves of noise whose amplitudes have this median: it is sqrt(2 ln 2) of it.

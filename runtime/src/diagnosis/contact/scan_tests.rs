@@ -42,12 +42,12 @@ fn push(track: &mut Track, from: f64, lasts: f64, visible: f64) {
 }
 
 #[test]
-fn hardly_one_recording_in_a_hundred_has_a_push_that_is_none() {
+fn hardly_one_recording_in_three_hundred_has_a_push_that_is_none() {
     let mut rng = Pcg64::seed_from_u64(11);
-    let runs = 600;
+    let runs = 1200;
     let false_alarms = (0..runs).filter(|_| !scan(&noise(&mut rng), STEP, LEVEL).0.is_empty()).count();
     println!("{false_alarms} of {runs}");
-    assert!(false_alarms <= 6, "{false_alarms} of {runs}");
+    assert!(false_alarms <= 4, "{false_alarms} of {runs}");
 }
 
 /// Share of pushes of `lasts` seconds that are found on their joint at their time, and recordings with any other.
@@ -86,9 +86,9 @@ fn more_than_half_of_medium_pushes_of_a_quarter_of_a_second_are_found() {
 }
 
 #[test]
-fn slow_pushes_are_found_although_they_are_weaker() {
+fn half_of_slow_pushes_are_found_although_they_are_weaker() {
     let (share, _) = found(1.5, 1.5, 14);
-    assert!(share >= 0.6, "{share}");
+    assert!(share >= 0.5, "{share}");
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! moderated by those of other laws on the same joint.
 
 use crate::diagnosis::judging::significance::Evidence;
+use crate::diagnosis::judging::uneven_noise::of_noise;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
 use crate::diagnosis::judging::white_products::{Background, Products, Regressors, factored};
@@ -117,7 +118,13 @@ pub(in crate::diagnosis) fn calibrate(
     } else {
         found.squares
     };
-    Some(Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, without_any })
+    let between = Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, without_any };
+    let uneven = of_noise(units, regressors, law, &found).map(|noise| Calibrated {
+        lambda: noise.value.max(1.0),
+        freedom: noise.freedom,
+        ..between
+    });
+    Some(uneven.filter(|uneven| uneven.evidence().p_value > between.evidence().p_value).unwrap_or(between))
 }
 
 /// What a law explains that another one in the model does not.

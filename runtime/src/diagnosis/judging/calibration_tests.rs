@@ -95,7 +95,7 @@ fn judged(rng: &mut Pcg64, files: usize, baseline: bool, amplitude: f64, spread:
         of_joint: std::slice::from_ref(&all),
     };
     let found = alone(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
-    [found.evidence(), Calibrated { lambda: 1.0, ..found }.evidence()]
+    [found.evidence(), Calibrated { lambda: 1.0, freedom: f64::INFINITY, ..found }.evidence()]
 }
 
 fn rates(seed: u64, files: usize, baseline: bool, amplitude: f64, spread: f64, level: f64) -> [f64; 2] {
@@ -233,4 +233,41 @@ fn a_trend_that_a_single_unit_shows_is_sure_only_with_it() {
         let [sure, without] = trend(&mut rng, 2.0, 2.0);
         assert!(sure > 0.99 && without > 0.99, "{sure} {without}");
     }
+}
+
+/// Evidence of a law that grows as the fifth power of a torque, whose noise grows with that torque as far as `share`; other
+/// laws of the joint do not grow so.
+fn fifth_power(rng: &mut Pcg64, share: f64, amplitude: f64) -> Calibrated {
+    let (files, rows) = (10, 10 * ROWS);
+    let torque: Vec<f64> = (0..files).flat_map(|_| wave(rng, ROWS)).collect();
+    let largest = torque.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let law: Vec<f64> = torque.iter().map(|x| (x / largest).powi(5)).collect();
+    let residual: Vec<f64> =
+        torque.iter().map(|x| (1.0 - share + share * 2.0 * (x / largest).abs()) * normal(rng)).collect();
+    let y: Vec<f64> = (0..rows).map(|t| 3.0 * torque[t] + amplitude * law[t] + residual[t]).collect();
+    let companions: Vec<Vec<f64>> = (0..20).map(|_| wave(rng, rows)).collect();
+    let (all, shared, companions) = (0..rows, [torque], [companions]);
+    let regressors = Regressors { shared: &shared, companions: &companions, ..plain(&y, &all) };
+    alone(&units(files, false), &regressors, &[law], &residual, false).expect("determined")
+}
+
+#[test]
+fn a_law_that_is_large_where_the_noise_is_has_the_variance_of_that_noise() {
+    let mut rng = Pcg64::seed_from_u64(43);
+    let (runs, level) = (1000, 0.01);
+    let mut share_of = |share: f64, amplitude: f64, test: &dyn Fn(&Calibrated) -> bool| {
+        let found = (0..runs).filter(|_| test(&fifth_power(&mut rng, share, amplitude))).count();
+        found as f64 / f64::from(runs)
+    };
+    let sure = |found: &Calibrated| found.evidence().p_value < level;
+    let with_one_variance =
+        |found: &Calibrated| Calibrated { lambda: 1.0, ..*found }.evidence().p_value < level;
+    let naive = share_of(1.0, 0.0, &with_one_variance);
+    assert!(naive > 0.04, "{naive}");
+    let size = share_of(1.0, 0.0, &sure);
+    assert!(size < 0.02, "{size}");
+    // Noise of one size costs hardly any power.
+    let [one, any] = [share_of(0.0, 0.5, &with_one_variance), share_of(0.0, 0.5, &sure)];
+    assert!(any > one - 0.1, "{any} of {one}");
+    println!("size {size} (one variance {naive}), power {any} (one variance {one})");
 }

@@ -20,6 +20,7 @@ pub(in crate::diagnosis) mod skew;
 pub(in crate::diagnosis) mod testing;
 #[cfg(test)]
 mod tests;
+pub(in crate::diagnosis) mod uneven_noise;
 pub(in crate::diagnosis) mod units;
 mod wald;
 pub(in crate::diagnosis) mod white_products;

@@ -13,6 +13,8 @@ pub(super) struct Wald {
     pub numbers: usize,
     /// Its amplitudes; 0 where they are not determined.
     pub amplitude: DVector<f64>,
+    /// What of the columns before it (and of the law that may be in all motion, where it may) makes of its torque there.
+    pub made: DVector<f64>,
     /// Inner products of its columns without what all others make of them.
     information: DMatrix<f64>,
 }
@@ -54,7 +56,8 @@ impl Wald {
             amplitude += eigen.eigenvectors.column(i) * (projected[i] / value);
         }
         let amplitude = amplitude.component_mul(&width);
-        (numbers > 0).then_some(Self { squares, numbers, amplitude, information })
+        let made = scale * made * &amplitude;
+        (numbers > 0).then_some(Self { squares, numbers, amplitude, made, information })
     }
 
     /// The statistic for each of its numbers.

@@ -164,11 +164,8 @@ fn of_joint(
     if range.is_empty() {
         return out;
     }
-    let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
-    let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
+    let Whitening { stretches, ar } = Whitening::of(units, regressors, j, residual);
     let free: &[Vec<f64>] = &regressors.free[j];
-    let left = without_free(units, j, range, &residual[range.clone()], free);
-    let ar = Autoregression::fit(&stretches, &left, HIGHEST_AR_ORDER);
     let on_joint = regressors.shared.iter().chain(law).map(|c| &c[range.clone()]);
     let all: Vec<Option<Vec<f64>>> = on_joint
         .chain([&regressors.y[range.clone()]])
@@ -193,6 +190,40 @@ fn of_joint(
         add(&mut out.files[file], &project(gram, free.len()), &live);
     }
     out
+}
+
+/// What makes the rows of a joint white.
+struct Whitening {
+    /// Neighbouring rows, as places among the joint's.
+    stretches: Vec<Range<usize>>,
+    ar: Autoregression,
+}
+
+impl Whitening {
+    /// Of a model that leaves `residual`, beside what is free in every motion.
+    fn of(units: &Units, regressors: &Regressors<'_>, j: usize, residual: &[f64]) -> Self {
+        let range = &regressors.of_joint[j];
+        let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
+        let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
+        let left = without_free(units, j, range, &residual[range.clone()], &regressors.free[j]);
+        let ar = Autoregression::fit(&stretches, &left, HIGHEST_AR_ORDER);
+        Self { stretches, ar }
+    }
+}
+
+/// A column over all rows and the residual of a model on one joint, both made white, without what is free in every motion.
+pub(super) fn white_with_residual(
+    units: &Units,
+    regressors: &Regressors<'_>,
+    j: usize,
+    column: &[f64],
+    residual: &[f64],
+) -> [Vec<f64>; 2] {
+    let range = &regressors.of_joint[j];
+    let Whitening { stretches, ar } = Whitening::of(units, regressors, j, residual);
+    let free: Vec<Vec<f64>> = regressors.free[j].iter().map(|c| ar.whitened(&stretches, c)).collect();
+    let white = |c: &[f64]| without_free(units, j, range, &ar.whitened(&stretches, &c[range.clone()]), &free);
+    [white(column), white(residual)]
 }
 
 fn local_or_empty(rows: &Range<usize>, of: &Range<usize>) -> Range<usize> {
