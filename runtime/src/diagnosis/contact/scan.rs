@@ -111,7 +111,16 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64, level: f64) -> (Ve
             found.extend(candidates);
         }
         let Some(k) = tracks.iter().position(|t| t.joint == scanned.joint) else { continue };
-        let rows: Vec<&[(usize, f64)]> = tracks[k].motions.iter().map(|m| m.1.as_slice()).collect();
+        // What the residual does by itself is told by the rows outside of pushes.
+        let is_pushed = |motion: usize, place: usize| {
+            let own = found.iter().filter(|p| p.joint == scanned.joint && p.motion == motion);
+            own.into_iter().any(|p| (p.places[0]..=p.places[1]).contains(&place))
+        };
+        let outside = |(m, rows): (usize, &(bool, Vec<(usize, f64)>))| -> Vec<(usize, f64)> {
+            rows.1.iter().copied().filter(|(place, _)| !is_pushed(m, *place)).collect()
+        };
+        let rows: Vec<Vec<(usize, f64)>> = tracks[k].motions.iter().enumerate().map(outside).collect();
+        let rows: Vec<&[(usize, f64)]> = rows.iter().map(Vec::as_slice).collect();
         noise.joints[k] = Spread::of(&rows, &lengths).map(|spread| (spread, scanned.law));
     }
     found.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.square.total_cmp(&a.square)));
