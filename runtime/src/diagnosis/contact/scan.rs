@@ -9,7 +9,7 @@ use crate::diagnosis::contact::memory::{Spread, widening};
 use crate::diagnosis::contact::white::{Motion, Scratch, White};
 use crate::diagnosis::rules::{
     LARGEST_PUSHED_FRACTION, SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES,
-    SCAN_LENGTHS, SCAN_OWN_STRETCHES, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH, SCAN_TOGETHER,
+    SCAN_LENGTHS, SCAN_OWN_STRETCHES, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH, SCAN_SUSPECT, SCAN_TOGETHER,
 };
 
 /// Rows of one joint: for each motion their places on the grid of rows, increasing, and their residual.
@@ -46,7 +46,6 @@ struct Scanned {
     white: White,
     /// How much wider than one the deviations of each length spread.
     wider: Vec<f64>,
-    law: Law,
 }
 
 /// What the residual of every joint does by itself.
@@ -80,117 +79,146 @@ type Seen = Vec<(f64, usize, usize)>;
 /// the law comes from the baseline.
 pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64, level: f64) -> (Vec<Pushed>, Noise) {
     let lengths = lengths(step);
-    let mut joints = Vec::new();
-    let mut all = Vec::new();
-    let mut stretches = 0;
-    for track in tracks {
-        let Some((scanned, seen)) = Scanned::of(track, &lengths, step) else { continue };
-        let largest = |wanted: bool| -> Vec<Stretch> {
-            let motions = scanned.white.motions.iter().zip(&seen);
-            let chosen = motions.filter(|(m, _)| m.is_target == wanted);
-            chosen.flat_map(|(m, seen)| largest(m, seen, &lengths, step)).collect()
-        };
-        let (before, now) = (largest(false), largest(true));
-        stretches += now.len();
-        let from = if before.len() >= now.len().max(SCAN_LEAST_STRETCHES) { before } else { now };
-        all.extend(from.iter().map(|s| s.largest));
-        joints.push((scanned, seen, from));
+    let mut joints: Vec<Joint<'_>> =
+        tracks.iter().filter_map(|track| Joint::of(track, &lengths, step)).collect();
+    let stretches = joints.iter().map(|joint| joint.stretches(true, &lengths).len()).sum::<usize>().max(1);
+    // A window that may be a push says nothing of what the residual does by itself: the law is told by all others, until no
+    // candidate is left that is none by it.
+    fit_laws(&mut joints, &lengths);
+    for joint in &mut joints {
+        joint.candidates = joint.beyond(SCAN_SUSPECT, &lengths, stretches);
     }
-    let common = Law::of(&mut all);
-    let mut noise = Noise { joints: tracks.iter().map(|_| None).collect(), stretches: stretches.max(1) };
-    let mut found: Vec<Pushed> = Vec::new();
-    for (mut scanned, seen, from) in joints {
-        if let Some(common) = common {
-            let mut own: Vec<f64> = from.iter().map(|s| s.largest).collect();
-            let count = own.len() as f64;
-            scanned.law = Law::of(&mut own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
-            let (law, look) = (scanned.law, Beyond { stretches, step, level });
-            let candidates = look.pushes(&scanned, &seen, &lengths);
-            let (candidates, law) = look.and_others(&scanned, law, candidates, &from);
-            scanned.law = law;
-            found.extend(candidates);
+    loop {
+        let others = fit_laws(&mut joints, &lengths);
+        let dropped =
+            joints.iter_mut().zip(others).map(|(joint, own)| joint.drop_accidents(own, level, stretches));
+        if dropped.sum::<usize>() == 0 {
+            break;
         }
-        let Some(k) = tracks.iter().position(|t| t.joint == scanned.joint) else { continue };
-        // What the residual does by itself is told by the rows outside of pushes.
-        let is_pushed = |motion: usize, place: usize| {
-            let own = found.iter().filter(|p| p.joint == scanned.joint && p.motion == motion);
-            own.into_iter().any(|p| (p.places[0]..=p.places[1]).contains(&place))
-        };
-        let outside = |(m, rows): (usize, &(bool, Vec<(usize, f64)>))| -> Vec<(usize, f64)> {
-            rows.1.iter().copied().filter(|(place, _)| !is_pushed(m, *place)).collect()
-        };
-        let rows: Vec<Vec<(usize, f64)>> = tracks[k].motions.iter().enumerate().map(outside).collect();
-        let rows: Vec<&[(usize, f64)]> = rows.iter().map(Vec::as_slice).collect();
-        noise.joints[k] = Spread::of(&rows, &lengths).map(|spread| (spread, scanned.law));
     }
+    let mut noise = Noise { joints: tracks.iter().map(|_| None).collect(), stretches };
+    for joint in &joints {
+        let Some(k) = tracks.iter().position(|t| t.joint == joint.scanned.joint) else { continue };
+        let rows: Vec<Vec<(usize, f64)>> = joint.rows_outside();
+        let rows: Vec<&[(usize, f64)]> = rows.iter().map(Vec::as_slice).collect();
+        noise.joints[k] =
+            Spread::of(&rows, &lengths).map(|spread| (spread, joint.law.unwrap_or(Law::NORMAL)));
+    }
+    let mut found: Vec<Pushed> = joints.into_iter().flat_map(Joint::pushes).collect();
     found.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.square.total_cmp(&a.square)));
     (found, noise)
 }
 
-/// What counts as a push.
-struct Beyond {
-    /// Stretches of all joints.
-    stretches: usize,
-    /// From one place to the next, s.
-    step: f64,
-    /// Least probability that one of all windows of the recording comes as far by accident.
-    level: f64,
+/// Whether places of a motion are next to those of a push.
+fn is_near(pushes: &[Pushed], motion: usize, [from, to]: [usize; 2], gap: usize) -> bool {
+    let mut own = pushes.iter().filter(|p| p.motion == motion);
+    own.any(|p| from <= p.places[1] + gap && p.places[0] <= to + gap)
 }
 
-impl Beyond {
-    /// Windows of one joint beyond the level.
-    fn pushes(&self, scanned: &Scanned, seen: &[Seen], lengths: &[usize]) -> Vec<Pushed> {
-        let mut found: Vec<Pushed> = Vec::new();
-        let gap = (SCAN_TOGETHER / self.step) as usize;
-        for (m, seen) in seen.iter().enumerate().filter(|(m, _)| scanned.white.motions[*m].is_target) {
-            let passes = |s: &&(f64, usize, usize)| scanned.law.tail(s.0, self.stretches) <= self.level;
+/// One joint with its windows, and those that may be pushes.
+struct Joint<'a> {
+    track: &'a Track,
+    scanned: Scanned,
+    seen: Vec<Seen>,
+    candidates: Vec<Pushed>,
+    /// What its largest windows do by themselves; `None` where there are too few of all joints.
+    law: Option<Law>,
+}
+
+/// The law of the largest windows of each joint, from those that overlap no candidate: its own, and that of all joints. Returns
+/// these windows of each joint.
+fn fit_laws(joints: &mut [Joint<'_>], lengths: &[usize]) -> Vec<Vec<f64>> {
+    let of_joint = |joint: &Joint<'_>| {
+        let (before, now) = (joint.stretches(false, lengths), joint.stretches(true, lengths));
+        if before.len() >= now.len().max(SCAN_LEAST_STRETCHES) { before } else { now }
+    };
+    let mut of_joints: Vec<Vec<f64>> = joints.iter().map(of_joint).collect();
+    let common = Law::of(&mut of_joints.concat());
+    for (joint, own) in joints.iter_mut().zip(&mut of_joints) {
+        let count = own.len() as f64;
+        let law = |common| Law::of(own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
+        joint.law = common.map(law);
+    }
+    of_joints
+}
+
+impl<'a> Joint<'a> {
+    /// Nothing found yet; `None` where there are too few rows.
+    fn of(track: &'a Track, lengths: &[usize], step: f64) -> Option<Self> {
+        let (scanned, seen) = Scanned::of(track, lengths, step)?;
+        Some(Self { track, scanned, seen, candidates: Vec::new(), law: None })
+    }
+
+    /// The largest squared deviation of a window in each stretch of the recording, or of its baseline, that overlaps no
+    /// candidate.
+    fn stretches(&self, target: bool, lengths: &[usize]) -> Vec<f64> {
+        let motions =
+            self.scanned.white.motions.iter().zip(&self.seen).filter(|(m, _)| m.is_target == target);
+        motions
+            .flat_map(|(motion, seen)| {
+                let is_free = |&(_, from, k): &(f64, usize, usize)| {
+                    !is_near(&self.candidates, motion.motion, [from, from + lengths[k]], self.gap())
+                };
+                largest(motion, seen.iter().filter(|w| is_free(w)), lengths, self.scanned.step)
+            })
+            .collect()
+    }
+
+    /// Places between pushes that are two.
+    fn gap(&self) -> usize {
+        (SCAN_TOGETHER / self.scanned.step) as usize
+    }
+
+    /// Windows beyond a level, the largest first, none next to another.
+    fn beyond(&self, level: f64, lengths: &[usize], stretches: usize) -> Vec<Pushed> {
+        let scanned = &self.scanned;
+        let Some(law) = self.law else { return Vec::new() };
+        let (gap, mut found) = (self.gap(), Vec::new());
+        for (m, seen) in self.seen.iter().enumerate().filter(|(m, _)| scanned.white.motions[*m].is_target) {
+            let passes = |s: &&(f64, usize, usize)| law.tail(s.0, stretches) <= level;
             let mut beyond: Vec<&(f64, usize, usize)> = seen.iter().filter(passes).collect();
             beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
             for &&(_, from, k) in &beyond {
-                let taken = found.iter().any(|p| {
-                    p.motion == m && from <= p.places[1] + gap && p.places[0] <= from + lengths[k] + gap
-                });
-                if !taken {
-                    found.extend(refined(scanned, m, (from, k), lengths, self.stretches));
+                if !is_near(&found, m, [from, from + lengths[k]], gap) {
+                    found.extend(refined(scanned, m, (from, k), lengths));
                 }
             }
         }
         found
     }
 
-    /// The candidates of a joint that are beyond what all the rest of its motion does, and its law. Where windows that
-    /// are no push stand out, as at every knock of a gear with play, the law of the largest has a longer tail; whether it
-    /// has is told by the stretches without a push, so that candidates which do not pass are among them the next time.
-    fn and_others(
-        &self,
-        scanned: &Scanned,
-        before: Law,
-        mut candidates: Vec<Pushed>,
-        from: &[Stretch],
-    ) -> (Vec<Pushed>, Law) {
-        let half = (0.5 * SCAN_STRETCH / self.step) as usize;
-        let mut law;
-        loop {
-            let pushed = |s: &&Stretch| {
-                candidates.iter().any(|p| {
-                    p.motion == s.motion
-                        && s.places[0] <= p.places[1] + half
-                        && p.places[0] <= s.places[1] + half
-                })
+    /// Drops the candidates that do not pass a level by what all `others` do, and says how many these are. Where windows that
+    /// are no push stand out, as at every knock of a gear with play, the law has a longer tail.
+    fn drop_accidents(&mut self, mut others: Vec<f64>, level: f64, stretches: usize) -> usize {
+        let before = self.candidates.len();
+        self.law = self.law.map(|law| law.with_tail(&mut others));
+        let law = self.law;
+        self.candidates
+            .iter_mut()
+            .for_each(|p| p.doubt = law.map_or(1.0, |law| law.tail(p.square, stretches)));
+        self.candidates.retain(|p| p.doubt <= level);
+        before - self.candidates.len()
+    }
+
+    /// Rows of its motions without those of its candidates.
+    fn rows_outside(&self) -> Vec<Vec<(usize, f64)>> {
+        let of_motion = |(m, (_, rows)): (usize, &(bool, Vec<(usize, f64)>))| {
+            let is_pushed = |place: usize| {
+                let mut own = self.candidates.iter().filter(|p| p.motion == m);
+                own.any(|p| (p.places[0]..=p.places[1]).contains(&place))
             };
-            let mut others: Vec<f64> = from.iter().filter(|s| !pushed(s)).map(|s| s.largest).collect();
-            law = before.with_tail(&mut others);
-            let count = candidates.len();
-            candidates.iter_mut().for_each(|p| p.doubt = law.tail(p.square, self.stretches));
-            candidates.retain(|p| p.doubt <= self.level);
-            if candidates.len() == count {
-                break;
-            }
-        }
-        let pushed: usize = candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
-        let places: usize = scanned.white.motions.iter().filter(|m| m.is_target).map(Motion::length).sum();
+            rows.iter().copied().filter(|(place, _)| !is_pushed(*place)).collect()
+        };
+        self.track.motions.iter().enumerate().map(of_motion).collect()
+    }
+
+    /// The candidates, where they take so little of the motion that they are an exception.
+    fn pushes(self) -> Vec<Pushed> {
+        let pushed: usize = self.candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
+        let targets = self.scanned.white.motions.iter().filter(|m| m.is_target);
+        let places: usize = targets.map(Motion::length).sum();
         let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64;
-        (if few { candidates } else { Vec::new() }, law)
+        if few { self.candidates } else { Vec::new() }
     }
 }
 
@@ -231,8 +259,7 @@ impl Scanned {
             }
             wider.push(factor);
         }
-        let law = Law::NORMAL;
-        Some((Self { joint: track.joint, step, white, wider, law }, seen))
+        Some((Self { joint: track.joint, step, white, wider }, seen))
     }
 }
 
@@ -255,44 +282,29 @@ pub(in crate::diagnosis) fn together(mut pushed: Vec<Pushed>, step: f64) -> Vec<
     groups
 }
 
-/// A stretch of one motion.
-struct Stretch {
-    motion: usize,
-    /// First and last place.
-    places: [usize; 2],
-    /// Largest squared deviation of a window in it.
-    largest: f64,
-}
-
-/// The stretches of a motion that have enough rows.
-fn largest(motion: &Motion, seen: &Seen, lengths: &[usize], step: f64) -> Vec<Stretch> {
+/// Largest squared deviation of these windows of a motion in each stretch of it that has enough rows.
+fn largest<'a>(
+    motion: &Motion,
+    windows: impl Iterator<Item = &'a (f64, usize, usize)>,
+    lengths: &[usize],
+    step: f64,
+) -> Vec<f64> {
     let stretch = ((SCAN_STRETCH / step).round() as usize).max(1);
     let mut out = vec![None::<f64>; motion.length() / stretch];
-    for &(square, from, k) in seen {
+    for &(square, from, k) in windows {
         if let Some(slot) = out.get_mut((from + lengths[k] / 2) / stretch) {
             *slot = Some(slot.map_or(square, |x| x.max(square)));
         }
     }
     let before = |place: usize| motion.places.partition_point(|p| *p < place);
     let filled = |k: usize| before((k + 1) * stretch) - before(k * stretch);
-    (0..out.len())
-        .filter(|&k| filled(k) as f64 >= SCAN_FILLED * stretch as f64)
-        .filter_map(|k| {
-            let places = [k * stretch, (k + 1) * stretch - 1];
-            Some(Stretch { motion: motion.motion, places, largest: out[k]? })
-        })
-        .collect()
+    let is_filled = |k: usize| filled(k) as f64 >= SCAN_FILLED * stretch as f64;
+    (0..out.len()).filter(|&k| is_filled(k)).filter_map(|k| out[k]).collect()
 }
 
-/// The window of any length near one of the grid whose half wave fits best, with how well its edges are known: as far
+/// The window of any length near one of the grid whose half wave fits best, not judged yet, with how well its edges are known: as far
 /// as the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere.
-fn refined(
-    scanned: &Scanned,
-    motion: usize,
-    (from, k): (usize, usize),
-    lengths: &[usize],
-    stretches: usize,
-) -> Option<Pushed> {
+fn refined(scanned: &Scanned, motion: usize, (from, k): (usize, usize), lengths: &[usize]) -> Option<Pushed> {
     let (white, length) = (&scanned.white, lengths[k]);
     let (reach, to) = ((length / 2).max(2), from + length);
     let fine = (length / (2 * SCAN_STEPS)).max(1);
@@ -322,7 +334,7 @@ fn refined(
         places: [best.1, best.2.saturating_sub(1)],
         edges: [width(|t| t.1), width(|t| t.2)],
         square: best.0,
-        doubt: scanned.law.tail(best.0, stretches),
+        doubt: 1.0,
     })
 }
 

@@ -86,9 +86,9 @@ fn more_than_half_of_medium_pushes_of_a_quarter_of_a_second_are_found() {
 }
 
 #[test]
-fn half_of_slow_pushes_are_found_although_they_are_weaker() {
+fn slow_pushes_are_found_although_they_are_weaker() {
     let (share, _) = found(1.5, 1.5, 14);
-    assert!(share >= 0.5, "{share}");
+    assert!(share >= 0.6, "{share}");
 }
 
 #[test]
