@@ -8,7 +8,7 @@ use super::contact::standing;
 use super::error::DiagnosisError;
 use super::preparation::Prepared;
 use super::rows::design::Design;
-use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS, SCAN_SUSPECT};
+use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
 use super::search::extended_model::ExtendedModel;
 use super::search::state::Search;
 use super::search::tangents::tangents;
@@ -62,13 +62,7 @@ impl Pushes {
         if self.scanned && self.of_single_joints.is_none() && self.contacts.is_none() {
             return false;
         }
-        let level = match (search.model.terms.is_empty(), self.scanned) {
-            // A push among the rows moves all that the model leaves: whether it is one is judged without its rows.
-            (true, false) => SCAN_SUSPECT,
-            (true, true) => SCAN_LEVEL,
-            (false, _) => SCAN_LEVEL_BESIDE_LAWS,
-        };
-        let (confirmed, found) = pushed_in_motion(model, prepared, self.contacts.as_ref(), search, level);
+        let (confirmed, found) = pushed_in_motion(model, prepared, self.contacts.as_ref(), search);
         let refuted = self.contacts.is_some() && confirmed.is_none();
         self.contacts = confirmed;
         if self.scanned || !settings.single_joint_contacts {
@@ -95,17 +89,17 @@ impl Pushes {
     }
 }
 
-/// Of the contacts that are known, those that what the model with its effects leaves confirms at a level; and the pushes that
-/// stand out of it besides, on single joints or several.
+/// Of the contacts that are known, those that what the model with its effects leaves confirms; and the pushes that stand out
+/// of it besides, on single joints or several.
 fn pushed_in_motion(
     model: &dyn Model,
     prepared: &Prepared,
     contacts: Option<&Contacts>,
     search: &Search<'_>,
-    level: f64,
 ) -> (Option<Contacts>, Option<Contacts>) {
     let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
     let context = &search.model.context;
+    let level = if search.model.terms.is_empty() { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
     let ringing = ringing(&search.model, &outside);
     let left = Left { residual: &search.model.residual_on(&outside), beside: &ringing };
     let look = moving::look(context, &outside, &left, level);

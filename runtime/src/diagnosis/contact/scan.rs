@@ -1,8 +1,9 @@
 //! Contact with a robot that moves: stretches of 0.15 to 2.4 s in which a joint's residual leans to one side.
 //!
 //! Half waves of many lengths are fitted to the white residual (`white`), and how far the largest of their amplitudes, in
-//! standard deviations, goes in a few seconds is read off the recording's own stretches, as an extreme value law (Gumbel) of their squares. Squares of normal deviates
-//! have the exponential tail that this law belongs to, and a heavier tail shows as a larger scale.
+//! standard deviations, goes in a few seconds is read off the recording's own stretches, as an extreme value law (Gumbel) of
+//! their squares. Squares of normal deviates have the exponential tail that this law belongs to, and a heavier tail shows as a
+//! larger scale. What may be a push tells nothing of this law.
 
 use crate::diagnosis::contact::largest::Law;
 use crate::diagnosis::contact::memory::{Spread, widening};
