@@ -203,14 +203,14 @@ impl<'a> Joint<'a> {
 
     /// Rows of its motions without those of its candidates.
     fn rows_outside(&self) -> Vec<Vec<(usize, f64)>> {
-        let of_motion = |(m, (_, rows)): (usize, &(bool, Vec<(usize, f64)>))| {
+        let outside = |m: usize| {
             let is_pushed = |place: usize| {
                 let mut own = self.candidates.iter().filter(|p| p.motion == m);
                 own.any(|p| (p.places[0]..=p.places[1]).contains(&place))
             };
-            rows.iter().copied().filter(|(place, _)| !is_pushed(*place)).collect()
+            self.track.motions[m].1.iter().copied().filter(|(place, _)| !is_pushed(*place)).collect()
         };
-        self.track.motions.iter().enumerate().map(of_motion).collect()
+        (0..self.track.motions.len()).map(outside).collect()
     }
 
     /// The candidates, where they take so little of the motion that they are an exception.
