@@ -119,6 +119,7 @@ pub(in crate::diagnosis) fn calibrate(
         found.squares
     };
     let between = Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, without_any };
+    // Noise that is loud where the law is large leaves doubt that no other unit or law shows.
     let uneven = of_noise(units, regressors, law, &found).map(|noise| Calibrated {
         lambda: noise.value.max(1.0),
         freedom: noise.freedom,
