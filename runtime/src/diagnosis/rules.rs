@@ -453,12 +453,12 @@ pub(super) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording in which nothing else was found. Statistics: one in two thousand, of which candidates that are left
 /// out of what they are compared with, and few stretches, make some more; size and power in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 5e-4;
-/// Windows that one of so many recordings has by accident do not count among what the residual does by itself until they have
-/// turned out to be no pushes. Statistics: hardly anything is left out of noise.
-pub(super) const SCAN_SUSPECT: f64 = 0.05;
 /// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
 /// largest means knows nothing of; pushes of a hand are mostly far beyond.
 pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-4;
+/// Windows that one of so many recordings has by accident do not count among what the residual does by itself until they have
+/// turned out to be no pushes. Statistics: hardly anything is left out of noise.
+pub(super) const SCAN_SUSPECT: f64 = 0.05;
 /// Rows that a joint needs to be scanned. Statistics: for the autoregression of its residual.
 pub(super) const SCAN_LEAST_ROWS: usize = 60;
 /// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles.

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn the_highest_of_a_range_comes_as_far_as_often_as_it_says() {
-        // Noise at 256 places between 0 and 2 pi: amplitudes at whole frequencies are independent.
+        // Noise at 128 places between 0 and 2 pi: amplitudes at whole frequencies are independent.
         let mut rng = Pcg64::seed_from_u64(32);
         let (runs, above, places) = (40_000, 2.5, 128);
         let angle = |k: usize| TAU * k as f64 / places as f64;

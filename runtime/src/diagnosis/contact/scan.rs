@@ -39,16 +39,6 @@ pub(in crate::diagnosis) struct Pushed {
     pub doubt: f64,
 }
 
-/// One joint, ready to be scanned.
-struct Scanned {
-    joint: usize,
-    /// From one place to the next, s.
-    step: f64,
-    white: White,
-    /// How much wider than one the deviations of each length spread.
-    wider: Vec<f64>,
-}
-
 /// What the residual of every joint does by itself.
 pub(in crate::diagnosis) struct Noise {
     /// Spread of means and law of the largest of them, by joint; `None` where there are too few rows.
@@ -97,14 +87,8 @@ pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64, level: f64) -> (Ve
             break;
         }
     }
-    let mut noise = Noise { joints: tracks.iter().map(|_| None).collect(), stretches };
-    for joint in &joints {
-        let Some(k) = tracks.iter().position(|t| t.joint == joint.scanned.joint) else { continue };
-        let rows: Vec<Vec<(usize, f64)>> = joint.rows_outside();
-        let rows: Vec<&[(usize, f64)]> = rows.iter().map(Vec::as_slice).collect();
-        noise.joints[k] =
-            Spread::of(&rows, &lengths).map(|spread| (spread, joint.law.unwrap_or(Law::NORMAL)));
-    }
+    let of_track = |track: &Track| joints.iter().find(|j| j.track.joint == track.joint)?.noise(&lengths);
+    let noise = Noise { joints: tracks.iter().map(of_track).collect(), stretches };
     let mut found: Vec<Pushed> = joints.into_iter().flat_map(Joint::pushes).collect();
     found.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.square.total_cmp(&a.square)));
     (found, noise)
@@ -119,7 +103,12 @@ fn is_near(pushes: &[Pushed], motion: usize, [from, to]: [usize; 2], gap: usize)
 /// One joint with its windows, and those that may be pushes.
 struct Joint<'a> {
     track: &'a Track,
-    scanned: Scanned,
+    /// From one place to the next, s.
+    step: f64,
+    white: White,
+    /// How much wider than one the deviations of each length spread.
+    wider: Vec<f64>,
+    /// Windows of each motion.
     seen: Vec<Seen>,
     candidates: Vec<Pushed>,
     /// What its largest windows do by themselves; `None` where there are too few of all joints.
@@ -144,96 +133,8 @@ fn fit_laws(joints: &mut [Joint<'_>], lengths: &[usize]) -> Vec<Vec<f64>> {
 }
 
 impl<'a> Joint<'a> {
-    /// Nothing found yet; `None` where there are too few rows.
+    /// With the windows of every motion, and nothing found yet. `None` where there are too few rows.
     fn of(track: &'a Track, lengths: &[usize], step: f64) -> Option<Self> {
-        let (scanned, seen) = Scanned::of(track, lengths, step)?;
-        Some(Self { track, scanned, seen, candidates: Vec::new(), law: None })
-    }
-
-    /// The largest squared deviation of a window in each stretch of the recording, or of its baseline, that overlaps no
-    /// candidate.
-    fn stretches(&self, target: bool, lengths: &[usize]) -> Vec<f64> {
-        let motions =
-            self.scanned.white.motions.iter().zip(&self.seen).filter(|(m, _)| m.is_target == target);
-        motions
-            .flat_map(|(motion, seen)| {
-                let is_free = |&(_, from, k): &(f64, usize, usize)| {
-                    !is_near(&self.candidates, motion.motion, [from, from + lengths[k]], self.gap())
-                };
-                largest(motion, seen.iter().filter(|w| is_free(w)), lengths, self.scanned.step)
-            })
-            .collect()
-    }
-
-    /// Places between pushes that are two.
-    fn gap(&self) -> usize {
-        (SCAN_TOGETHER / self.scanned.step) as usize
-    }
-
-    /// Windows beyond a level, the largest first, none next to another.
-    fn beyond(&self, level: f64, lengths: &[usize], stretches: usize) -> Vec<Pushed> {
-        let scanned = &self.scanned;
-        let Some(law) = self.law else { return Vec::new() };
-        let (gap, mut found) = (self.gap(), Vec::new());
-        for (m, seen) in self.seen.iter().enumerate().filter(|(m, _)| scanned.white.motions[*m].is_target) {
-            let passes = |s: &&(f64, usize, usize)| law.tail(s.0, stretches) <= level;
-            let mut beyond: Vec<&(f64, usize, usize)> = seen.iter().filter(passes).collect();
-            beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
-            for &&(_, from, k) in &beyond {
-                if !is_near(&found, m, [from, from + lengths[k]], gap) {
-                    found.extend(refined(scanned, m, (from, k), lengths));
-                }
-            }
-        }
-        found
-    }
-
-    /// Drops the candidates that do not pass a level by what all `others` do, and says how many these are. Where windows that
-    /// are no push stand out, as at every knock of a gear with play, the law has a longer tail.
-    fn drop_accidents(&mut self, mut others: Vec<f64>, level: f64, stretches: usize) -> usize {
-        let before = self.candidates.len();
-        self.law = self.law.map(|law| law.with_tail(&mut others));
-        let law = self.law;
-        self.candidates
-            .iter_mut()
-            .for_each(|p| p.doubt = law.map_or(1.0, |law| law.tail(p.square, stretches)));
-        self.candidates.retain(|p| p.doubt <= level);
-        before - self.candidates.len()
-    }
-
-    /// Rows of its motions without those of its candidates.
-    fn rows_outside(&self) -> Vec<Vec<(usize, f64)>> {
-        let outside = |m: usize| {
-            let is_pushed = |place: usize| {
-                let mut own = self.candidates.iter().filter(|p| p.motion == m);
-                own.any(|p| (p.places[0]..=p.places[1]).contains(&place))
-            };
-            self.track.motions[m].1.iter().copied().filter(|(place, _)| !is_pushed(*place)).collect()
-        };
-        (0..self.track.motions.len()).map(outside).collect()
-    }
-
-    /// The candidates, where they take so little of the motion that they are an exception.
-    fn pushes(self) -> Vec<Pushed> {
-        let pushed: usize = self.candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
-        let targets = self.scanned.white.motions.iter().filter(|m| m.is_target);
-        let places: usize = targets.map(Motion::length).sum();
-        let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64;
-        if few { self.candidates } else { Vec::new() }
-    }
-}
-
-/// Lengths of windows in rows, each once.
-fn lengths(step: f64) -> Vec<usize> {
-    let mut lengths: Vec<usize> =
-        SCAN_LENGTHS.iter().map(|l| ((l / step).round() as usize).max(SCAN_SHORTEST)).collect();
-    lengths.dedup();
-    lengths
-}
-
-impl Scanned {
-    /// With the windows of every motion; the law is not known yet. `None` where there are too few rows.
-    fn of(track: &Track, lengths: &[usize], step: f64) -> Option<(Self, Vec<Seen>)> {
         let rows: usize = track.motions.iter().map(|m| m.1.len()).sum();
         if rows < SCAN_LEAST_ROWS {
             return None;
@@ -260,8 +161,124 @@ impl Scanned {
             }
             wider.push(factor);
         }
-        Some((Self { joint: track.joint, step, white, wider }, seen))
+        Some(Self { track, step, white, wider, seen, candidates: Vec::new(), law: None })
     }
+
+    /// The largest squared deviation of a window in each stretch of the recording, or of its baseline, that overlaps no
+    /// candidate.
+    fn stretches(&self, target: bool, lengths: &[usize]) -> Vec<f64> {
+        let motions = self.white.motions.iter().zip(&self.seen).filter(|(m, _)| m.is_target == target);
+        motions
+            .flat_map(|(motion, seen)| {
+                let is_free = |&(_, from, k): &(f64, usize, usize)| {
+                    !is_near(&self.candidates, motion.motion, [from, from + lengths[k]], self.gap())
+                };
+                largest(motion, seen.iter().filter(|w| is_free(w)), lengths, self.step)
+            })
+            .collect()
+    }
+
+    /// Places between pushes that are two.
+    fn gap(&self) -> usize {
+        (SCAN_TOGETHER / self.step) as usize
+    }
+
+    /// Windows beyond a level, the largest first, none next to another.
+    fn beyond(&self, level: f64, lengths: &[usize], stretches: usize) -> Vec<Pushed> {
+        let Some(law) = self.law else { return Vec::new() };
+        let (gap, mut found) = (self.gap(), Vec::new());
+        for (m, seen) in self.seen.iter().enumerate().filter(|(m, _)| self.white.motions[*m].is_target) {
+            let passes = |s: &&(f64, usize, usize)| law.tail(s.0, stretches) <= level;
+            let mut beyond: Vec<&(f64, usize, usize)> = seen.iter().filter(passes).collect();
+            beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
+            for &&(_, from, k) in &beyond {
+                if !is_near(&found, m, [from, from + lengths[k]], gap) {
+                    found.extend(self.refined(m, (from, k), lengths));
+                }
+            }
+        }
+        found
+    }
+
+    /// The window of any length near one of the grid whose half wave fits best, not judged yet, with how well its edges are
+    /// known: as far as the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere.
+    fn refined(&self, motion: usize, (from, k): (usize, usize), lengths: &[usize]) -> Option<Pushed> {
+        let (white, length) = (&self.white, lengths[k]);
+        let (reach, to) = ((length / 2).max(2), from + length);
+        let fine = (length / (2 * SCAN_STEPS)).max(1);
+        let mut scratch = Scratch::default();
+        let mut tried: Vec<(f64, usize, usize)> = Vec::new();
+        for a in (from.saturating_sub(reach)..=from + reach).step_by(fine) {
+            for b in
+                (to.saturating_sub(reach)..=(to + reach).min(white.motions[motion].length())).step_by(fine)
+            {
+                if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
+                    && let Some(wave) = white.half_wave(motion, a..b, &mut scratch)
+                {
+                    tried.push(((wave / self.wider[k]).powi(2), a, b));
+                }
+            }
+        }
+        // What is over sooner is an impact, and none where the rows are too far apart to tell.
+        let shortest = (SCAN_IMPACT / self.step) as usize;
+        let best =
+            tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0)).filter(|t| t.2 - t.1 >= shortest)?;
+        let near: Vec<&(f64, usize, usize)> = tried.iter().filter(|t| t.0 >= best.0 - 1.0).collect();
+        let width = |edge: fn(&(f64, usize, usize)) -> usize| {
+            let (low, high) = near.iter().fold((usize::MAX, 0), |(l, h), t| (l.min(edge(t)), h.max(edge(t))));
+            // A push need not be a half wave.
+            (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
+        };
+        Some(Pushed {
+            joint: self.track.joint,
+            motion: white.motions[motion].motion,
+            places: [best.1, best.2.saturating_sub(1)],
+            edges: [width(|t| t.1), width(|t| t.2)],
+            square: best.0,
+            doubt: 1.0,
+        })
+    }
+
+    /// Drops the candidates that do not pass a level by what all `others` do, and says how many these are. Where windows that
+    /// are no push stand out, as at every knock of a gear with play, the law has a longer tail.
+    fn drop_accidents(&mut self, mut others: Vec<f64>, level: f64, stretches: usize) -> usize {
+        let before = self.candidates.len();
+        self.law = self.law.map(|law| law.with_tail(&mut others));
+        let law = self.law;
+        self.candidates
+            .iter_mut()
+            .for_each(|p| p.doubt = law.map_or(1.0, |law| law.tail(p.square, stretches)));
+        self.candidates.retain(|p| p.doubt <= level);
+        before - self.candidates.len()
+    }
+
+    /// What its residual does by itself outside of its candidates; `None` where it has too few rows there.
+    fn noise(&self, lengths: &[usize]) -> Option<(Spread, Law)> {
+        let outside = |m: usize| -> Vec<(usize, f64)> {
+            let is_pushed = |place: usize| is_near(&self.candidates, m, [place; 2], 0);
+            self.track.motions[m].1.iter().copied().filter(|(place, _)| !is_pushed(*place)).collect()
+        };
+        let rows: Vec<Vec<(usize, f64)>> = (0..self.track.motions.len()).map(outside).collect();
+        let rows: Vec<&[(usize, f64)]> = rows.iter().map(Vec::as_slice).collect();
+        Spread::of(&rows, lengths).map(|spread| (spread, self.law.unwrap_or(Law::NORMAL)))
+    }
+
+    /// The candidates, where they take so little of the motion that they are an exception.
+    fn pushes(self) -> Vec<Pushed> {
+        let pushed: usize = self.candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
+        let targets = self.white.motions.iter().filter(|m| m.is_target);
+        let places: usize = targets.map(Motion::length).sum();
+        let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64;
+        if few { self.candidates } else { Vec::new() }
+    }
+}
+
+/// Lengths of windows in rows, each once.
+fn lengths(step: f64) -> Vec<usize> {
+    let mut lengths: Vec<usize> =
+        SCAN_LENGTHS.iter().map(|l| ((l / step).round() as usize).max(SCAN_SHORTEST)).collect();
+    lengths.dedup();
+    lengths
 }
 
 /// Windows of several joints that are one push, in the order of time.
@@ -270,12 +287,7 @@ pub(in crate::diagnosis) fn together(mut pushed: Vec<Pushed>, step: f64) -> Vec<
     pushed.sort_by_key(|p| (p.motion, p.places[0]));
     let mut groups: Vec<Vec<Pushed>> = Vec::new();
     for p in pushed {
-        let near = |group: &Vec<Pushed>| {
-            group.iter().any(|g| {
-                g.motion == p.motion && p.places[0] <= g.places[1] + gap && g.places[0] <= p.places[1] + gap
-            })
-        };
-        match groups.last_mut().filter(|g| near(g)) {
+        match groups.last_mut().filter(|g| is_near(g, p.motion, p.places, gap)) {
             Some(group) => group.push(p),
             None => groups.push(vec![p]),
         }
@@ -301,42 +313,6 @@ fn largest<'a>(
     let filled = |k: usize| before((k + 1) * stretch) - before(k * stretch);
     let is_filled = |k: usize| filled(k) as f64 >= SCAN_FILLED * stretch as f64;
     (0..out.len()).filter(|&k| is_filled(k)).filter_map(|k| out[k]).collect()
-}
-
-/// The window of any length near one of the grid whose half wave fits best, not judged yet, with how well its edges are known: as far
-/// as the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere.
-fn refined(scanned: &Scanned, motion: usize, (from, k): (usize, usize), lengths: &[usize]) -> Option<Pushed> {
-    let (white, length) = (&scanned.white, lengths[k]);
-    let (reach, to) = ((length / 2).max(2), from + length);
-    let fine = (length / (2 * SCAN_STEPS)).max(1);
-    let mut scratch = Scratch::default();
-    let mut tried: Vec<(f64, usize, usize)> = Vec::new();
-    for a in (from.saturating_sub(reach)..=from + reach).step_by(fine) {
-        for b in (to.saturating_sub(reach)..=(to + reach).min(white.motions[motion].length())).step_by(fine) {
-            if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
-                && let Some(wave) = white.half_wave(motion, a..b, &mut scratch)
-            {
-                tried.push(((wave / scanned.wider[k]).powi(2), a, b));
-            }
-        }
-    }
-    // What is over sooner is an impact, and none where the rows are too far apart to tell.
-    let shortest = (SCAN_IMPACT / scanned.step) as usize;
-    let best = tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0)).filter(|t| t.2 - t.1 >= shortest)?;
-    let near: Vec<&(f64, usize, usize)> = tried.iter().filter(|t| t.0 >= best.0 - 1.0).collect();
-    let width = |edge: fn(&(f64, usize, usize)) -> usize| {
-        let (low, high) = near.iter().fold((usize::MAX, 0), |(l, h), t| (l.min(edge(t)), h.max(edge(t))));
-        // A push need not be a half wave.
-        (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
-    };
-    Some(Pushed {
-        joint: scanned.joint,
-        motion: white.motions[motion].motion,
-        places: [best.1, best.2.saturating_sub(1)],
-        edges: [width(|t| t.1), width(|t| t.2)],
-        square: best.0,
-        doubt: 1.0,
-    })
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ pub(super) struct Wald {
     pub numbers: usize,
     /// Its amplitudes; 0 where they are not determined.
     pub amplitude: DVector<f64>,
-    /// What of the columns before it (and of the law that may be in all motion, where it may) makes of its torque there.
+    /// How much of each column before it, and of the law itself where that may be in all motion, makes its torque there.
     pub made: DVector<f64>,
     /// Inner products of its columns without what all others make of them.
     information: DMatrix<f64>,

@@ -164,15 +164,13 @@ fn of_joint(
     if range.is_empty() {
         return out;
     }
-    let Whitening { stretches, ar } = Whitening::of(units, regressors, j, residual);
-    let free: &[Vec<f64>] = &regressors.free[j];
+    let Whitening { stretches, ar, free } = Whitening::of(units, regressors, j, residual);
     let on_joint = regressors.shared.iter().chain(law).map(|c| &c[range.clone()]);
     let all: Vec<Option<Vec<f64>>> = on_joint
         .chain([&regressors.y[range.clone()]])
         .chain(companions.iter().map(Vec::as_slice))
         .map(|c| c.iter().any(|x| *x != 0.0).then(|| ar.whitened(&stretches, c)))
         .collect();
-    let free: Vec<Vec<f64>> = free.iter().map(|c| ar.whitened(&stretches, c)).collect();
     let live: Vec<usize> = (0..width).filter(|&i| all[i].is_some()).collect();
     let columns: Vec<&[f64]> =
         free.iter().map(Vec::as_slice).chain(live.iter().filter_map(|&i| all[i].as_deref())).collect();
@@ -197,6 +195,8 @@ struct Whitening {
     /// Neighbouring rows, as places among the joint's.
     stretches: Vec<Range<usize>>,
     ar: Autoregression,
+    /// What is free in every motion, white.
+    free: Vec<Vec<f64>>,
 }
 
 impl Whitening {
@@ -207,7 +207,8 @@ impl Whitening {
         let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
         let left = without_free(units, j, range, &residual[range.clone()], &regressors.free[j]);
         let ar = Autoregression::fit(&stretches, &left, HIGHEST_AR_ORDER);
-        Self { stretches, ar }
+        let free = regressors.free[j].iter().map(|c| ar.whitened(&stretches, c)).collect();
+        Self { stretches, ar, free }
     }
 }
 
@@ -220,8 +221,7 @@ pub(super) fn white_with_residual(
     residual: &[f64],
 ) -> [Vec<f64>; 2] {
     let range = &regressors.of_joint[j];
-    let Whitening { stretches, ar } = Whitening::of(units, regressors, j, residual);
-    let free: Vec<Vec<f64>> = regressors.free[j].iter().map(|c| ar.whitened(&stretches, c)).collect();
+    let Whitening { stretches, ar, free } = Whitening::of(units, regressors, j, residual);
     let white = |c: &[f64]| without_free(units, j, range, &ar.whitened(&stretches, &c[range.clone()]), &free);
     [white(column), white(residual)]
 }
