@@ -101,7 +101,11 @@ fn pushed_in_motion(
     let context = &search.model.context;
     let level = if search.model.terms.is_empty() { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
     let ringing = ringing(&search.model, &outside);
-    let left = Left { residual: &search.model.residual_on(&outside), beside: &ringing };
+    let left = Left {
+        residual: &search.model.residual_on(&outside),
+        beside: &ringing,
+        fitted: &search.model.fitted_on(&outside),
+    };
     let look = moving::look(context, &outside, &left, level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
     let design = all.as_ref().unwrap_or(&outside);

@@ -429,6 +429,9 @@ pub(super) const SCAN_STEPS: usize = 8;
 /// Least fraction of a half wave's squares that smooth curves over the joint's own state do not make. Judgement: with less,
 /// what is seen may as well be a law of a state that no other part of the motion visits.
 pub(super) const SCAN_OWN_SHAPE: f64 = 0.4;
+/// Least fraction of what these curves leave of a half wave that the columns of the model do not make. Judgement: with less the
+/// model is extrapolated to the window, and an error of a tenth in how its columns are made looks like a push.
+pub(super) const SCAN_LEFT_BY_MODEL: f64 = 0.2;
 /// Rows for each knot of these curves. Statistics: curves over a state are curves over time, too, and those of so many knots
 /// make a fifth of a half wave.
 pub(super) const SCAN_ROWS_PER_KNOT: usize = 150;
@@ -466,6 +469,9 @@ pub(super) const SCAN_LEAST_STRETCHES: usize = 8;
 /// Stretches that count as much as all joints together for the law of one joint. Statistics: size against power in the
 /// tests of `scan`.
 pub(super) const SCAN_OWN_STRETCHES: f64 = 40.0;
+/// Independent windows of all lengths in a stretch. Statistics: the lengths from a tenth of a stretch on, those that differ by
+/// less than half taken as one; what several joints feel together in the tests of `largest`.
+pub(super) const SCAN_INDEPENDENT: f64 = 30.0;
 /// Least scale of the largest squares: that of normal deviates, whose squares fall as exp(-x/2) / sqrt(x), around
 /// x = 10, where the largest of a stretch are. Statistics.
 pub(super) const SCAN_NORMAL_SCALE: f64 = 2.0 / 1.1;

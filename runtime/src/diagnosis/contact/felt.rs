@@ -35,13 +35,13 @@ impl Around<'_> {
 pub(in crate::diagnosis) struct Felt {
     motion: usize,
     places: [usize; 2],
-    /// Rows of each joint that has any: joint, rows, mean with its standard deviation.
+    /// Rows of each joint that has any: joint, rows, mean torque with its standard deviation.
     joints: Vec<(usize, Vec<usize>, JointRow)>,
 }
 
 impl Felt {
-    /// Means of the residual from the first place to the last; joints that stand still or reverse all the time say
-    /// nothing.
+    /// Mean torques from the first place to the last, as half waves beside the model have them, or, where a joint reverses there,
+    /// the residual itself; joints that stand still all the time say nothing.
     pub fn of(around: &Around<'_>, noise: &Noise, motion: usize, places: [usize; 2]) -> Self {
         let design = around.design;
         let of_joint = |joint: usize| {
@@ -50,7 +50,8 @@ impl Felt {
             let inside = |r: &usize| (places[0]..=places[1]).contains(&(design.rows[*r].centre / spacing));
             let rows: Vec<usize> = rows.filter(inside).collect();
             let sigma = noise.sigma(joint, rows.len()).filter(|_| !rows.is_empty())?;
-            let mean = rows.iter().map(|&r| around.residual[r]).sum::<f64>() / rows.len() as f64;
+            let left = rows.iter().map(|&r| around.residual[r]).sum::<f64>() / rows.len() as f64;
+            let [mean, sigma] = noise.pushed(joint, motion, places).unwrap_or([left, sigma]);
             let y = rows.iter().map(|&r| design.torque(r)).sum::<f64>() / rows.len() as f64;
             Some((joint, rows, JointRow { joint, residual: mean, y, sigma: sigma.max(1e-12) }))
         };
@@ -61,10 +62,9 @@ impl Felt {
         self.joints.iter().map(|(_, _, row)| *row).collect()
     }
 
-    /// Probability that one of all windows of the recording comes as far by accident on any joint.
+    /// Probability that one of all windows of the recording comes as far by accident on all joints together.
     pub fn doubt(&self, noise: &Noise) -> f64 {
-        let of_joint = |row: &JointRow| noise.doubt(row.joint, row.residual / row.sigma);
-        self.means().iter().map(of_joint).fold(1.0, f64::min)
+        noise.doubt(self.joints.iter().map(|(joint, _, row)| (*joint, row.residual / row.sigma)))
     }
 
     /// Torques of unit forces at the origin of a frame, in the middle.
@@ -101,8 +101,8 @@ impl Felt {
 }
 
 /// A push as a force on a link where at least two joints feel it and one force explains them all; else as the torques of
-/// the joints that feel it, among them those it was `found` on; and the probability that it is an accident, no less than the
-/// surest of these torques allows. `None` where no joint has rows there.
+/// the joints that feel it, among them those it was `found` on; and the probability that it is an accident, no less than these
+/// torques allow. `None` where no joint has rows there.
 pub(in crate::diagnosis) fn wrench(
     around: &Around<'_>,
     felt: &Felt,
@@ -122,7 +122,7 @@ pub(in crate::diagnosis) fn wrench(
             sigma: row.sigma,
         })
         .collect();
-    // No surer than what is told of it: the size of its torques over their standard deviations.
+    // No surer than what is told of it: the sizes of its torques over their standard deviations.
     let doubt = doubt.max(felt.doubt(noise));
     let many = torques.len();
     let mut push = as_torques(
@@ -166,8 +166,10 @@ fn put_force(around: &Around<'_>, felt: &Felt, means: &[JointRow], push: &mut Co
     push.force_sigma = felt.force_sigma(around, frame + 1);
 }
 
-/// The largest mean of five rows of a push, at least its whole mean.
+/// The largest mean of five rows of a push, at least its whole mean. What a fit has taken over of it is missing in all rows.
 fn largest_mean(rows: &[usize], residual: &[f64], mean: f64) -> f64 {
-    let means = rows.chunks(5).map(|c| c.iter().map(|&r| residual[r]).sum::<f64>() / c.len() as f64);
+    let of = |rows: &[usize]| rows.iter().map(|&r| residual[r]).sum::<f64>() / rows.len() as f64;
+    let missing = mean - of(rows);
+    let means = rows.chunks(5).map(|rows| of(rows) + missing);
     means.fold(mean, |a, b| if b.abs() > a.abs() { b } else { a })
 }

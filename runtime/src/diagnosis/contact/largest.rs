@@ -1,6 +1,6 @@
 //! How far the largest squares of many windows go by accident: an extreme value law, fitted to stretches of a residual.
 
-use crate::diagnosis::rules::{ONE_IN_TEN, SCAN_LEAST_STRETCHES, SCAN_NORMAL_SCALE};
+use crate::diagnosis::rules::{ONE_IN_TEN, SCAN_INDEPENDENT, SCAN_LEAST_STRETCHES, SCAN_NORMAL_SCALE};
 
 /// How far the largest squared mean of a stretch goes: Gumbel's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +47,62 @@ impl Law {
         Self { location: mean(self.location, other.location), scale: mean(self.scale, other.scale) }
     }
 
-    /// Probability that the largest of so many stretches passes a square.
-    pub fn tail(self, square: f64, stretches: usize) -> f64 {
-        -(-(stretches as f64) * (-(square - self.location) / self.scale).exp()).exp_m1()
+    /// How far a square passes what the largest of a stretch mostly is, in scales of the tail: of a stretch of noise it is
+    /// x with a density of exp(-x). Zero for all but one window of a stretch.
+    pub fn surprise(self, square: f64) -> f64 {
+        ((square - self.location) / self.scale).max(0.0)
+    }
+}
+
+/// Probability that the surprises of one window, summed over all joints, come this far by accident in a recording with
+/// `stretches` of each joint.
+///
+/// In one of [`SCAN_INDEPENDENT`] windows a joint has a surprise at all, with an exponential tail; the sum over k joints that
+/// have one follows Erlang's law. That several joints are looked at costs a factor of two or three.
+pub(super) fn doubt(surprise: f64, joints: usize, stretches: f64) -> f64 {
+    let (mut ways, mut term, mut erlang, mut expected) = (1.0, 1.0, 0.0, 0.0);
+    for k in 1..=joints {
+        ways *= (joints + 1 - k) as f64 / (k as f64 * SCAN_INDEPENDENT);
+        erlang += term;
+        term *= surprise / k as f64;
+        expected += ways * erlang;
+    }
+    -(-(stretches * SCAN_INDEPENDENT * expected * (-surprise).exp())).exp_m1()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    #[test]
+    fn surprises_that_several_joints_share_by_accident_are_as_rare_as_said() {
+        let mut rng = Pcg64::seed_from_u64(1);
+        let (joints, stretches, runs) = (6, 10, 4000);
+        let windows = stretches * SCAN_INDEPENDENT as usize;
+        let mut largest: Vec<f64> = (0..runs)
+            .map(|_| {
+                let sum = |_| -> f64 {
+                    // One window in so many has a surprise, with an exponential tail.
+                    let one = |_| (-(SCAN_INDEPENDENT * rng.random::<f64>()).ln()).max(0.0);
+                    (0..joints).map(one).sum()
+                };
+                (0..windows).map(sum).fold(0.0, f64::max)
+            })
+            .collect();
+        largest.sort_by(f64::total_cmp);
+        for share in [0.1, 0.02, 0.005] {
+            let said = doubt(largest[((1.0 - share) * runs as f64) as usize], joints, stretches as f64);
+            assert!((0.7 * share..1.4 * share).contains(&said), "{share}: {said}");
+        }
+    }
+
+    #[test]
+    fn one_joint_alone_is_judged_by_its_own_law() {
+        assert!((doubt(12.0, 1, 60.0) - 60.0 * (-12.0_f64).exp()).abs() < 1e-6);
+        let ratio = doubt(12.0, 6, 10.0) / doubt(12.0, 1, 60.0);
+        assert!((1.5..3.0).contains(&ratio), "{ratio}");
+        assert_eq!(doubt(0.0, 0, 10.0), 0.0);
     }
 }

@@ -1,8 +1,10 @@
 //! Contact: windows of time in which something outside pushed the robot.
 
+pub(in crate::diagnosis) mod absorbed;
 pub(in crate::diagnosis) mod curves;
 pub(in crate::diagnosis) mod felt;
 pub(in crate::diagnosis) mod force;
+pub(in crate::diagnosis) mod half_waves;
 pub(in crate::diagnosis) mod largest;
 pub(in crate::diagnosis) mod memory;
 pub(in crate::diagnosis) mod moving;

@@ -28,6 +28,8 @@ pub(in crate::diagnosis) struct Left<'a> {
     pub residual: &'a [f64],
     /// Columns on the same rows of which every joint may have its own part: what is like them is no push.
     pub beside: &'a [Vec<f64>],
+    /// Columns on the same rows that the model was fitted with.
+    pub fitted: &'a [Vec<f64>],
 }
 
 /// Looks for pushes in what a model leaves on the rows of a design that known contacts are left out of.
@@ -70,8 +72,12 @@ fn track(context: &Context<'_>, design: &Design, left: &Left<'_>, joint: usize) 
     let at: Vec<(usize, usize)> =
         kept.iter().map(|&r| (design.rows[r].signal, design.rows[r].centre)).collect();
     let mut beside = curves(context, joint, &at);
-    beside.extend(left.beside.iter().map(|column| kept.iter().map(|&r| column[r]).collect()));
-    Track { joint, motions, beside }
+    let on_kept = |column: &Vec<f64>| -> Vec<f64> { kept.iter().map(|&r| column[r]).collect() };
+    beside.extend(left.beside.iter().map(on_kept));
+    let of_joint = |column: &Vec<f64>| {
+        if kept.iter().any(|&r| column[r] != 0.0) { on_kept(column) } else { Vec::new() }
+    };
+    Track { joint, motions, beside, columns: left.fitted.iter().map(of_joint).collect() }
 }
 
 /// Whether a speed changes its sign within so many samples of each.

@@ -1,16 +1,18 @@
-//! Contact with a robot that moves: stretches of 0.15 to 2.4 s in which a joint's residual leans to one side.
+//! Contact with a robot that moves: stretches of 0.15 to 2.4 s in which the residual of joints leans to one side.
 //!
-//! Half waves of many lengths are fitted to the white residual (`white`), and how far the largest of their amplitudes, in
-//! standard deviations, goes in a few seconds is read off the recording's own stretches, as an extreme value law (Gumbel) of
-//! their squares. Squares of normal deviates have the exponential tail that this law belongs to, and a heavier tail shows as a
-//! larger scale. What may be a push tells nothing of this law.
+//! Half waves of many lengths are fitted to the white residual of every joint (`half_waves`), and how far the largest of their
+//! amplitudes, in standard deviations, goes in a few seconds is read off the recording's own stretches, as an extreme value law
+//! (Gumbel) of their squares (`largest`). A push is felt by all joints at the same time while their noise is their own: what
+//! joints feel in one window adds up. What may be a push on any joint tells nothing of these laws.
 
-use crate::diagnosis::contact::largest::Law;
-use crate::diagnosis::contact::memory::{Spread, widening};
-use crate::diagnosis::contact::white::{Motion, Scratch, White};
+use crate::diagnosis::contact::absorbed::put_beside;
+use crate::diagnosis::contact::half_waves::{HalfWaves, Refined, Window, lengths};
+use crate::diagnosis::contact::largest::{Law, doubt};
+use crate::diagnosis::contact::memory::Spread;
+use crate::diagnosis::contact::white::White;
 use crate::diagnosis::rules::{
-    LARGEST_PUSHED_FRACTION, SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES,
-    SCAN_LENGTHS, SCAN_OWN_STRETCHES, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH, SCAN_SUSPECT, SCAN_TOGETHER,
+    LARGEST_PUSHED_FRACTION, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES, SCAN_OWN_STRETCHES, SCAN_SUSPECT,
+    SCAN_TOGETHER,
 };
 
 /// Rows of one joint: for each motion their places on the grid of rows, increasing, and their residual.
@@ -21,6 +23,9 @@ pub(in crate::diagnosis) struct Track {
     pub motions: Vec<(bool, Vec<(usize, f64)>)>,
     /// Curves over the joint's own state that the residual is judged beside, over the rows of all motions.
     pub beside: Vec<Vec<f64>>,
+    /// Columns of the model that leaves the residual, the same number for all joints, over the rows of all motions; empty
+    /// where a column is zero on this joint.
+    pub columns: Vec<Vec<f64>>,
 }
 
 /// A window in which one joint is pushed.
@@ -35,33 +40,68 @@ pub(in crate::diagnosis) struct Pushed {
     pub edges: [f64; 2],
     /// Amplitude of the half wave over its standard deviation, squared.
     pub square: f64,
-    /// Probability that one of all windows of the recording comes as far by accident.
+    /// Probability that in one of all windows of the recording all joints together come as far by accident.
     pub doubt: f64,
 }
 
 /// What the residual of every joint does by itself.
 pub(in crate::diagnosis) struct Noise {
-    /// Spread of means and law of the largest of them, by joint; `None` where there are too few rows.
-    joints: Vec<Option<(Spread, Law)>>,
-    /// Stretches of all joints.
+    /// By joint; `None` where there are too few rows.
+    joints: Vec<Option<Own>>,
+    chances: Chances,
+}
+
+/// The same of one joint.
+struct Own {
+    /// Of means of the residual as it is.
+    spread: Spread,
+    /// Beside the model.
+    waves: HalfWaves,
+    law: Law,
+}
+
+/// How many joints and stretches a recording has.
+#[derive(Debug, Clone, Copy)]
+struct Chances {
+    joints: usize,
+    /// Of all joints.
     stretches: usize,
+}
+
+impl Chances {
+    /// Probability that the surprise of a joint comes this far by accident.
+    fn of_one(self, surprise: f64) -> f64 {
+        doubt(surprise, 1, self.stretches as f64)
+    }
+
+    /// The same of the sum over all joints.
+    fn of_all(self, surprise: f64) -> f64 {
+        doubt(surprise, self.joints, self.stretches as f64 / self.joints as f64)
+    }
 }
 
 impl Noise {
     /// Standard deviation of a mean of a joint's residual over so many rows.
     pub fn sigma(&self, joint: usize, rows: usize) -> Option<f64> {
-        self.joints.get(joint)?.as_ref().map(|(spread, _)| spread.of_mean(rows))
+        self.joints.get(joint)?.as_ref().map(|own| own.spread.of_mean(rows))
     }
 
-    /// Probability that a mean as many standard deviations from zero is an accident.
-    pub fn doubt(&self, joint: usize, deviations: f64) -> f64 {
-        let law = self.joints.get(joint).and_then(Option::as_ref).map(|(_, law)| *law);
-        law.map_or(1.0, |law| law.tail(deviations * deviations, self.stretches))
+    /// Mean of what pushes a joint over places of a motion, N.m or N, and its standard deviation, beside all that the model
+    /// makes of it; `None` where too few rows tell.
+    pub fn pushed(&self, joint: usize, motion: usize, places: [usize; 2]) -> Option<[f64; 2]> {
+        self.joints.get(joint)?.as_ref()?.waves.mean(motion, places[0]..places[1] + 1)
+    }
+
+    /// Probability that the means of joints, `(joint, standard deviations from zero)`, come as far in one of all windows of
+    /// the recording by accident.
+    pub fn doubt(&self, means: impl Iterator<Item = (usize, f64)>) -> f64 {
+        let surprise = |(joint, deviations): (usize, f64)| {
+            Some(self.joints.get(joint)?.as_ref()?.law.surprise(deviations * deviations))
+        };
+        let surprise = means.filter_map(surprise).sum();
+        if surprise > 0.0 { self.chances.of_all(surprise) } else { 1.0 }
     }
 }
-
-/// Windows of one motion with their squared deviations: from a place on, by the length's number.
-type Seen = Vec<(f64, usize, usize)>;
 
 /// Windows in which joints are pushed, most certain first, none overlapping another on its joint; and what the residuals
 /// do by themselves.
@@ -69,113 +109,129 @@ type Seen = Vec<(f64, usize, usize)>;
 /// `step` is the time from one place to the next, s. With a baseline of at least as many stretches as the recording,
 /// the law comes from the baseline.
 pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64, level: f64) -> (Vec<Pushed>, Noise) {
-    let lengths = lengths(step);
-    let mut joints: Vec<Joint<'_>> =
-        tracks.iter().filter_map(|track| Joint::of(track, &lengths, step)).collect();
-    let stretches = joints.iter().map(|joint| joint.stretches(true, &lengths).len()).sum::<usize>().max(1);
-    // A window that may be a push says nothing of what the residual does by itself: the law is told by all others, until no
-    // candidate is left that is none by it.
-    fit_laws(&mut joints, &lengths);
-    for joint in &mut joints {
-        joint.candidates = joint.beyond(SCAN_SUSPECT, &lengths, stretches);
+    let mut scan = Scan::of(tracks, step);
+    // A push bends the fit of the model, and what it leaves elsewhere: the next largest is looked for beside it.
+    while let Some(candidate) = scan.surest() {
+        scan.candidates.push(candidate);
+        scan.look();
     }
-    loop {
-        let others = fit_laws(&mut joints, &lengths);
-        let dropped =
-            joints.iter_mut().zip(others).map(|(joint, own)| joint.drop_accidents(own, level, stretches));
-        if dropped.sum::<usize>() == 0 {
-            break;
-        }
+    // Beside what may be pushes, what all other windows do is what the residual does by itself. What is no push by that is one
+    // of them.
+    while scan.drop_accidents(level) {
+        scan.look();
     }
-    let of_track = |track: &Track| joints.iter().find(|j| j.track.joint == track.joint)?.noise(&lengths);
-    let noise = Noise { joints: tracks.iter().map(of_track).collect(), stretches };
-    let mut found: Vec<Pushed> = joints.into_iter().flat_map(Joint::pushes).collect();
+    let mut found = scan.pushes();
+    let noise = scan.noise(tracks);
     found.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.square.total_cmp(&a.square)));
     (found, noise)
 }
 
-/// Whether places of a motion are next to those of a push.
-fn is_near(pushes: &[Pushed], motion: usize, [from, to]: [usize; 2], gap: usize) -> bool {
-    let mut own = pushes.iter().filter(|p| p.motion == motion);
-    own.any(|p| from <= p.places[1] + gap && p.places[0] <= to + gap)
-}
-
-/// One joint with its windows, and those that may be pushes.
-struct Joint<'a> {
-    track: &'a Track,
+/// The joints of a recording with what may be pushes.
+struct Scan<'a> {
+    lengths: Vec<usize>,
     /// From one place to the next, s.
     step: f64,
+    joints: Vec<Joint<'a>>,
+    chances: Chances,
+    candidates: Vec<Candidate>,
+}
+
+/// One joint that is scanned.
+struct Joint<'a> {
+    track: &'a Track,
+    /// Its residual as the model leaves it.
     white: White,
-    /// How much wider than one the deviations of each length spread.
-    wider: Vec<f64>,
-    /// Windows of each motion.
-    seen: Vec<Seen>,
-    candidates: Vec<Pushed>,
+    /// The same beside the candidates.
+    waves: HalfWaves,
     /// What its largest windows do by themselves; `None` where there are too few of all joints.
     law: Option<Law>,
 }
 
-/// The law of the largest windows of each joint, from those that overlap no candidate: its own, and that of all joints. Returns
-/// these windows of each joint.
-fn fit_laws(joints: &mut [Joint<'_>], lengths: &[usize]) -> Vec<Vec<f64>> {
-    let of_joint = |joint: &Joint<'_>| {
-        let (before, now) = (joint.stretches(false, lengths), joint.stretches(true, lengths));
-        if before.len() >= now.len().max(SCAN_LEAST_STRETCHES) { before } else { now }
-    };
-    let mut of_joints: Vec<Vec<f64>> = joints.iter().map(of_joint).collect();
-    let common = Law::of(&mut of_joints.concat());
-    for (joint, own) in joints.iter_mut().zip(&mut of_joints) {
-        let count = own.len() as f64;
-        let law = |common| Law::of(own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
-        joint.law = common.map(law);
-    }
-    of_joints
+/// What may be a push.
+struct Candidate {
+    pushed: Pushed,
+    /// Squared deviations of all joints at its places, as far as they have rows there.
+    felt: Vec<Option<f64>>,
 }
 
-impl<'a> Joint<'a> {
-    /// With the windows of every motion, and nothing found yet. `None` where there are too few rows.
-    fn of(track: &'a Track, lengths: &[usize], step: f64) -> Option<Self> {
-        let rows: usize = track.motions.iter().map(|m| m.1.len()).sum();
-        if rows < SCAN_LEAST_ROWS {
-            return None;
-        }
-        let white = White::of(&track.motions, &track.beside)?;
-        let mut seen: Vec<Seen> = vec![Vec::new(); white.motions.len()];
-        let mut wider = Vec::with_capacity(lengths.len());
-        let mut scratch = Scratch::default();
-        for (k, &length) in lengths.iter().enumerate() {
-            let mut deviations = Vec::new();
-            let from = seen.iter().map(Vec::len).collect::<Vec<_>>();
-            for (m, seen) in seen.iter_mut().enumerate() {
-                let last = (white.motions[m].length() + 1).saturating_sub(length);
-                for from in (0..last).step_by((length / SCAN_STEPS).max(1)) {
-                    if let Some(wave) = white.half_wave(m, from..from + length, &mut scratch) {
-                        seen.push((wave, from, k));
-                        deviations.push(wave);
-                    }
-                }
+impl Pushed {
+    /// Whether places of a motion are next to it.
+    fn is_near(&self, motion: usize, [from, to]: [usize; 2], gap: usize) -> bool {
+        self.motion == motion && from <= self.places[1] + gap && self.places[0] <= to + gap
+    }
+}
+
+impl<'a> Scan<'a> {
+    /// Without any candidate.
+    fn of(tracks: &'a [Track], step: f64) -> Self {
+        let lengths = lengths(step);
+        let enough = |t: &&Track| t.motions.iter().map(|m| m.1.len()).sum::<usize>() >= SCAN_LEAST_ROWS;
+        let mut joints = Vec::new();
+        for track in tracks.iter().filter(enough) {
+            if let Some(white) = White::of(&track.motions, &track.beside) {
+                joints.push(Joint {
+                    track,
+                    waves: HalfWaves::of(white.clone(), &[], step),
+                    white,
+                    law: None,
+                });
             }
-            let factor = widening(&mut deviations, 1.0, rows as f64 / length as f64);
-            for (seen, from) in seen.iter_mut().zip(from) {
-                seen[from..].iter_mut().for_each(|s| s.0 = (s.0 / factor).powi(2));
-            }
-            wider.push(factor);
         }
-        Some(Self { track, step, white, wider, seen, candidates: Vec::new(), law: None })
+        let chances = Chances { joints: joints.len(), stretches: 1 };
+        let mut scan = Self { lengths, step, joints, chances, candidates: Vec::new() };
+        scan.look();
+        let stretches = |joint: &Joint<'_>| joint.waves.largest(true, |_| true).len();
+        scan.chances.stretches = scan.joints.iter().map(stretches).sum::<usize>().max(1);
+        scan
     }
 
-    /// The largest squared deviation of a window in each stretch of the recording, or of its baseline, that overlaps no
-    /// candidate.
-    fn stretches(&self, target: bool, lengths: &[usize]) -> Vec<f64> {
-        let motions = self.white.motions.iter().zip(&self.seen).filter(|(m, _)| m.is_target == target);
-        motions
-            .flat_map(|(motion, seen)| {
-                let is_free = |&(_, from, k): &(f64, usize, usize)| {
-                    !is_near(&self.candidates, motion.motion, [from, from + lengths[k]], self.gap())
-                };
-                largest(motion, seen.iter().filter(|w| is_free(w)), lengths, self.step)
-            })
-            .collect()
+    /// Looks at all windows beside the model and the candidates: their half waves, and the laws of those away from candidates.
+    fn look(&mut self) {
+        self.update_waves();
+        self.fit_laws();
+    }
+
+    fn update_waves(&mut self) {
+        let columns: Vec<Vec<Vec<f64>>> = (0..self.joints.len()).map(|j| self.columns(j)).collect();
+        let mut whites: Vec<White> = self.joints.iter().map(|joint| joint.white.clone()).collect();
+        put_beside(&mut whites, &columns);
+        for (joint, white) in self.joints.iter_mut().zip(whites) {
+            joint.waves = HalfWaves::of(white, &self.lengths, self.step);
+        }
+    }
+
+    /// The columns of the model on the rows of a joint, and a half wave of each joint for each candidate.
+    fn columns(&self, joint: usize) -> Vec<Vec<f64>> {
+        let Joint { track, white, .. } = &self.joints[joint];
+        let mut columns = track.columns.clone();
+        for Candidate { pushed, .. } in &self.candidates {
+            let places = pushed.places[0]..pushed.places[1] + 1;
+            let of = |j| {
+                if j == joint { white.rows_of_half_wave(pushed.motion, places.clone()) } else { Vec::new() }
+            };
+            columns.extend((0..self.joints.len()).map(of));
+        }
+        columns
+    }
+
+    /// The law of the largest windows of each joint, from those away from candidates: its own, and that of all joints. Returns
+    /// these windows of each joint.
+    fn fit_laws(&mut self) -> Vec<Vec<f64>> {
+        let mut of_joints: Vec<Vec<f64>> = self.joints.iter().map(|joint| self.largest(joint)).collect();
+        let common = Law::of(&mut of_joints.concat());
+        for (joint, own) in self.joints.iter_mut().zip(&mut of_joints) {
+            let count = own.len() as f64;
+            let law = |common| Law::of(own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
+            joint.law = common.map(law);
+        }
+        of_joints
+    }
+
+    /// The largest squared deviation of each stretch away from candidates: of the baseline where it has enough of them.
+    fn largest(&self, joint: &Joint<'_>) -> Vec<f64> {
+        let is_free = |(motion, places)| !self.is_near(motion, places, self.gap());
+        let (before, now) = (joint.waves.largest(false, is_free), joint.waves.largest(true, is_free));
+        if before.len() >= now.len().max(SCAN_LEAST_STRETCHES) { before } else { now }
     }
 
     /// Places between pushes that are two.
@@ -183,102 +239,94 @@ impl<'a> Joint<'a> {
         (SCAN_TOGETHER / self.step) as usize
     }
 
-    /// Windows beyond a level, the largest first, none next to another.
-    fn beyond(&self, level: f64, lengths: &[usize], stretches: usize) -> Vec<Pushed> {
-        let Some(law) = self.law else { return Vec::new() };
-        let (gap, mut found) = (self.gap(), Vec::new());
-        for (m, seen) in self.seen.iter().enumerate().filter(|(m, _)| self.white.motions[*m].is_target) {
-            let passes = |s: &&(f64, usize, usize)| law.tail(s.0, stretches) <= level;
-            let mut beyond: Vec<&(f64, usize, usize)> = seen.iter().filter(passes).collect();
-            beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
-            for &&(_, from, k) in &beyond {
-                if !is_near(&found, m, [from, from + lengths[k]], gap) {
-                    found.extend(self.refined(m, (from, k), lengths));
-                }
-            }
-        }
-        found
+    /// Whether places of a motion are next to a candidate.
+    fn is_near(&self, motion: usize, places: [usize; 2], gap: usize) -> bool {
+        self.candidates.iter().any(|c| c.pushed.is_near(motion, places, gap))
     }
 
-    /// The window of any length near one of the grid whose half wave fits best, not judged yet, with how well its edges are
-    /// known: as far as the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere.
-    fn refined(&self, motion: usize, (from, k): (usize, usize), lengths: &[usize]) -> Option<Pushed> {
-        let (white, length) = (&self.white, lengths[k]);
-        let (reach, to) = ((length / 2).max(2), from + length);
-        let fine = (length / (2 * SCAN_STEPS)).max(1);
-        let mut scratch = Scratch::default();
-        let mut tried: Vec<(f64, usize, usize)> = Vec::new();
-        for a in (from.saturating_sub(reach)..=from + reach).step_by(fine) {
-            for b in
-                (to.saturating_sub(reach)..=(to + reach).min(white.motions[motion].length())).step_by(fine)
-            {
-                if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
-                    && let Some(wave) = white.half_wave(motion, a..b, &mut scratch)
-                {
-                    tried.push(((wave / self.wider[k]).powi(2), a, b));
-                }
-            }
+    /// Of the windows in which one joint does what it does by accident in one of [`SCAN_SUSPECT`] recordings the surest; as long
+    /// as all of them are an exception.
+    fn surest(&self) -> Option<Candidate> {
+        let mut beyond: Vec<(f64, &Joint<'_>, usize, Window)> = Vec::new();
+        for joint in &self.joints {
+            let Some(law) = joint.law else { continue };
+            let surprise = |(motion, w): (usize, Window)| (law.surprise(w.square), joint, motion, w);
+            let windows = joint.waves.of_targets().map(surprise);
+            beyond.extend(windows.filter(|(surprise, ..)| self.chances.of_one(*surprise) <= SCAN_SUSPECT));
         }
-        // What is over sooner is an impact, and none where the rows are too far apart to tell.
-        let shortest = (SCAN_IMPACT / self.step) as usize;
-        let best =
-            tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0)).filter(|t| t.2 - t.1 >= shortest)?;
-        let near: Vec<&(f64, usize, usize)> = tried.iter().filter(|t| t.0 >= best.0 - 1.0).collect();
-        let width = |edge: fn(&(f64, usize, usize)) -> usize| {
-            let (low, high) = near.iter().fold((usize::MAX, 0), |(l, h), t| (l.min(edge(t)), h.max(edge(t))));
-            // A push need not be a half wave.
-            (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
-        };
-        Some(Pushed {
-            joint: self.track.joint,
-            motion: white.motions[motion].motion,
-            places: [best.1, best.2.saturating_sub(1)],
-            edges: [width(|t| t.1), width(|t| t.2)],
-            square: best.0,
-            doubt: 1.0,
-        })
+        beyond.retain(|(_, joint, motion, w)| !self.is_near(*motion, joint.waves.places(*w), self.gap()));
+        beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let pushed: usize = self.candidates.iter().map(|c| c.pushed.places[1] + 1 - c.pushed.places[0]).sum();
+        let is_exception =
+            |joint: &Joint<'_>| pushed as f64 <= LARGEST_PUSHED_FRACTION * joint.waves.targets() as f64;
+        beyond.into_iter().filter(|(_, joint, ..)| is_exception(joint)).find_map(
+            |(_, joint, motion, window)| {
+                let Refined { square, from, to, edges } = joint.waves.refined(motion, window)?;
+                let felt = |joint: &Joint<'_>| joint.waves.square(motion, from..to, window.length);
+                let (joint, places) = (joint.track.joint, [from, to - 1]);
+                let pushed = Pushed { joint, motion, places, edges, square, doubt: 1.0 };
+                Some(Candidate { pushed, felt: self.joints.iter().map(felt).collect() })
+            },
+        )
     }
 
-    /// Drops the candidates that do not pass a level by what all `others` do, and says how many these are. Where windows that
-    /// are no push stand out, as at every knock of a gear with play, the law has a longer tail.
-    fn drop_accidents(&mut self, mut others: Vec<f64>, level: f64, stretches: usize) -> usize {
+    /// Judges the candidates by what all other windows do, and drops those that do not pass a level; whether there were any. Where
+    /// windows that are no push stand out, as at every knock of a gear with play, the law has a longer tail.
+    fn drop_accidents(&mut self, level: f64) -> bool {
+        let others = self.fit_laws();
+        for (joint, mut others) in self.joints.iter_mut().zip(others) {
+            joint.law = joint.law.map(|law| law.with_tail(&mut others));
+        }
         let before = self.candidates.len();
-        self.law = self.law.map(|law| law.with_tail(&mut others));
-        let law = self.law;
-        self.candidates
-            .iter_mut()
-            .for_each(|p| p.doubt = law.map_or(1.0, |law| law.tail(p.square, stretches)));
-        self.candidates.retain(|p| p.doubt <= level);
-        before - self.candidates.len()
+        for candidate in &mut self.candidates {
+            let surprise = |(joint, felt): (&Joint<'_>, &Option<f64>)| Some(joint.law?.surprise((*felt)?));
+            let surprise = self.joints.iter().zip(&candidate.felt).filter_map(surprise).sum();
+            candidate.pushed.doubt = self.chances.of_all(surprise);
+        }
+        self.candidates.retain(|c| c.pushed.doubt <= level);
+        self.candidates.len() < before
     }
 
-    /// What its residual does by itself outside of its candidates; `None` where it has too few rows there.
-    fn noise(&self, lengths: &[usize]) -> Option<(Spread, Law)> {
-        let outside = |m: usize| -> Vec<(usize, f64)> {
-            let is_pushed = |place: usize| is_near(&self.candidates, m, [place; 2], 0);
-            self.track.motions[m].1.iter().copied().filter(|(place, _)| !is_pushed(*place)).collect()
+    /// The candidates, where those of a joint take so little of the motion that they are an exception.
+    fn pushes(&self) -> Vec<Pushed> {
+        let of_joint = |joint: &Joint<'_>| {
+            let own = self.candidates.iter().map(|c| &c.pushed).filter(|p| p.joint == joint.track.joint);
+            let pushed: usize = own.clone().map(|p| p.places[1] + 1 - p.places[0]).sum();
+            let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * joint.waves.targets() as f64;
+            if few { own.cloned().collect() } else { Vec::new() }
         };
-        let rows: Vec<Vec<(usize, f64)>> = (0..self.track.motions.len()).map(outside).collect();
+        self.joints.iter().flat_map(of_joint).collect()
+    }
+
+    /// What the residuals do by themselves away from candidates, with half waves beside the model alone.
+    fn noise(mut self, tracks: &[Track]) -> Noise {
+        let spreads: Vec<Option<Spread>> = self.joints.iter().map(|joint| self.spread(joint.track)).collect();
+        self.candidates.clear();
+        self.update_waves();
+        let mut joints: Vec<Option<Own>> = tracks.iter().map(|_| None).collect();
+        for (joint, spread) in self.joints.into_iter().zip(spreads) {
+            let own = spread.map(|spread| Own {
+                spread,
+                waves: joint.waves,
+                law: joint.law.unwrap_or(Law::NORMAL),
+            });
+            if let Some(place) = joints.get_mut(joint.track.joint) {
+                *place = own;
+            }
+        }
+        Noise { joints, chances: self.chances }
+    }
+
+    /// How far means of the residual of a joint wander away from candidates; `None` where it has too few rows there.
+    fn spread(&self, track: &Track) -> Option<Spread> {
+        let away = |motion: usize| -> Vec<(usize, f64)> {
+            let is_free = |place: usize| !self.is_near(motion, [place; 2], 0);
+            track.motions[motion].1.iter().copied().filter(|(place, _)| is_free(*place)).collect()
+        };
+        let rows: Vec<Vec<(usize, f64)>> = (0..track.motions.len()).map(away).collect();
         let rows: Vec<&[(usize, f64)]> = rows.iter().map(Vec::as_slice).collect();
-        Spread::of(&rows, lengths).map(|spread| (spread, self.law.unwrap_or(Law::NORMAL)))
+        Spread::of(&rows, &self.lengths)
     }
-
-    /// The candidates, where they take so little of the motion that they are an exception.
-    fn pushes(self) -> Vec<Pushed> {
-        let pushed: usize = self.candidates.iter().map(|p| p.places[1] + 1 - p.places[0]).sum();
-        let targets = self.white.motions.iter().filter(|m| m.is_target);
-        let places: usize = targets.map(Motion::length).sum();
-        let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * places as f64;
-        if few { self.candidates } else { Vec::new() }
-    }
-}
-
-/// Lengths of windows in rows, each once.
-fn lengths(step: f64) -> Vec<usize> {
-    let mut lengths: Vec<usize> =
-        SCAN_LENGTHS.iter().map(|l| ((l / step).round() as usize).max(SCAN_SHORTEST)).collect();
-    lengths.dedup();
-    lengths
 }
 
 /// Windows of several joints that are one push, in the order of time.
@@ -287,32 +335,12 @@ pub(in crate::diagnosis) fn together(mut pushed: Vec<Pushed>, step: f64) -> Vec<
     pushed.sort_by_key(|p| (p.motion, p.places[0]));
     let mut groups: Vec<Vec<Pushed>> = Vec::new();
     for p in pushed {
-        match groups.last_mut().filter(|g| is_near(g, p.motion, p.places, gap)) {
+        match groups.last_mut().filter(|g| g.iter().any(|other| other.is_near(p.motion, p.places, gap))) {
             Some(group) => group.push(p),
             None => groups.push(vec![p]),
         }
     }
     groups
-}
-
-/// Largest squared deviation of these windows of a motion in each stretch of it that has enough rows.
-fn largest<'a>(
-    motion: &Motion,
-    windows: impl Iterator<Item = &'a (f64, usize, usize)>,
-    lengths: &[usize],
-    step: f64,
-) -> Vec<f64> {
-    let stretch = ((SCAN_STRETCH / step).round() as usize).max(1);
-    let mut out = vec![None::<f64>; motion.length() / stretch];
-    for &(square, from, k) in windows {
-        if let Some(slot) = out.get_mut((from + lengths[k] / 2) / stretch) {
-            *slot = Some(slot.map_or(square, |x| x.max(square)));
-        }
-    }
-    let before = |place: usize| motion.places.partition_point(|p| *p < place);
-    let filled = |k: usize| before((k + 1) * stretch) - before(k * stretch);
-    let is_filled = |k: usize| filled(k) as f64 >= SCAN_FILLED * stretch as f64;
-    (0..out.len()).filter(|&k| is_filled(k)).filter_map(|k| out[k]).collect()
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ fn noise(rng: &mut Pcg64) -> Vec<Track> {
                 })
                 .filter(|(k, _)| (k + phase) % period > 4)
                 .collect();
-            Track { joint, motions: vec![(true, rows)], beside: vec![] }
+            Track { joint, motions: vec![(true, rows)], beside: vec![], columns: vec![] }
         })
         .collect()
 }
@@ -144,8 +144,12 @@ fn edges_are_as_uncertain_as_they_say() {
 
 #[test]
 fn few_rows_are_not_scanned() {
-    let short =
-        Track { joint: 0, motions: vec![(true, (0..50).map(|k| (k, 1.0)).collect())], beside: vec![] };
+    let short = Track {
+        joint: 0,
+        motions: vec![(true, (0..50).map(|k| (k, 1.0)).collect())],
+        beside: vec![],
+        columns: vec![],
+    };
     assert!(scan(&[short], STEP, LEVEL).0.is_empty());
     assert!(scan(&[], STEP, LEVEL).0.is_empty());
 }

@@ -4,14 +4,16 @@
 //! generalised least squares: an autoregression makes the residual and the half wave white (Cochrane and Orcutt 1949),
 //! and both are taken orthogonal to smooth curves over the joint's own state (Frisch and Waugh 1933). What repeats with
 //! position, speed or load is then no push, and a push in a state that no other part of the motion visits has nothing
-//! left that would tell it.
+//! left that would tell it. Both are taken orthogonal to the columns of the model, too, on all joints together
+//! (`absorbed`): a fit takes over a part of every push, and of the noise, and what it leaves is smaller than either.
 
 use crate::diagnosis::contact::memory::Memory;
-use crate::diagnosis::rules::{SCAN_OWN_SHAPE, SCAN_PRESENT, SIGMA_PER_MAD};
+use crate::diagnosis::rules::{SCAN_LEFT_BY_MODEL, SCAN_OWN_SHAPE, SCAN_PRESENT, SIGMA_PER_MAD};
 use crate::statistics::median::median;
 use std::ops::Range;
 
 /// Rows of one motion.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct Motion {
     /// Number of the motion.
     pub motion: usize,
@@ -24,15 +26,21 @@ pub(in crate::diagnosis) struct Motion {
 }
 
 /// One joint's rows, white.
+#[derive(Clone)]
 pub(in crate::diagnosis) struct White {
     pub motions: Vec<Motion>,
     memory: Memory,
     /// First row of the stretch of neighbouring rows that each row is in, and the row after its last.
     stretch: Vec<[usize; 2]>,
     /// White residual, in its own standard deviations, orthogonal to the curves.
-    residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     /// White curves, orthonormal.
     curves: Vec<Vec<f64>>,
+    /// This joint's part of white columns that are orthonormal over all joints, those that are zero here left out: what the fit
+    /// of a model takes over.
+    pub(super) absorbed: Vec<Vec<f64>>,
+    /// Standard deviation of the white residual, N.m or N.
+    pub(super) sigma: f64,
 }
 
 impl White {
@@ -58,18 +66,41 @@ impl White {
         let neighbours: Vec<Vec<(usize, f64)>> = kept.iter().map(|m| m.rows(&left)).collect();
         let neighbours: Vec<&[(usize, f64)]> = neighbours.iter().map(Vec::as_slice).collect();
         let memory = Memory::of(&neighbours)?;
-        let mut white = Self { motions: kept, memory, stretch, residual: Vec::new(), curves: Vec::new() };
+        let mut white = Self {
+            motions: kept,
+            memory,
+            stretch,
+            residual: Vec::new(),
+            curves: Vec::new(),
+            absorbed: Vec::new(),
+            sigma: 1.0,
+        };
         white.curves = orthonormal(beside.iter().map(|c| white.whitened(c)).collect());
         white.residual = without(&white.whitened(&left), &white.curves);
-        let mut absolute: Vec<f64> = white.residual.iter().map(|x| x.abs()).collect();
-        let free = white.residual.len() as f64
-            / white.residual.len().saturating_sub(white.curves.len()).max(1) as f64;
-        let sigma = SIGMA_PER_MAD * median(&mut absolute) * free.sqrt();
-        if !(sigma.is_finite() && sigma > 0.0) {
-            return None;
+        white.scale().then_some(white)
+    }
+
+    /// Divides the residual by its standard deviation, if it has one: from the median of its absolute values, of as many as the
+    /// curves and the model leave free.
+    pub(super) fn scale(&mut self) -> bool {
+        let rows = self.residual.len() as f64;
+        let absorbed: f64 = self.absorbed.iter().flatten().map(|x| x * x).sum();
+        let free = (rows - self.curves.len() as f64 - absorbed).max(1.0);
+        let mut absolute: Vec<f64> = self.residual.iter().map(|x| x.abs()).collect();
+        let sigma = SIGMA_PER_MAD * median(&mut absolute) * (rows / free).sqrt();
+        let has_spread = sigma.is_finite() && sigma > 0.0;
+        if has_spread {
+            self.residual.iter_mut().for_each(|x| *x /= sigma);
+            self.sigma *= sigma;
         }
-        white.residual.iter_mut().for_each(|x| *x /= sigma);
-        Some(white)
+        has_spread
+    }
+
+    /// A column over all rows, white, orthogonal to the curves, in standard deviations of the residual.
+    pub(super) fn column(&self, x: &[f64]) -> Vec<f64> {
+        let mut column = without(&self.whitened(x), &self.curves);
+        column.iter_mut().for_each(|x| *x /= self.sigma);
+        column
     }
 
     /// Innovations of a series over all rows.
@@ -84,21 +115,32 @@ impl White {
         at(places.start)..at(places.end)
     }
 
-    /// Amplitude, over its standard deviation, of the half wave over places of a motion; `None` where too few of its rows are there, or the curves over the joint's
-    /// state make most of it. `scratch` is kept between calls.
-    pub fn half_wave(&self, motion: usize, places: Range<usize>, scratch: &mut Scratch) -> Option<f64> {
-        let length = places.len() as f64;
+    /// The half wave over places of a motion, over all rows.
+    pub fn rows_of_half_wave(&self, motion: usize, places: Range<usize>) -> Vec<f64> {
+        let mut rows = vec![0.0; self.residual.len()];
+        for r in self.within(motion, &places) {
+            rows[r] = self.height(motion, r, &places);
+        }
+        rows
+    }
+
+    /// Height of a half wave at a row.
+    fn height(&self, motion: usize, row: usize, places: &Range<usize>) -> f64 {
+        let m = &self.motions[motion];
+        let at = (m.places[row - m.first] - places.start) as f64 + 0.5;
+        (std::f64::consts::PI * at / places.len() as f64).sin()
+    }
+
+    /// Amplitude of the half wave over places of a motion, N.m or N, and its standard deviation; `None` where too few of its rows
+    /// are there, or the curves over the joint's state or the model make most of it. `scratch` is kept between calls.
+    pub fn half_wave(&self, motion: usize, places: Range<usize>, scratch: &mut Scratch) -> Option<[f64; 2]> {
         let rows = self.within(motion, &places);
-        if (rows.len() as f64) < SCAN_PRESENT * length || rows.len() < 2 {
+        if (rows.len() as f64) < SCAN_PRESENT * places.len() as f64 || rows.len() < 2 {
             return None;
         }
-        let m = &self.motions[motion];
         let reach = (rows.end + self.memory.order()).min(self.stretch[rows.end - 1][1]);
         scratch.wave.clear();
-        scratch.wave.extend(rows.clone().map(|r| {
-            let at = (m.places[r - m.first] - places.start) as f64 + 0.5;
-            (std::f64::consts::PI * at / length).sin()
-        }));
+        scratch.wave.extend(rows.clone().map(|r| self.height(motion, r, &places)));
         scratch.wave.resize(reach - rows.start, 0.0);
         scratch.white.clear();
         for t in rows.start..reach {
@@ -109,11 +151,14 @@ impl White {
         let dot =
             |x: &[f64]| x[rows.start..reach].iter().zip(&scratch.white).map(|(a, b)| a * b).sum::<f64>();
         let whole: f64 = scratch.white.iter().map(|x| x * x).sum();
-        let own = whole - self.curves.iter().map(|c| dot(c).powi(2)).sum::<f64>();
+        let made = |columns: &[Vec<f64>]| columns.iter().map(|c| dot(c).powi(2)).sum::<f64>();
+        let own = whole - made(&self.curves);
         if !own.is_finite() || own <= SCAN_OWN_SHAPE * whole {
             return None;
         }
-        Some(dot(&self.residual) / own.sqrt())
+        let left = own - made(&self.absorbed);
+        let amplitude = || [self.sigma * dot(&self.residual) / left, self.sigma / left.sqrt()];
+        (left > SCAN_LEFT_BY_MODEL * own).then(amplitude)
     }
 }
 

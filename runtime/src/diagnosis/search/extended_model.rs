@@ -177,6 +177,18 @@ impl<'a> ExtendedModel<'a> {
         dense_columns(&self.context, design, term.effect, term.place, &term.shape, self.change)
     }
 
+    /// The columns on the rows of another design of the same motions whose amplitudes the motions tell: the base parameters, but
+    /// where a reference knows them, friction and nuisances, and the laws that were found.
+    pub fn fitted_on(&self, design: &Design) -> Vec<Vec<f64>> {
+        let known = self.context.reference.is_some() && self.context.is_alone();
+        let mut columns = if known { Vec::new() } else { design.columns.clone() };
+        columns.extend(always_there(&self.context, design, self.change).split_off(SKEW_COLUMNS));
+        for term in self.terms.iter().filter(|term| term.fixed.is_none()) {
+            columns.extend(self.columns_of(design, term));
+        }
+        columns
+    }
+
     /// What the model with all terms leaves of the torques on the rows of another design of the same motions.
     pub fn residual_on(&self, design: &Design) -> Vec<f64> {
         let mut residual = design.y.clone();

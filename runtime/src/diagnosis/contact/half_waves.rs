@@ -1,0 +1,165 @@
+//! Half waves of many lengths in the white residual of one joint.
+
+use crate::diagnosis::contact::memory::widening;
+use crate::diagnosis::contact::white::{Motion, Scratch, White};
+use crate::diagnosis::rules::{
+    SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LENGTHS, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH,
+};
+use std::ops::Range;
+
+/// One joint with all of its windows.
+pub(super) struct HalfWaves {
+    white: White,
+    /// Lengths of windows, places.
+    lengths: Vec<usize>,
+    /// How much wider than one the deviations of each length spread.
+    wider: Vec<f64>,
+    /// Windows of each motion.
+    windows: Vec<Vec<Window>>,
+    /// From one place to the next, s.
+    step: f64,
+}
+
+/// A window of the grid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    /// Squared deviation of its half wave's amplitude from zero.
+    pub square: f64,
+    /// First place.
+    from: usize,
+    /// Number of its length.
+    pub length: usize,
+}
+
+/// The window whose half wave fits best.
+pub(super) struct Refined {
+    /// Squared deviation.
+    pub square: f64,
+    /// First place.
+    pub from: usize,
+    /// The place after its last.
+    pub to: usize,
+    /// Standard deviations of both, in places.
+    pub edges: [f64; 2],
+}
+
+/// Lengths of windows in rows, each once; `step` is the time from one to the next, s.
+pub(super) fn lengths(step: f64) -> Vec<usize> {
+    let mut lengths: Vec<usize> =
+        SCAN_LENGTHS.iter().map(|l| ((l / step).round() as usize).max(SCAN_SHORTEST)).collect();
+    lengths.dedup();
+    lengths
+}
+
+impl HalfWaves {
+    /// All windows of these lengths; `step` is the time from one place to the next, s.
+    pub fn of(white: White, lengths: &[usize], step: f64) -> Self {
+        let rows: usize = white.motions.iter().map(|m| m.places.len()).sum();
+        let mut windows: Vec<Vec<Window>> = vec![Vec::new(); white.motions.len()];
+        let mut wider = Vec::with_capacity(lengths.len());
+        let mut scratch = Scratch::default();
+        for (k, &length) in lengths.iter().enumerate() {
+            let mut deviations = Vec::new();
+            let from = windows.iter().map(Vec::len).collect::<Vec<_>>();
+            for (m, windows) in windows.iter_mut().enumerate() {
+                let last = (white.motions[m].length() + 1).saturating_sub(length);
+                for from in (0..last).step_by((length / SCAN_STEPS).max(1)) {
+                    if let Some([wave, sigma]) = white.half_wave(m, from..from + length, &mut scratch) {
+                        windows.push(Window { square: (wave / sigma).powi(2), from, length: k });
+                        deviations.push(wave / sigma);
+                    }
+                }
+            }
+            let factor = widening(&mut deviations, 1.0, rows as f64 / length as f64);
+            for (windows, from) in windows.iter_mut().zip(from) {
+                windows[from..].iter_mut().for_each(|w| w.square /= factor * factor);
+            }
+            wider.push(factor);
+        }
+        Self { white, lengths: lengths.to_vec(), wider, windows, step }
+    }
+
+    /// Places of the recording that is diagnosed.
+    pub fn targets(&self) -> usize {
+        self.white.motions.iter().filter(|m| m.is_target).map(Motion::length).sum()
+    }
+
+    /// First place of a window, and the one after its last.
+    pub fn places(&self, window: Window) -> [usize; 2] {
+        [window.from, window.from + self.lengths[window.length]]
+    }
+
+    /// Squared deviation over places of a motion, which spreads as one of a length of the grid; `None` where too few of its
+    /// rows are there.
+    pub fn square(&self, motion: usize, places: Range<usize>, length: usize) -> Option<f64> {
+        let [wave, sigma] = self.white.half_wave(motion, places, &mut Scratch::default())?;
+        Some((wave / (sigma * self.wider[length])).powi(2))
+    }
+
+    /// Mean over places of a motion of the half wave that fits there best, N.m or N, and its standard deviation.
+    pub fn mean(&self, motion: usize, places: Range<usize>) -> Option<[f64; 2]> {
+        let length = self.lengths.iter().rposition(|length| *length <= places.len()).unwrap_or(0);
+        let wave = self.white.half_wave(motion, places, &mut Scratch::default())?;
+        Some([wave[0], wave[1] * self.wider[length]].map(|x| x * std::f64::consts::FRAC_2_PI))
+    }
+
+    /// Windows of the recording that is diagnosed, each with the number of its motion.
+    pub fn of_targets(&self) -> impl Iterator<Item = (usize, Window)> {
+        let motions = self.white.motions.iter().zip(&self.windows).filter(|(m, _)| m.is_target);
+        motions.flat_map(|(m, windows)| windows.iter().map(|window| (m.motion, *window)))
+    }
+
+    /// The largest squared deviation of a window in each stretch of the recording, or of its baseline, that has enough rows;
+    /// of windows, `(motion, places)`, that are free.
+    pub fn largest(&self, target: bool, is_free: impl Fn((usize, [usize; 2])) -> bool) -> Vec<f64> {
+        let motions = self.white.motions.iter().zip(&self.windows).filter(|(m, _)| m.is_target == target);
+        let of_motion = |(motion, windows): (&Motion, &Vec<Window>)| {
+            let stretch = ((SCAN_STRETCH / self.step).round() as usize).max(1);
+            let mut out = vec![None::<f64>; motion.length() / stretch];
+            for w in windows.iter().filter(|w| is_free((motion.motion, self.places(**w)))) {
+                if let Some(slot) = out.get_mut((w.from + self.lengths[w.length] / 2) / stretch) {
+                    *slot = Some(slot.map_or(w.square, |x| x.max(w.square)));
+                }
+            }
+            let before = |place: usize| motion.places.partition_point(|p| *p < place);
+            let filled = |k: usize| before((k + 1) * stretch) - before(k * stretch);
+            let is_filled = |k: usize| filled(k) as f64 >= SCAN_FILLED * stretch as f64;
+            (0..out.len()).filter(|&k| is_filled(k)).filter_map(|k| out[k]).collect::<Vec<f64>>()
+        };
+        motions.flat_map(of_motion).collect()
+    }
+
+    /// The window of any length near one of the grid whose half wave fits best, with how well its edges are known: as far as
+    /// the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere. `None` where what fits
+    /// best is over too soon.
+    pub fn refined(&self, motion: usize, window: Window) -> Option<Refined> {
+        let (white, length) = (&self.white, self.lengths[window.length]);
+        let [from, to] = self.places(window);
+        let reach = (length / 2).max(2);
+        let fine = (length / (2 * SCAN_STEPS)).max(1);
+        let mut scratch = Scratch::default();
+        let mut tried: Vec<(f64, usize, usize)> = Vec::new();
+        for a in (from.saturating_sub(reach)..=from + reach).step_by(fine) {
+            for b in
+                (to.saturating_sub(reach)..=(to + reach).min(white.motions[motion].length())).step_by(fine)
+            {
+                if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
+                    && let Some([wave, sigma]) = white.half_wave(motion, a..b, &mut scratch)
+                {
+                    tried.push(((wave / (sigma * self.wider[window.length])).powi(2), a, b));
+                }
+            }
+        }
+        // What is over sooner is an impact, and none where the rows are too far apart to tell.
+        let shortest = (SCAN_IMPACT / self.step) as usize;
+        let best =
+            tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0)).filter(|t| t.2 - t.1 >= shortest)?;
+        let near: Vec<&(f64, usize, usize)> = tried.iter().filter(|t| t.0 >= best.0 - 1.0).collect();
+        let width = |edge: fn(&(f64, usize, usize)) -> usize| {
+            let (low, high) = near.iter().fold((usize::MAX, 0), |(l, h), t| (l.min(edge(t)), h.max(edge(t))));
+            // A push need not be a half wave.
+            (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
+        };
+        Some(Refined { square: best.0, from: best.1, to: best.2, edges: [width(|t| t.1), width(|t| t.2)] })
+    }
+}
