@@ -442,9 +442,9 @@ pub(super) const SCAN_KNOTS: [usize; 2] = [2, 8];
 pub(super) const SCAN_STRETCH: f64 = 2.0;
 /// Least fraction of the rows of a stretch. Statistics: with fewer its largest window is one of too few.
 pub(super) const SCAN_FILLED: f64 = 1.0 / 3.0;
-/// Standard normal deviate that is passed once in ten times. Statistics: what makes the tail of the law longer must be
-/// more than the few largest stretches do by accident.
-pub(super) const ONE_IN_TEN: f64 = 1.281_551_566;
+/// How often the few largest stretches of a joint make the tail of its law longer by accident. Statistics: every joint of a
+/// recording is asked, and one whose tail is taken for three times as long hides a push.
+pub(super) const SCAN_LONGER_TAIL: f64 = 0.01;
 /// Standard deviation of the edges of a push for its shape, as a part of its length: the half wave that fits a rectangle
 /// best is longer by as much on each side, that of a squared sine shorter. Mechanics.
 pub(super) const SCAN_EDGE: f64 = 0.1;
@@ -453,12 +453,13 @@ pub(super) const SCAN_EDGE: f64 = 0.1;
 pub(super) const SCAN_IMPACT: f64 = 0.12;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(super) const SCAN_PRESENT: f64 = 0.7;
-/// False alarms per recording in which nothing else was found. Statistics: one in two thousand, of which candidates that are left
-/// out of what they are compared with, and few stretches, make some more; size and power in the tests of `scan`.
-pub(super) const SCAN_LEVEL: f64 = 5e-4;
+/// False alarms per recording in which nothing else was found. Statistics: one in five thousand, of which the candidates that
+/// are left out of what they are compared with, and few stretches, make one in some hundreds; size and power in the tests of
+/// `scan`.
+pub(super) const SCAN_LEVEL: f64 = 2e-4;
 /// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
 /// largest means knows nothing of; pushes of a hand are mostly far beyond.
-pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-4;
+pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 4e-5;
 /// Windows that one of so many recordings has by accident do not count among what the residual does by itself until they have
 /// turned out to be no pushes. Statistics: hardly anything is left out of noise.
 pub(super) const SCAN_SUSPECT: f64 = 0.05;
@@ -469,9 +470,9 @@ pub(super) const SCAN_LEAST_STRETCHES: usize = 8;
 /// Stretches that count as much as all joints together for the law of one joint. Statistics: size against power in the
 /// tests of `scan`.
 pub(super) const SCAN_OWN_STRETCHES: f64 = 40.0;
-/// Independent windows of all lengths in a stretch. Statistics: the lengths from a tenth of a stretch on, those that differ by
-/// less than half taken as one; what several joints feel together in the tests of `largest`.
-pub(super) const SCAN_INDEPENDENT: f64 = 30.0;
+/// Independent windows of all lengths in a stretch. Statistics: the square that the largest of a stretch of noise mostly is, 5.4,
+/// is passed by one normal deviate in fifty.
+pub(super) const SCAN_INDEPENDENT: f64 = 50.0;
 /// Least scale of the largest squares: that of normal deviates, whose squares fall as exp(-x/2) / sqrt(x), around
 /// x = 10, where the largest of a stretch are. Statistics.
 pub(super) const SCAN_NORMAL_SCALE: f64 = 2.0 / 1.1;

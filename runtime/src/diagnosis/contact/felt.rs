@@ -82,10 +82,10 @@ impl Felt {
         known.then_some(sigma)
     }
 
-    /// Squares of these joints' rows.
-    pub fn squares(&self, around: &Around<'_>, joints: &[usize]) -> Squares {
+    /// Squares of a joint's rows.
+    pub fn squares(&self, around: &Around<'_>, joint: usize) -> Squares {
         let mut all = Squares::default();
-        for (joint, rows, _) in self.joints.iter().filter(|(j, _, _)| joints.contains(j)) {
+        for (joint, rows, _) in self.joints.iter().filter(|(j, _, _)| *j == joint) {
             let weight = 1.0 / (around.sigma[*joint] * around.sigma[*joint]);
             let residual: Vec<f64> = rows.iter().map(|&r| around.residual[r]).collect();
             for (i, &r) in rows.iter().enumerate() {
@@ -101,19 +101,18 @@ impl Felt {
 }
 
 /// A push as a force on a link where at least two joints feel it and one force explains them all; else as the torques of
-/// the joints that feel it, among them those it was `found` on; and the probability that it is an accident, no less than these
+/// the joints that feel it, among them the one it was `found` on; and the probability that it is an accident, no less than these
 /// torques allow. `None` where no joint has rows there.
 pub(in crate::diagnosis) fn wrench(
     around: &Around<'_>,
     felt: &Felt,
-    found: &[usize],
     noise: &Noise,
-    (edges, doubt): ([f64; 2], f64),
+    (found, edges, doubt): (usize, [f64; 2], f64),
 ) -> Option<(ContactForce, f64)> {
     let s = &around.context.signals[felt.motion];
     let spacing = around.design.spacing(felt.motion);
     let means = felt.means();
-    let feels = |row: &JointRow| found.contains(&row.joint) || row.residual.abs() > FELT * row.sigma;
+    let feels = |row: &JointRow| row.joint == found || row.residual.abs() > FELT * row.sigma;
     let torques: Vec<JointTorque> = (felt.joints.iter().filter(|(_, _, row)| feels(row)))
         .map(|(joint, rows, row)| JointTorque {
             joint: *joint,

@@ -89,11 +89,9 @@ impl HalfWaves {
         [window.from, window.from + self.lengths[window.length]]
     }
 
-    /// Squared deviation over places of a motion, which spreads as one of a length of the grid; `None` where too few of its
-    /// rows are there.
-    pub fn square(&self, motion: usize, places: Range<usize>, length: usize) -> Option<f64> {
-        let [wave, sigma] = self.white.half_wave(motion, places, &mut Scratch::default())?;
-        Some((wave / (sigma * self.wider[length])).powi(2))
+    /// How far half waves of a length of the grid spread, in units of one whose rows are white with a deviation of 1 N.m or N.
+    pub fn spread(&self, length: usize) -> f64 {
+        self.white.sigma * self.wider[length]
     }
 
     /// Mean over places of a motion of the half wave that fits there best, N.m or N, and its standard deviation.

@@ -1,6 +1,10 @@
 //! How far the largest squares of many windows go by accident: an extreme value law, fitted to stretches of a residual.
 
-use crate::diagnosis::rules::{ONE_IN_TEN, SCAN_INDEPENDENT, SCAN_LEAST_STRETCHES, SCAN_NORMAL_SCALE};
+use crate::diagnosis::rules::{SCAN_INDEPENDENT, SCAN_LEAST_STRETCHES, SCAN_LONGER_TAIL, SCAN_NORMAL_SCALE};
+use statrs::distribution::{ContinuousCDF, Erlang};
+
+/// Mean of Gumbel's law, in its scale from its location.
+const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 
 /// How far the largest squared mean of a stretch goes: Gumbel's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +34,20 @@ impl Law {
         Some(Self { location: at(0.5) - scale * place(0.5), scale })
     }
 
+    /// From all of them, by probability-weighted moments (Hosking 1990): twice as sure as quartiles, where none is pushed.
+    pub fn of_unpushed(largest: &mut [f64]) -> Option<Self> {
+        if largest.len() < SCAN_LEAST_STRETCHES {
+            return None;
+        }
+        largest.sort_by(f64::total_cmp);
+        let count = largest.len() as f64;
+        let mean = largest.iter().sum::<f64>() / count;
+        let weighted = largest.iter().enumerate().map(|(i, x)| i as f64 * x).sum::<f64>();
+        let second = 2.0 * weighted / (count * (count - 1.0)) - mean;
+        let scale = (second / std::f64::consts::LN_2).max(SCAN_NORMAL_SCALE);
+        Some(Self { location: mean - EULER_GAMMA * scale, scale })
+    }
+
     /// With a longer tail where the larger ones of these surely pass their upper quartile by more than the law has it:
     /// excesses of an exponential tail have its scale as their mean.
     pub fn with_tail(self, largest: &mut [f64]) -> Self {
@@ -38,7 +56,9 @@ impl Law {
         let Some(quartile) = first.checked_sub(1).map(|k| largest[k]) else { return self };
         let count = (largest.len() - first) as f64;
         let excess = largest[first..].iter().map(|x| x - quartile).sum::<f64>() / count;
-        let surely = excess > self.scale * (1.0 + ONE_IN_TEN / count.sqrt());
+        // The sum of so many follows Erlang's law.
+        let surely = Erlang::new(largest.len() as u64 - first as u64, 1.0)
+            .is_ok_and(|law| law.sf(count * excess / self.scale) < SCAN_LONGER_TAIL);
         Self { scale: if surely { excess } else { self.scale }, ..self }
     }
 

@@ -134,11 +134,13 @@ fn autocorrelation(motions: &[&[(usize, f64)]], level: f64, sigma: f64) -> Vec<f
     (0..=SCAN_MOST_ORDER).map(|k| mean(k) / mean(0).max(1e-300)).collect()
 }
 
-/// Coefficients of the autoregressions by Levinson's recursion up to the order with the least Schwarz criterion, and the
-/// variances that they leave.
+/// Coefficients of the autoregressions by Levinson's recursion up to the order with the least Schwarz criterion, but at least
+/// the cube root of the rows (Berk 1974: what predicts best misses the density at low frequencies, which slow windows are
+/// judged by), and the variances that they leave.
 fn autoregression(correlation: &[f64], rows: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
     let (mut all, mut variances) = (vec![Vec::new()], vec![1.0_f64]);
-    let mut best = (0.0, 0);
+    let least = ((rows as f64).cbrt() as usize).min(correlation.len() - 1);
+    let mut best = (f64::INFINITY, least);
     for order in 1..correlation.len() {
         let before: &Vec<f64> = &all[order - 1];
         let made: f64 = before.iter().enumerate().map(|(k, a)| a * correlation[order - 1 - k]).sum();
@@ -151,7 +153,7 @@ fn autoregression(correlation: &[f64], rows: usize) -> (Vec<Vec<f64>>, Vec<f64>)
         variances.push(left * (1.0 - reflection * reflection));
         let criterion =
             rows as f64 * variances[order].max(1e-12).ln() + order as f64 * (rows.max(2) as f64).ln();
-        if criterion < best.0 {
+        if order >= least && criterion < best.0 {
             best = (criterion, order);
         }
     }

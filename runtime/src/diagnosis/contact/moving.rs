@@ -2,7 +2,7 @@
 
 use crate::diagnosis::contact::curves::curves;
 use crate::diagnosis::contact::felt::{Around, Felt, wrench};
-use crate::diagnosis::contact::scan::{Noise, Pushed, Track, scan, together};
+use crate::diagnosis::contact::scan::{Noise, Pushed, Track, scan};
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::contact::windows::{duration, told};
 use crate::diagnosis::judging::autocorrelation::Places;
@@ -15,8 +15,7 @@ use crate::effects::ContactForce;
 
 /// What a look at a residual finds.
 pub(in crate::diagnosis) struct Look {
-    /// Windows of one or several joints that are one push each.
-    groups: Vec<Vec<Pushed>>,
+    pushes: Vec<Pushed>,
     noise: Noise,
     /// Probability that one of all windows of the recording comes as far by accident, up to which it is a push.
     level: f64,
@@ -43,8 +42,8 @@ pub(in crate::diagnosis) fn look(
     let first = signals.iter().position(|s| s.is_target).unwrap_or(0);
     let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
     let tracks: Vec<Track> = (0..design.joints).map(|joint| track(context, design, left, joint)).collect();
-    let (pushed, noise) = scan(&tracks, step, level);
-    Look { groups: together(pushed, step), noise, level }
+    let (pushes, noise) = scan(&tracks, step, level);
+    Look { pushes, noise, level }
 }
 
 /// The rows of a joint, but for those at which it creeps or is near its own reversals, and those near the beginning and the
@@ -93,22 +92,17 @@ fn near_reversals(dq: &[f64], reach: usize) -> Vec<bool> {
 /// there are none, or they take so much of the recording that they are no exception.
 pub(in crate::diagnosis) fn seen(around: &Around<'_>, look: &Look) -> Option<Contacts> {
     let mut contacts = Contacts::none(around.context.signals.len());
-    for group in &look.groups {
-        // The joint that tells most has the window.
-        let Some(clearest) = group.iter().max_by(|a, b| a.square.total_cmp(&b.square)) else { continue };
-        let doubt = group.iter().map(|p| p.doubt).fold(1.0, f64::min);
-        let joints: Vec<usize> = group.iter().map(|p| p.joint).collect();
-        let felt = Felt::of(around, &look.noise, clearest.motion, clearest.places);
-        let edges = clearest.edges.map(|e| e * around.step(clearest.motion));
-        let Some((wrench, doubt)) = wrench(around, &felt, &joints, &look.noise, (edges, doubt)) else {
-            continue;
-        };
-        let squares = felt.squares(around, &joints);
+    for push in &look.pushes {
+        let felt = Felt::of(around, &look.noise, push.motion, push.places);
+        let edges = push.edges.map(|e| e * around.step(push.motion));
+        let found = (push.joint, edges, push.doubt);
+        let Some((wrench, doubt)) = wrench(around, &felt, &look.noise, found) else { continue };
+        let squares = felt.squares(around, push.joint);
         if doubt > look.level || squares.swing() {
             continue;
         }
         let window = [wrench.window[0] - CONTACT_MARGIN, wrench.window[1] + CONTACT_MARGIN];
-        contacts.windows[clearest.motion].push(window);
+        contacts.windows[push.motion].push(window);
         contacts.doubt = contacts.doubt.min(doubt);
         contacts.squares += squares;
         contacts.wrenches.push(wrench);

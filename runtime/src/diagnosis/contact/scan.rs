@@ -9,11 +9,12 @@ use crate::diagnosis::contact::absorbed::put_beside;
 use crate::diagnosis::contact::half_waves::{HalfWaves, Refined, Window, lengths};
 use crate::diagnosis::contact::largest::{Law, doubt};
 use crate::diagnosis::contact::memory::Spread;
-use crate::diagnosis::contact::white::White;
+use crate::diagnosis::contact::white::{Scratch, White};
 use crate::diagnosis::rules::{
     LARGEST_PUSHED_FRACTION, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES, SCAN_OWN_STRETCHES, SCAN_SUSPECT,
     SCAN_TOGETHER,
 };
+use std::ops::Range;
 
 /// Rows of one joint: for each motion their places on the grid of rows, increasing, and their residual.
 pub(in crate::diagnosis) struct Track {
@@ -28,10 +29,10 @@ pub(in crate::diagnosis) struct Track {
     pub columns: Vec<Vec<f64>>,
 }
 
-/// A window in which one joint is pushed.
+/// A window in which joints are pushed.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::diagnosis) struct Pushed {
-    /// 0-based.
+    /// The one that tells most of it, 0-based.
     pub joint: usize,
     pub motion: usize,
     /// First and last place.
@@ -103,8 +104,7 @@ impl Noise {
     }
 }
 
-/// Windows in which joints are pushed, most certain first, none overlapping another on its joint; and what the residuals
-/// do by themselves.
+/// Windows in which joints are pushed, most certain first, none next to another; and what the residuals do by themselves.
 ///
 /// `step` is the time from one place to the next, s. With a baseline of at least as many stretches as the recording,
 /// the law comes from the baseline.
@@ -139,8 +139,8 @@ struct Scan<'a> {
 /// One joint that is scanned.
 struct Joint<'a> {
     track: &'a Track,
-    /// Its residual as the model leaves it.
-    white: White,
+    /// Its rows, whitened with all candidates among them.
+    rows: White,
     /// The same beside the candidates.
     waves: HalfWaves,
     /// What its largest windows do by themselves; `None` where there are too few of all joints.
@@ -148,10 +148,17 @@ struct Joint<'a> {
 }
 
 /// What may be a push.
+#[derive(Clone)]
 struct Candidate {
     pushed: Pushed,
-    /// Squared deviations of all joints at its places, as far as they have rows there.
-    felt: Vec<Option<f64>>,
+    /// Number of the length of the grid that is next to its own.
+    length: usize,
+}
+
+impl Candidate {
+    fn places(&self) -> Range<usize> {
+        self.pushed.places[0]..self.pushed.places[1] + 1
+    }
 }
 
 impl Pushed {
@@ -168,11 +175,11 @@ impl<'a> Scan<'a> {
         let enough = |t: &&Track| t.motions.iter().map(|m| m.1.len()).sum::<usize>() >= SCAN_LEAST_ROWS;
         let mut joints = Vec::new();
         for track in tracks.iter().filter(enough) {
-            if let Some(white) = White::of(&track.motions, &track.beside) {
+            if let Some(white) = White::of(&track.motions, &track.beside, &[]) {
                 joints.push(Joint {
                     track,
                     waves: HalfWaves::of(white.clone(), &[], step),
-                    white,
+                    rows: white,
                     law: None,
                 });
             }
@@ -187,41 +194,45 @@ impl<'a> Scan<'a> {
 
     /// Looks at all windows beside the model and the candidates: their half waves, and the laws of those away from candidates.
     fn look(&mut self) {
-        self.update_waves();
-        self.fit_laws();
-    }
-
-    fn update_waves(&mut self) {
-        let columns: Vec<Vec<Vec<f64>>> = (0..self.joints.len()).map(|j| self.columns(j)).collect();
-        let mut whites: Vec<White> = self.joints.iter().map(|joint| joint.white.clone()).collect();
-        put_beside(&mut whites, &columns);
+        let whites = self.whites(&self.candidates, &self.candidates);
         for (joint, white) in self.joints.iter_mut().zip(whites) {
             joint.waves = HalfWaves::of(white, &self.lengths, self.step);
         }
+        self.fit_laws(Law::of);
     }
 
-    /// The columns of the model on the rows of a joint, and a half wave of each joint for each candidate.
-    fn columns(&self, joint: usize) -> Vec<Vec<f64>> {
-        let Joint { track, white, .. } = &self.joints[joint];
-        let mut columns = track.columns.clone();
-        for Candidate { pushed, .. } in &self.candidates {
-            let places = pushed.places[0]..pushed.places[1] + 1;
-            let of = |j| {
-                if j == joint { white.rows_of_half_wave(pushed.motion, places.clone()) } else { Vec::new() }
-            };
-            columns.extend((0..self.joints.len()).map(of));
-        }
-        columns
+    /// The residuals beside the model and half waves of each joint for these candidates, where `pushes` are not what a residual
+    /// remembers.
+    fn whites(&self, pushes: &[Candidate], candidates: &[Candidate]) -> Vec<White> {
+        let half_wave =
+            |joint: &Joint<'_>, c: &Candidate| joint.rows.of_half_wave(c.pushed.motion, c.places());
+        let white = |joint: &Joint<'_>| {
+            let pushes: Vec<Vec<f64>> = pushes.iter().map(|c| half_wave(joint, c)).collect();
+            let Track { motions, beside, .. } = joint.track;
+            White::of(motions, beside, &pushes).unwrap_or_else(|| joint.rows.clone())
+        };
+        let mut whites: Vec<White> = self.joints.iter().map(white).collect();
+        let columns = |j: usize| {
+            let mut columns = self.joints[j].track.columns.clone();
+            for candidate in candidates {
+                let own = |k| if k == j { half_wave(&self.joints[j], candidate) } else { Vec::new() };
+                columns.extend((0..self.joints.len()).map(own));
+            }
+            columns
+        };
+        let columns: Vec<Vec<Vec<f64>>> = (0..self.joints.len()).map(columns).collect();
+        put_beside(&mut whites, &columns);
+        whites
     }
 
     /// The law of the largest windows of each joint, from those away from candidates: its own, and that of all joints. Returns
     /// these windows of each joint.
-    fn fit_laws(&mut self) -> Vec<Vec<f64>> {
+    fn fit_laws(&mut self, of: fn(&mut [f64]) -> Option<Law>) -> Vec<Vec<f64>> {
         let mut of_joints: Vec<Vec<f64>> = self.joints.iter().map(|joint| self.largest(joint)).collect();
-        let common = Law::of(&mut of_joints.concat());
+        let common = of(&mut of_joints.concat());
         for (joint, own) in self.joints.iter_mut().zip(&mut of_joints) {
             let count = own.len() as f64;
-            let law = |common| Law::of(own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
+            let law = |common| of(own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
             joint.law = common.map(law);
         }
         of_joints
@@ -262,10 +273,9 @@ impl<'a> Scan<'a> {
         beyond.into_iter().filter(|(_, joint, ..)| is_exception(joint)).find_map(
             |(_, joint, motion, window)| {
                 let Refined { square, from, to, edges } = joint.waves.refined(motion, window)?;
-                let felt = |joint: &Joint<'_>| joint.waves.square(motion, from..to, window.length);
                 let (joint, places) = (joint.track.joint, [from, to - 1]);
                 let pushed = Pushed { joint, motion, places, edges, square, doubt: 1.0 };
-                Some(Candidate { pushed, felt: self.joints.iter().map(felt).collect() })
+                Some(Candidate { pushed, length: window.length })
             },
         )
     }
@@ -273,15 +283,15 @@ impl<'a> Scan<'a> {
     /// Judges the candidates by what all other windows do, and drops those that do not pass a level; whether there were any. Where
     /// windows that are no push stand out, as at every knock of a gear with play, the law has a longer tail.
     fn drop_accidents(&mut self, level: f64) -> bool {
-        let others = self.fit_laws();
+        let others = self.fit_laws(Law::of_unpushed);
         for (joint, mut others) in self.joints.iter_mut().zip(others) {
             joint.law = joint.law.map(|law| law.with_tail(&mut others));
         }
         let before = self.candidates.len();
-        for candidate in &mut self.candidates {
-            let surprise = |(joint, felt): (&Joint<'_>, &Option<f64>)| Some(joint.law?.surprise((*felt)?));
-            let surprise = self.joints.iter().zip(&candidate.felt).filter_map(surprise).sum();
-            candidate.pushed.doubt = self.chances.of_all(surprise);
+        for k in 0..before {
+            let mut others = self.candidates.clone();
+            let candidate = others.remove(k);
+            self.candidates[k].pushed.doubt = self.chances.of_all(self.surprise(&candidate, &others));
         }
         self.candidates.retain(|c| c.pushed.doubt <= level);
         self.candidates.len() < before
@@ -298,20 +308,29 @@ impl<'a> Scan<'a> {
         self.joints.iter().flat_map(of_joint).collect()
     }
 
+    /// How far what all joints feel of a candidate, beside the model and the others, passes what they do by themselves.
+    fn surprise(&self, candidate: &Candidate, others: &[Candidate]) -> f64 {
+        let mut scratch = Scratch::default();
+        let whites = self.whites(&self.candidates, others);
+        let of_joint = |(joint, white): (&Joint<'_>, White)| {
+            let wave = white.half_wave(candidate.pushed.motion, candidate.places(), &mut scratch)?;
+            // In units of what such windows spread by without it.
+            let deviation = wave[0] / wave[1] * white.sigma / joint.waves.spread(candidate.length);
+            Some(joint.law?.surprise(deviation * deviation))
+        };
+        self.joints.iter().zip(whites).filter_map(of_joint).sum()
+    }
+
     /// What the residuals do by themselves away from candidates, with half waves beside the model alone.
     fn noise(mut self, tracks: &[Track]) -> Noise {
         let spreads: Vec<Option<Spread>> = self.joints.iter().map(|joint| self.spread(joint.track)).collect();
-        self.candidates.clear();
-        self.update_waves();
+        let whites = self.whites(&self.candidates, &[]);
         let mut joints: Vec<Option<Own>> = tracks.iter().map(|_| None).collect();
-        for (joint, spread) in self.joints.into_iter().zip(spreads) {
-            let own = spread.map(|spread| Own {
-                spread,
-                waves: joint.waves,
-                law: joint.law.unwrap_or(Law::NORMAL),
-            });
+        for ((joint, white), spread) in self.joints.drain(..).zip(whites).zip(spreads) {
+            let waves = HalfWaves::of(white, &self.lengths, self.step);
+            let law = joint.law.unwrap_or(Law::NORMAL);
             if let Some(place) = joints.get_mut(joint.track.joint) {
-                *place = own;
+                *place = spread.map(|spread| Own { spread, waves, law });
             }
         }
         Noise { joints, chances: self.chances }
@@ -327,20 +346,6 @@ impl<'a> Scan<'a> {
         let rows: Vec<&[(usize, f64)]> = rows.iter().map(Vec::as_slice).collect();
         Spread::of(&rows, &self.lengths)
     }
-}
-
-/// Windows of several joints that are one push, in the order of time.
-pub(in crate::diagnosis) fn together(mut pushed: Vec<Pushed>, step: f64) -> Vec<Vec<Pushed>> {
-    let gap = (SCAN_TOGETHER / step) as usize;
-    pushed.sort_by_key(|p| (p.motion, p.places[0]));
-    let mut groups: Vec<Vec<Pushed>> = Vec::new();
-    for p in pushed {
-        match groups.last_mut().filter(|g| g.iter().any(|other| other.is_near(p.motion, p.places, gap))) {
-            Some(group) => group.push(p),
-            None => groups.push(vec![p]),
-        }
-    }
-    groups
 }
 
 #[cfg(test)]

@@ -110,16 +110,54 @@ fn pushes_of_several_joints_at_a_time_are_one() {
     push(&mut tracks[0], 10.0, 0.6, 4.0);
     push(&mut tracks[2], 10.05, 0.6, 4.0);
     push(&mut tracks[3], 17.0, 0.6, 4.0);
-    let groups = together(scan(&tracks, STEP, LEVEL).0, STEP);
-    let joints: Vec<Vec<usize>> = groups
-        .iter()
-        .map(|g| {
-            let mut joints: Vec<usize> = g.iter().map(|p| p.joint).collect();
-            joints.sort_unstable();
-            joints
-        })
-        .collect();
-    assert_eq!(joints, vec![vec![0, 2], vec![3]]);
+    let mut pushes = scan(&tracks, STEP, LEVEL).0;
+    pushes.sort_by_key(|p| p.places[0]);
+    assert!(matches!(&pushes[..], [a, b] if [0, 2].contains(&a.joint) && b.joint == 3), "{pushes:?}");
+}
+
+#[test]
+fn what_joints_feel_at_a_time_adds_up() {
+    let found = |shared: bool| {
+        let mut rng = Pcg64::seed_from_u64(18);
+        let once = |_| {
+            let mut tracks = noise(&mut rng);
+            for (joint, track) in tracks.iter_mut().enumerate().filter(|(joint, _)| shared || *joint == 0) {
+                push(track, 10.0 + if shared { 0.0 } else { joint as f64 }, 0.5, 1.7);
+            }
+            usize::from(!scan(&tracks, STEP, LEVEL).0.is_empty())
+        };
+        (0..60).map(once).sum::<usize>()
+    };
+    let (alone, together) = (found(false), found(true));
+    assert!(together >= 50 && alone <= 35, "{together} and {alone} of 60");
+}
+
+#[test]
+fn what_a_model_takes_over_of_a_push_is_counted() {
+    // A column of the model that is half of every push at its time.
+    let mut rng = Pcg64::seed_from_u64(19);
+    let mut found = [0; 2];
+    for _ in 0..60 {
+        let mut tracks = noise(&mut rng);
+        push(&mut tracks[0], 10.0, 0.5, 3.0);
+        let rows = tracks[0].motions[0].1.clone();
+        let mut column: Vec<f64> = rows.iter().map(|_| 0.3 * normal(&mut rng)).collect();
+        for ((place, _), x) in rows.iter().zip(&mut column) {
+            *x += if (500..525).contains(place) { 1.0 } else { 0.0 };
+        }
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let y: Vec<f64> = rows.iter().map(|r| r.1).collect();
+        let fit = product(&column, &y) / product(&column, &column);
+        tracks[0].motions[0].1.iter_mut().zip(&column).for_each(|((_, y), x)| *y -= fit * x);
+        found[0] += usize::from(!scan(&tracks, STEP, LEVEL).0.is_empty());
+        tracks[0].columns = vec![column];
+        for track in &mut tracks[1..] {
+            track.columns = vec![Vec::new()];
+        }
+        found[1] += usize::from(!scan(&tracks, STEP, LEVEL).0.is_empty());
+    }
+    println!("{found:?}");
+    assert!(found[1] >= 40 && found[0] < found[1], "{found:?} of 60");
 }
 
 #[test]

@@ -45,8 +45,13 @@ pub(in crate::diagnosis) struct White {
 
 impl White {
     /// From the rows of all motions, `(is_target, [(place, residual)])`, and columns over all of these rows that the
-    /// residual is judged beside. `None` where the residual has no spread.
-    pub fn of(motions: &[(bool, Vec<(usize, f64)>)], beside: &[Vec<f64>]) -> Option<Self> {
+    /// residual is judged beside. What `pushes` of it are, over all rows, too, is not what it remembers. `None` where the
+    /// residual has no spread.
+    pub fn of(
+        motions: &[(bool, Vec<(usize, f64)>)],
+        beside: &[Vec<f64>],
+        pushes: &[Vec<f64>],
+    ) -> Option<Self> {
         let (mut kept, mut raw, mut stretch) = (Vec::new(), Vec::new(), Vec::new());
         for (k, (is_target, rows)) in motions.iter().enumerate() {
             let first = raw.len();
@@ -63,7 +68,8 @@ impl White {
         }
         let plain = orthonormal(beside.to_vec());
         let left = without(&raw, &plain);
-        let neighbours: Vec<Vec<(usize, f64)>> = kept.iter().map(|m| m.rows(&left)).collect();
+        let unpushed = without(&raw, &orthonormal([beside, pushes].concat()));
+        let neighbours: Vec<Vec<(usize, f64)>> = kept.iter().map(|m| m.rows(&unpushed)).collect();
         let neighbours: Vec<&[(usize, f64)]> = neighbours.iter().map(Vec::as_slice).collect();
         let memory = Memory::of(&neighbours)?;
         let mut white = Self {
@@ -116,7 +122,7 @@ impl White {
     }
 
     /// The half wave over places of a motion, over all rows.
-    pub fn rows_of_half_wave(&self, motion: usize, places: Range<usize>) -> Vec<f64> {
+    pub fn of_half_wave(&self, motion: usize, places: Range<usize>) -> Vec<f64> {
         let mut rows = vec![0.0; self.residual.len()];
         for r in self.within(motion, &places) {
             rows[r] = self.height(motion, r, &places);
