@@ -228,7 +228,10 @@ impl<'a> Scan<'a> {
     /// The law of the largest windows of each joint, from those away from candidates: its own, and that of all joints. Returns
     /// these windows of each joint.
     fn fit_laws(&mut self, of: fn(&mut [f64]) -> Option<Law>) -> Vec<Vec<f64>> {
-        let mut of_joints: Vec<Vec<f64>> = self.joints.iter().map(|joint| self.largest(joint)).collect();
+        // What laws that are nearly right leave is in the recording, and not in its baseline.
+        let own = self.largest(true);
+        let mut of_joints =
+            if own.concat().len() >= SCAN_LEAST_STRETCHES { own } else { self.largest(false) };
         let common = of(&mut of_joints.concat());
         for (joint, own) in self.joints.iter_mut().zip(&mut of_joints) {
             let count = own.len() as f64;
@@ -238,11 +241,10 @@ impl<'a> Scan<'a> {
         of_joints
     }
 
-    /// The largest squared deviation of each stretch away from candidates: of the baseline where it has enough of them.
-    fn largest(&self, joint: &Joint<'_>) -> Vec<f64> {
+    /// The largest squared deviation of each stretch of the recording, or of its baseline, away from candidates, joint by joint.
+    fn largest(&self, target: bool) -> Vec<Vec<f64>> {
         let is_free = |(motion, places)| !self.is_near(motion, places, self.gap());
-        let (before, now) = (joint.waves.largest(false, is_free), joint.waves.largest(true, is_free));
-        if before.len() >= now.len().max(SCAN_LEAST_STRETCHES) { before } else { now }
+        self.joints.iter().map(|joint| joint.waves.largest(target, is_free)).collect()
     }
 
     /// Places between pushes that are two.

@@ -8,6 +8,7 @@
 //! (`absorbed`): a fit takes over a part of every push, and of the noise, and what it leaves is smaller than either.
 
 use crate::diagnosis::contact::memory::Memory;
+use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rules::{SCAN_LEFT_BY_MODEL, SCAN_OWN_SHAPE, SCAN_PRESENT, SIGMA_PER_MAD};
 use crate::statistics::median::median;
 use std::ops::Range;
@@ -154,16 +155,15 @@ impl White {
                 |back: usize| if t - back < rows.start { 0.0 } else { scratch.wave[t - back - rows.start] };
             scratch.white.push(self.memory.innovation(t - self.stretch[t][0], wave));
         }
-        let dot =
-            |x: &[f64]| x[rows.start..reach].iter().zip(&scratch.white).map(|(a, b)| a * b).sum::<f64>();
-        let whole: f64 = scratch.white.iter().map(|x| x * x).sum();
-        let made = |columns: &[Vec<f64>]| columns.iter().map(|c| dot(c).powi(2)).sum::<f64>();
+        let product = |x: &[f64]| dot(&x[rows.start..reach], &scratch.white);
+        let whole = dot(&scratch.white, &scratch.white);
+        let made = |columns: &[Vec<f64>]| columns.iter().map(|c| product(c).powi(2)).sum::<f64>();
         let own = whole - made(&self.curves);
         if !own.is_finite() || own <= SCAN_OWN_SHAPE * whole {
             return None;
         }
         let left = own - made(&self.absorbed);
-        let amplitude = || [self.sigma * dot(&self.residual) / left, self.sigma / left.sqrt()];
+        let amplitude = || [self.sigma * product(&self.residual) / left, self.sigma / left.sqrt()];
         (left > SCAN_LEFT_BY_MODEL * own).then(amplitude)
     }
 }
@@ -189,7 +189,7 @@ impl Motion {
 
 /// Orthonormal columns that span the same (modified Gram and Schmidt, twice).
 fn orthonormal(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let norm = |x: &[f64]| dot(x, x).sqrt();
     let mut out: Vec<Vec<f64>> = Vec::new();
     for column in columns {
         let whole = norm(&column);
@@ -208,7 +208,7 @@ fn orthonormal(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 fn without(x: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
     let mut left = x.to_vec();
     for column in columns {
-        let part: f64 = column.iter().zip(&left).map(|(c, x)| c * x).sum();
+        let part = dot(column, &left);
         left.iter_mut().zip(column).for_each(|(x, c)| *x -= part * c);
     }
     left
