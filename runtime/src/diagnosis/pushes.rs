@@ -2,9 +2,10 @@
 //! laws that were found.
 
 use super::contact::felt::Around;
-use super::contact::moving::{self, Left};
+use super::contact::moving;
 use super::contact::search::{self as contact_search, Contacts};
 use super::contact::standing;
+use super::contact::track::Left;
 use super::error::DiagnosisError;
 use super::preparation::Prepared;
 use super::rows::design::Design;

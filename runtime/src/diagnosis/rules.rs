@@ -446,7 +446,7 @@ pub(super) const SCAN_FILLED: f64 = 1.0 / 3.0;
 /// recording is asked, and one whose tail is taken for three times as long hides a push.
 pub(super) const SCAN_LONGER_TAIL: f64 = 0.01;
 /// Standard deviation of the edges of a push for its shape, as a part of its length: the half wave that fits a rectangle
-/// best is longer by as much on each side, that of a squared sine shorter. Mechanics.
+/// best is longer by as much on each side, that of a squared sine shorter. Of its mean torque, too. Mechanics.
 pub(super) const SCAN_EDGE: f64 = 0.1;
 /// A push whose half wave is shorter than this, s, is an impact inside of the robot. Mechanics: four fifths of
 /// [`SHORTEST_PUSH`], as a half wave is shorter than a push that begins and ends gently by [`SCAN_EDGE`] on each side.
@@ -454,8 +454,7 @@ pub(super) const SCAN_IMPACT: f64 = 0.12;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(super) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording in which nothing else was found. Statistics: one in five thousand, of which the candidates that
-/// are left out of what they are compared with, and few stretches, make one in some hundreds; size and power in the tests of
-/// `scan`.
+/// are left out of what they are compared with make one in a thousand; size and power in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 2e-4;
 /// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
 /// largest means knows nothing of; pushes of a hand are mostly far beyond.
@@ -498,6 +497,8 @@ pub(super) const UNDETERMINED_FORCE: f64 = 10.0;
 pub(super) const SCAN_TOGETHER: f64 = 0.2;
 /// Values beyond so many standard deviations count as no more for the memory of a residual. Statistics.
 pub(super) const SCAN_CLIPPED: f64 = 2.5;
+/// Least variance of the noise of a row, as a part of the mean. Judgement: no sensor is free of noise where a joint bears nothing.
+pub(super) const SCAN_LEAST_VARIANCE: f64 = 0.1;
 /// Most coefficients of the autoregression of a residual. Statistics: a quarter of a second of fast rows.
 pub(super) const SCAN_MOST_ORDER: usize = 12;
 

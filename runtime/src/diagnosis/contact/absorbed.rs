@@ -13,23 +13,40 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// A column on the rows of one joint, with its number.
 type Column = (usize, Vec<f64>);
 
+/// What a column is made with, beside all others.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Amplitude {
+    /// In standard deviations from zero.
+    pub deviations: f64,
+    /// Part of the column's squares that the other columns do not make.
+    pub left: f64,
+}
+
 /// Puts the columns of a model beside the residuals of joints; `of_joints[joint][column]` over the joint's rows, empty where a
-/// column is zero there. Columns that have no fit leave all as it was.
-pub(super) fn put_beside(whites: &mut [White], of_joints: &[Vec<Vec<f64>>]) {
+/// column is zero there. Returns what each column is made with, in standard deviations of the joint that it acts on alone, if
+/// there is one. Columns that have no fit leave all as it was.
+pub(super) fn put_beside(whites: &mut [White], of_joints: &[Vec<Vec<f64>>]) -> Vec<Option<Amplitude>> {
     let count = of_joints.iter().map(Vec::len).max().unwrap_or(0);
     let white = |(white, columns): (&White, &Vec<Vec<f64>>)| -> Vec<Column> {
         let there = columns.iter().enumerate().filter(|(_, c)| !c.is_empty());
         there.map(|(k, c)| (k, white.column(c))).collect()
     };
     let of_joints: Vec<Vec<Column>> = whites.iter().zip(of_joints).map(white).collect();
-    let Some(fit) = Fit::of(whites, &of_joints, count) else { return };
+    let Some(fit) = Fit::of(whites, &of_joints, count) else { return vec![None; count] };
+    let mut amplitudes = vec![None; count];
     for (white, columns) in whites.iter_mut().zip(of_joints) {
         for (k, column) in &columns {
             white.residual.iter_mut().zip(column).for_each(|(r, x)| *r -= fit.chi[*k] * x);
         }
+        let numbers: Vec<usize> = columns.iter().map(|c| c.0).collect();
         white.absorbed = fit.orthonormal(columns, white.residual.len());
+        let before = white.sigma;
         white.scale();
+        for k in numbers {
+            amplitudes[k] = fit.amplitude(k, white.sigma / before);
+        }
     }
+    amplitudes
 }
 
 /// Least squares of the residuals of all joints on the columns.
@@ -38,6 +55,8 @@ struct Fit {
     /// Per column: 1 / norm.
     scale: DVector<f64>,
     factor: Cholesky<f64, Dyn>,
+    /// Diagonal of the inverse of the Gram matrix of columns of norm 1.
+    inverse: DVector<f64>,
 }
 
 impl Fit {
@@ -61,7 +80,15 @@ impl Fit {
         });
         let factor = Cholesky::new(scaled)?;
         let chi = factor.solve(&v.component_mul(&scale)).component_mul(&scale);
-        chi.iter().all(|x| x.is_finite()).then_some(Self { chi, scale, factor })
+        let inverse = factor.inverse().diagonal();
+        chi.iter().all(|x| x.is_finite()).then_some(Self { chi, scale, factor, inverse })
+    }
+
+    /// That of a column, in noise of this standard deviation; `None` of a column that is zero.
+    fn amplitude(&self, column: usize, sigma: f64) -> Option<Amplitude> {
+        let (scale, inverse) = (self.scale[column], self.inverse[column]);
+        let deviations = self.chi[column] / (scale * inverse.sqrt() * sigma);
+        deviations.is_finite().then_some(Amplitude { deviations, left: 1.0 / inverse })
     }
 
     /// One joint's part of the orthonormal columns, by forward substitution.

@@ -1,12 +1,14 @@
 //! What every joint feels of a push, and the force that explains it.
 
 use crate::diagnosis::contact::force::{JointRow, UnitForces, as_torques};
-use crate::diagnosis::contact::scan::Noise;
+use crate::diagnosis::contact::noise::Noise;
 use crate::diagnosis::contact::squares::{Squares, mean_beside};
 use crate::diagnosis::contact::windows::told;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{FELT, FORCE_EXPLAINS, FORCE_LEAVES, LINKS_ALIKE, UNDETERMINED_FORCE};
+use crate::diagnosis::rules::{
+    FELT, FORCE_EXPLAINS, FORCE_LEAVES, LINKS_ALIKE, SCAN_EDGE, UNDETERMINED_FORCE,
+};
 use crate::effects::{ContactForce, JointTorque};
 
 /// Rows of all joints at all times, and what a model leaves of their torques.
@@ -77,7 +79,8 @@ impl Felt {
     /// Standard deviations of a mean force on the link of frame number `link`; `None` where a direction is not determined.
     pub fn force_sigma(&self, around: &Around<'_>, link: usize) -> Option<[f64; 3]> {
         let (force, covariance) = self.unit(around, link.checked_sub(1)?).with_covariance(&self.means())?;
-        let sigma = [0, 1, 2].map(|k| covariance[(k, k)].max(0.0).sqrt());
+        // The shape of a push is another than half a wave.
+        let sigma = [0, 1, 2].map(|k| covariance[(k, k)].max(0.0).sqrt().hypot(SCAN_EDGE * force[k]));
         let known = sigma.iter().all(|s| s.is_finite() && *s < UNDETERMINED_FORCE * force.norm());
         known.then_some(sigma)
     }
@@ -118,7 +121,7 @@ pub(in crate::diagnosis) fn wrench(
             joint: *joint,
             mean: row.residual,
             largest: largest_mean(rows, around.residual, row.residual),
-            sigma: row.sigma,
+            sigma: row.sigma.hypot(SCAN_EDGE * row.residual),
         })
         .collect();
     // No surer than what is told of it: the sizes of its torques over their standard deviations.

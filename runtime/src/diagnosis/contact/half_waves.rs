@@ -3,17 +3,29 @@
 use crate::diagnosis::contact::memory::widening;
 use crate::diagnosis::contact::white::{Motion, Scratch, White};
 use crate::diagnosis::rules::{
-    SCAN_EDGE, SCAN_FILLED, SCAN_IMPACT, SCAN_LENGTHS, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH,
+    SCAN_EDGE, SCAN_IMPACT, SCAN_LENGTHS, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH,
 };
-use std::ops::Range;
+
+/// How much wider than its standard deviation the half waves of each length spread.
+#[derive(Clone)]
+pub(super) struct Widths {
+    /// Lengths of windows, places.
+    lengths: Vec<usize>,
+    wider: Vec<f64>,
+}
+
+impl Widths {
+    /// Of half waves over so many places.
+    pub fn of(&self, places: usize) -> f64 {
+        let length = self.lengths.iter().rposition(|length| *length <= places).unwrap_or(0);
+        self.wider.get(length).copied().unwrap_or(1.0)
+    }
+}
 
 /// One joint with all of its windows.
 pub(super) struct HalfWaves {
     white: White,
-    /// Lengths of windows, places.
-    lengths: Vec<usize>,
-    /// How much wider than one the deviations of each length spread.
-    wider: Vec<f64>,
+    pub widths: Widths,
     /// Windows of each motion.
     windows: Vec<Vec<Window>>,
     /// From one place to the next, s.
@@ -51,10 +63,27 @@ pub(super) fn lengths(step: f64) -> Vec<usize> {
     lengths
 }
 
+/// Places of the stretches that largest windows are taken of.
+fn stretch(step: f64) -> usize {
+    ((SCAN_STRETCH / step).round() as usize).max(1)
+}
+
+/// Number of stretches of a recording that have enough rows.
+pub(super) fn stretches(white: &White, step: f64) -> usize {
+    let length = stretch(step);
+    let of_motion = |motion: &Motion| {
+        let filled = |k: &usize| motion.is_filled(k * length..(k + 1) * length);
+        (0..motion.length() / length).filter(filled).count()
+    };
+    white.motions.iter().filter(|m| m.is_target).map(of_motion).sum()
+}
+
 impl HalfWaves {
-    /// All windows of these lengths; `step` is the time from one place to the next, s.
-    pub fn of(white: White, lengths: &[usize], step: f64) -> Self {
-        let rows: usize = white.motions.iter().map(|m| m.places.len()).sum();
+    /// All windows of these lengths in the recording, and in its `baseline` where that is asked for; `step` is the time from one
+    /// place to the next, s.
+    pub fn of(white: White, lengths: &[usize], step: f64, baseline: bool) -> Self {
+        let asked = |motion: &Motion| motion.is_target || baseline;
+        let rows: usize = white.motions.iter().filter(|m| asked(m)).map(|m| m.places.len()).sum();
         let mut windows: Vec<Vec<Window>> = vec![Vec::new(); white.motions.len()];
         let mut wider = Vec::with_capacity(lengths.len());
         let mut scratch = Scratch::default();
@@ -62,6 +91,9 @@ impl HalfWaves {
             let mut deviations = Vec::new();
             let from = windows.iter().map(Vec::len).collect::<Vec<_>>();
             for (m, windows) in windows.iter_mut().enumerate() {
+                if !asked(&white.motions[m]) {
+                    continue;
+                }
                 let last = (white.motions[m].length() + 1).saturating_sub(length);
                 for from in (0..last).step_by((length / SCAN_STEPS).max(1)) {
                     if let Some([wave, sigma]) = white.half_wave(m, from..from + length, &mut scratch) {
@@ -76,7 +108,7 @@ impl HalfWaves {
             }
             wider.push(factor);
         }
-        Self { white, lengths: lengths.to_vec(), wider, windows, step }
+        Self { white, widths: Widths { lengths: lengths.to_vec(), wider }, windows, step }
     }
 
     /// Places of the recording that is diagnosed.
@@ -86,19 +118,7 @@ impl HalfWaves {
 
     /// First place of a window, and the one after its last.
     pub fn places(&self, window: Window) -> [usize; 2] {
-        [window.from, window.from + self.lengths[window.length]]
-    }
-
-    /// How far half waves of a length of the grid spread, in units of one whose rows are white with a deviation of 1 N.m or N.
-    pub fn spread(&self, length: usize) -> f64 {
-        self.white.sigma * self.wider[length]
-    }
-
-    /// Mean over places of a motion of the half wave that fits there best, N.m or N, and its standard deviation.
-    pub fn mean(&self, motion: usize, places: Range<usize>) -> Option<[f64; 2]> {
-        let length = self.lengths.iter().rposition(|length| *length <= places.len()).unwrap_or(0);
-        let wave = self.white.half_wave(motion, places, &mut Scratch::default())?;
-        Some([wave[0], wave[1] * self.wider[length]].map(|x| x * std::f64::consts::FRAC_2_PI))
+        [window.from, window.from + self.widths.lengths[window.length]]
     }
 
     /// Windows of the recording that is diagnosed, each with the number of its motion.
@@ -112,17 +132,15 @@ impl HalfWaves {
     pub fn largest(&self, target: bool, is_free: impl Fn((usize, [usize; 2])) -> bool) -> Vec<f64> {
         let motions = self.white.motions.iter().zip(&self.windows).filter(|(m, _)| m.is_target == target);
         let of_motion = |(motion, windows): (&Motion, &Vec<Window>)| {
-            let stretch = ((SCAN_STRETCH / self.step).round() as usize).max(1);
+            let stretch = stretch(self.step);
             let mut out = vec![None::<f64>; motion.length() / stretch];
             for w in windows.iter().filter(|w| is_free((motion.motion, self.places(**w)))) {
-                if let Some(slot) = out.get_mut((w.from + self.lengths[w.length] / 2) / stretch) {
+                if let Some(slot) = out.get_mut((w.from + self.widths.lengths[w.length] / 2) / stretch) {
                     *slot = Some(slot.map_or(w.square, |x| x.max(w.square)));
                 }
             }
-            let before = |place: usize| motion.places.partition_point(|p| *p < place);
-            let filled = |k: usize| before((k + 1) * stretch) - before(k * stretch);
-            let is_filled = |k: usize| filled(k) as f64 >= SCAN_FILLED * stretch as f64;
-            (0..out.len()).filter(|&k| is_filled(k)).filter_map(|k| out[k]).collect::<Vec<f64>>()
+            let is_filled = |k: &usize| motion.is_filled(k * stretch..(k + 1) * stretch);
+            (0..out.len()).filter(is_filled).filter_map(|k| out[k]).collect::<Vec<f64>>()
         };
         motions.flat_map(of_motion).collect()
     }
@@ -131,7 +149,7 @@ impl HalfWaves {
     /// the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere. `None` where what fits
     /// best is over too soon.
     pub fn refined(&self, motion: usize, window: Window) -> Option<Refined> {
-        let (white, length) = (&self.white, self.lengths[window.length]);
+        let (white, length) = (&self.white, self.widths.lengths[window.length]);
         let [from, to] = self.places(window);
         let reach = (length / 2).max(2);
         let fine = (length / (2 * SCAN_STEPS)).max(1);
@@ -144,7 +162,7 @@ impl HalfWaves {
                 if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
                     && let Some([wave, sigma]) = white.half_wave(motion, a..b, &mut scratch)
                 {
-                    tried.push(((wave / (sigma * self.wider[window.length])).powi(2), a, b));
+                    tried.push(((wave / (sigma * self.widths.wider[window.length])).powi(2), a, b));
                 }
             }
         }

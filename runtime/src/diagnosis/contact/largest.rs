@@ -6,6 +6,9 @@ use statrs::distribution::{ContinuousCDF, Erlang};
 /// Mean of Gumbel's law, in its scale from its location.
 const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 
+/// Variance of the scale by probability-weighted moments, of one stretch, over its square (Hosking, Wallis and Wood 1985).
+const VARIANCE_OF_SCALE: f64 = 0.8046;
+
 /// How far the largest squared mean of a stretch goes: Gumbel's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Law {
@@ -62,6 +65,7 @@ impl Law {
         Self { scale: if surely { excess } else { self.scale }, ..self }
     }
 
+    /// Of two laws that count as so many stretches.
     pub fn mean(self, own: f64, other: Self, others: f64) -> Self {
         let mean = |a: f64, b: f64| (own * a + others * b) / (own + others);
         Self { location: mean(self.location, other.location), scale: mean(self.scale, other.scale) }
@@ -74,12 +78,44 @@ impl Law {
     }
 }
 
+/// How many windows a recording has, and how well their law is known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Chances {
+    pub joints: usize,
+    /// Of all joints.
+    pub stretches: usize,
+    /// Stretches that the laws are from.
+    pub known: usize,
+}
+
+impl Chances {
+    /// Probability that the surprise of a joint comes this far by accident.
+    pub fn of_one(self, surprise: f64) -> f64 {
+        doubt(self.beyond_doubt(surprise), 1, self.stretches as f64)
+    }
+
+    /// The same of the sum over all joints.
+    pub fn of_all(self, surprise: f64) -> f64 {
+        doubt(self.beyond_doubt(surprise), self.joints, self.stretches as f64 / self.joints.max(1) as f64)
+    }
+
+    /// A surprise in scales that are known for sure. The scale of a law is estimated as well as from the mean of so many
+    /// exponential numbers: one more of them, over that mean, passes x as often as (1 + x / n)^-n.
+    fn beyond_doubt(self, surprise: f64) -> f64 {
+        let numbers = self.known as f64 / VARIANCE_OF_SCALE;
+        numbers * (surprise / numbers).ln_1p()
+    }
+}
+
 /// Probability that the surprises of one window, summed over all joints, come this far by accident in a recording with
 /// `stretches` of each joint.
 ///
 /// In one of [`SCAN_INDEPENDENT`] windows a joint has a surprise at all, with an exponential tail; the sum over k joints that
 /// have one follows Erlang's law. That several joints are looked at costs a factor of two or three.
 pub(super) fn doubt(surprise: f64, joints: usize, stretches: f64) -> f64 {
+    if surprise <= 0.0 {
+        return 1.0;
+    }
     let (mut ways, mut term, mut erlang, mut expected) = (1.0, 1.0, 0.0, 0.0);
     for k in 1..=joints {
         ways *= (joints + 1 - k) as f64 / (k as f64 * SCAN_INDEPENDENT);
@@ -123,6 +159,6 @@ mod tests {
         assert!((doubt(12.0, 1, 60.0) - 60.0 * (-12.0_f64).exp()).abs() < 1e-6);
         let ratio = doubt(12.0, 6, 10.0) / doubt(12.0, 1, 60.0);
         assert!((1.5..3.0).contains(&ratio), "{ratio}");
-        assert_eq!(doubt(0.0, 0, 10.0), 0.0);
+        assert_eq!(doubt(0.0, 0, 10.0), 1.0);
     }
 }

@@ -1,5 +1,6 @@
 //! How far means of a residual that remembers wander, whatever a few pushes do to it.
 
+use crate::diagnosis::contact::spread::spread;
 use crate::diagnosis::rules::{SCAN_CLIPPED, SCAN_MOST_ORDER, SIGMA_PER_MAD};
 use crate::statistics::median::median;
 
@@ -22,8 +23,7 @@ impl Memory {
     pub fn of(motions: &[&[(usize, f64)]]) -> Option<Self> {
         let mut values: Vec<f64> = motions.iter().flat_map(|m| m.iter().map(|r| r.1)).collect();
         let level = median(&mut values);
-        let mut absolute: Vec<f64> = values.iter().map(|x| (x - level).abs()).collect();
-        let sigma = SIGMA_PER_MAD * median(&mut absolute);
+        let sigma = spread(values.iter().map(|x| x - level));
         if !(sigma.is_finite() && sigma > 0.0) {
             return None;
         }

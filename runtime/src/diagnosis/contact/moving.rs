@@ -1,16 +1,14 @@
 //! Pushes against a robot that moves: from the rows of a model's residual to windows, forces and how sure they are.
 
-use crate::diagnosis::contact::curves::curves;
 use crate::diagnosis::contact::felt::{Around, Felt, wrench};
-use crate::diagnosis::contact::scan::{Noise, Pushed, Track, scan};
+use crate::diagnosis::contact::noise::Noise;
+use crate::diagnosis::contact::scan::{Pushed, scan};
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::contact::track::{Left, Track};
 use crate::diagnosis::contact::windows::{duration, told};
-use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{
-    CONTACT_MARGIN, CREEPING, LARGEST_PUSHED_FRACTION, REVERSAL_LEFT_OUT, SETTLING,
-};
+use crate::diagnosis::rules::{CONTACT_MARGIN, LARGEST_PUSHED_FRACTION};
 use crate::effects::ContactForce;
 
 /// What a look at a residual finds.
@@ -19,16 +17,6 @@ pub(in crate::diagnosis) struct Look {
     noise: Noise,
     /// Probability that one of all windows of the recording comes as far by accident, up to which it is a push.
     level: f64,
-}
-
-/// What a model leaves of the torques.
-pub(in crate::diagnosis) struct Left<'a> {
-    /// Of every row.
-    pub residual: &'a [f64],
-    /// Columns on the same rows of which every joint may have its own part: what is like them is no push.
-    pub beside: &'a [Vec<f64>],
-    /// Columns on the same rows that the model was fitted with.
-    pub fitted: &'a [Vec<f64>],
 }
 
 /// Looks for pushes in what a model leaves on the rows of a design that known contacts are left out of.
@@ -41,51 +29,10 @@ pub(in crate::diagnosis) fn look(
     let signals = context.signals;
     let first = signals.iter().position(|s| s.is_target).unwrap_or(0);
     let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
-    let tracks: Vec<Track> = (0..design.joints).map(|joint| track(context, design, left, joint)).collect();
+    let tracks: Vec<Track> =
+        (0..design.joints).map(|joint| Track::of(context, design, left, joint)).collect();
     let (pushes, noise) = scan(&tracks, step, level);
     Look { pushes, noise, level }
-}
-
-/// The rows of a joint, but for those at which it creeps or is near its own reversals, and those near the beginning and the
-/// end of a motion: what friction, play and flexible gears do there comes and goes as a push does.
-fn track(context: &Context<'_>, design: &Design, left: &Left<'_>, joint: usize) -> Track {
-    let signals = context.signals;
-    let places = Places::of(design, joint);
-    let mut kept: Vec<usize> = Vec::new();
-    let creeping = CREEPING * context.scales[joint].speed;
-    let mut of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
-        let s = &signals[k];
-        let reach = (REVERSAL_LEFT_OUT * s.rate) as usize;
-        let mut near = near_reversals(&s.dq[joint], reach);
-        near.iter_mut().zip(&s.dq[joint]).for_each(|(near, dq)| *near |= dq.abs() < creeping);
-        let settling = ((SETTLING * s.rate) as usize + s.edge_samples).min(near.len());
-        near[..settling].fill(true);
-        let end = near.len() - settling;
-        near[end..].fill(true);
-        let rows = rows.iter().filter(|(_, r)| !near[design.rows[*r].centre]);
-        let rows: Vec<(usize, usize)> = rows.copied().collect();
-        kept.extend(rows.iter().map(|&(_, r)| r));
-        (s.is_target, rows.iter().map(|&(place, r)| (place, left.residual[r])).collect())
-    };
-    let motions = places.motions().iter().enumerate().map(&mut of_motion).collect();
-    let at: Vec<(usize, usize)> =
-        kept.iter().map(|&r| (design.rows[r].signal, design.rows[r].centre)).collect();
-    let mut beside = curves(context, joint, &at);
-    let on_kept = |column: &Vec<f64>| -> Vec<f64> { kept.iter().map(|&r| column[r]).collect() };
-    beside.extend(left.beside.iter().map(on_kept));
-    let of_joint = |column: &Vec<f64>| {
-        if kept.iter().any(|&r| column[r] != 0.0) { on_kept(column) } else { Vec::new() }
-    };
-    Track { joint, motions, beside, columns: left.fitted.iter().map(of_joint).collect() }
-}
-
-/// Whether a speed changes its sign within so many samples of each.
-fn near_reversals(dq: &[f64], reach: usize) -> Vec<bool> {
-    let mut near = vec![false; dq.len()];
-    for t in (1..dq.len()).filter(|&t| dq[t] * dq[t - 1] <= 0.0) {
-        near[t.saturating_sub(reach)..(t + reach).min(dq.len())].fill(true);
-    }
-    near
 }
 
 /// The pushes that were seen, with what all joints feel of them on `around`, whose rows leave nothing out. `None` where
@@ -153,18 +100,4 @@ pub(in crate::diagnosis) fn still_there(found: Contacts, again: Option<Contacts>
     };
     let wrenches: Vec<ContactForce> = again.wrenches.iter().filter(seen).cloned().collect();
     (!wrenches.is_empty()).then_some(Contacts { wrenches, windows: found.windows, ..again })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn samples_around_a_change_of_sign_are_near_a_reversal() {
-        let dq: Vec<f64> = (0..20).map(|k| f64::from(k) - 9.5).collect();
-        let near = near_reversals(&dq, 3);
-        assert_eq!((0..20).filter(|&k| near[k]).collect::<Vec<_>>(), vec![7, 8, 9, 10, 11, 12]);
-        assert!(near_reversals(&[1.0; 9], 3).iter().all(|x| !x));
-        assert!(near_reversals(&[], 3).is_empty());
-    }
 }

@@ -26,7 +26,7 @@ fn noise(rng: &mut Pcg64) -> Vec<Track> {
                 })
                 .filter(|(k, _)| (k + phase) % period > 4)
                 .collect();
-            Track { joint, motions: vec![(true, rows)], beside: vec![], columns: vec![] }
+            Track { joint, motions: vec![(true, rows)], beside: vec![], sizes: vec![], columns: vec![] }
         })
         .collect()
 }
@@ -53,7 +53,7 @@ fn hardly_one_recording_in_three_hundred_has_a_push_that_is_none() {
 /// Share of pushes of `lasts` seconds that are found on their joint at their time, and recordings with any other.
 fn found(lasts: f64, visible: f64, seed: u64) -> (f64, usize) {
     let mut rng = Pcg64::seed_from_u64(seed);
-    let runs = 200;
+    let runs = 400;
     let (mut hits, mut others) = (0, 0);
     for _ in 0..runs {
         let mut tracks = noise(&mut rng);
@@ -76,7 +76,7 @@ fn found(lasts: f64, visible: f64, seed: u64) -> (f64, usize) {
 fn medium_pushes_of_half_a_second_are_found() {
     let (share, others) = found(0.5, 2.5, 12);
     assert!(share >= 0.8, "{share}");
-    assert!(others <= 6, "{others}");
+    assert!(others <= 8, "{others}");
 }
 
 #[test]
@@ -161,6 +161,29 @@ fn what_a_model_takes_over_of_a_push_is_counted() {
 }
 
 #[test]
+fn noise_that_is_large_where_the_torque_is_makes_no_pushes() {
+    let mut rng = Pcg64::seed_from_u64(20);
+    let runs = 300;
+    let false_alarms = |told: bool, rng: &mut Pcg64| {
+        let once = |_| {
+            let mut tracks = noise(rng);
+            for track in &mut tracks {
+                let (period, phase) = (rng.random_range(2.0..6.0), rng.random_range(0.0..6.0));
+                let torque = |place: usize| (place as f64 * STEP / period + phase).sin();
+                let rows = &mut track.motions[0].1;
+                track.sizes = if told { vec![rows.iter().map(|r| torque(r.0)).collect()] } else { vec![] };
+                rows.iter_mut().for_each(|(place, x)| *x *= 0.3 + 2.0 * torque(*place).powi(4));
+            }
+            usize::from(!scan(&tracks, STEP, LEVEL).0.is_empty())
+        };
+        (0..runs).map(once).sum::<usize>()
+    };
+    let (one_size, uneven) = (false_alarms(false, &mut rng), false_alarms(true, &mut rng));
+    println!("{one_size} and {uneven} of {runs}");
+    assert!(uneven <= 2 && one_size > uneven, "{one_size} and {uneven} of {runs}");
+}
+
+#[test]
 fn edges_are_as_uncertain_as_they_say() {
     let mut rng = Pcg64::seed_from_u64(17);
     let mut outside = 0;
@@ -186,6 +209,7 @@ fn few_rows_are_not_scanned() {
         joint: 0,
         motions: vec![(true, (0..50).map(|k| (k, 1.0)).collect())],
         beside: vec![],
+        sizes: vec![],
         columns: vec![],
     };
     assert!(scan(&[short], STEP, LEVEL).0.is_empty());

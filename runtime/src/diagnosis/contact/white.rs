@@ -1,16 +1,18 @@
 //! The residual of one joint made white, and pushes looked for in it by a matched filter.
 //!
 //! The torque of a push rises and falls like half a sine wave. Its amplitude at a time and of a length is estimated by
-//! generalised least squares: an autoregression makes the residual and the half wave white (Cochrane and Orcutt 1949),
-//! and both are taken orthogonal to smooth curves over the joint's own state (Frisch and Waugh 1933). What repeats with
+//! generalised least squares: an autoregression makes the residual and the half wave white (Cochrane and Orcutt 1949), the size of
+//! its noise (`uneven`) of one size, and both are taken orthogonal to smooth curves over the joint's own state (Frisch and Waugh 1933). What repeats with
 //! position, speed or load is then no push, and a push in a state that no other part of the motion visits has nothing
 //! left that would tell it. Both are taken orthogonal to the columns of the model, too, on all joints together
 //! (`absorbed`): a fit takes over a part of every push, and of the noise, and what it leaves is smaller than either.
 
 use crate::diagnosis::contact::memory::Memory;
+use crate::diagnosis::contact::spread::spread;
+use crate::diagnosis::contact::track::Track;
+use crate::diagnosis::contact::uneven::deviations;
 use crate::diagnosis::rows::gram::dot;
-use crate::diagnosis::rules::{SCAN_LEFT_BY_MODEL, SCAN_OWN_SHAPE, SCAN_PRESENT, SIGMA_PER_MAD};
-use crate::statistics::median::median;
+use crate::diagnosis::rules::{SCAN_FILLED, SCAN_LEFT_BY_MODEL, SCAN_OWN_SHAPE, SCAN_PRESENT};
 use std::ops::Range;
 
 /// Rows of one motion.
@@ -31,6 +33,8 @@ pub(in crate::diagnosis) struct Motion {
 pub(in crate::diagnosis) struct White {
     pub motions: Vec<Motion>,
     memory: Memory,
+    /// Standard deviation of the noise of each row, in that of all.
+    deviations: Vec<f64>,
     /// First row of the stretch of neighbouring rows that each row is in, and the row after its last.
     stretch: Vec<[usize; 2]>,
     /// White residual, in its own standard deviations, orthogonal to the curves.
@@ -45,16 +49,11 @@ pub(in crate::diagnosis) struct White {
 }
 
 impl White {
-    /// From the rows of all motions, `(is_target, [(place, residual)])`, and columns over all of these rows that the
-    /// residual is judged beside. What `pushes` of it are, over all rows, too, is not what it remembers. `None` where the
-    /// residual has no spread.
-    pub fn of(
-        motions: &[(bool, Vec<(usize, f64)>)],
-        beside: &[Vec<f64>],
-        pushes: &[Vec<f64>],
-    ) -> Option<Self> {
+    /// From the rows of a joint. What `pushes` over all of these rows are is not what the residual remembers. `None` where it has
+    /// no spread.
+    pub fn of(track: &Track, pushes: &[Vec<f64>]) -> Option<Self> {
         let (mut kept, mut raw, mut stretch) = (Vec::new(), Vec::new(), Vec::new());
-        for (k, (is_target, rows)) in motions.iter().enumerate() {
+        for (k, (is_target, rows)) in track.motions.iter().enumerate() {
             let first = raw.len();
             let places: Vec<usize> = rows.iter().map(|r| r.0).collect();
             raw.extend(rows.iter().map(|r| r.1));
@@ -67,34 +66,38 @@ impl White {
             }
             kept.push(Motion { motion: k, is_target: *is_target, places, first });
         }
-        let plain = orthonormal(beside.to_vec());
-        let left = without(&raw, &plain);
-        let unpushed = without(&raw, &orthonormal([beside, pushes].concat()));
+        let beside = |more: &[Vec<f64>]| orthonormal([&track.beside, more].concat());
+        let deviations = deviations(&without(&raw, &beside(pushes)), &track.sizes);
+        let even = |columns: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            columns.iter().map(|x| x.iter().zip(&deviations).map(|(x, d)| x / d).collect()).collect()
+        };
+        let (raw, curves, pushes) = (even(&[raw]).concat(), even(&track.beside), even(pushes));
+        let left = without(&raw, &orthonormal(curves.clone()));
+        let unpushed = without(&raw, &orthonormal([curves.clone(), pushes].concat()));
         let neighbours: Vec<Vec<(usize, f64)>> = kept.iter().map(|m| m.rows(&unpushed)).collect();
         let neighbours: Vec<&[(usize, f64)]> = neighbours.iter().map(Vec::as_slice).collect();
         let memory = Memory::of(&neighbours)?;
         let mut white = Self {
             motions: kept,
             memory,
+            deviations,
             stretch,
             residual: Vec::new(),
             curves: Vec::new(),
             absorbed: Vec::new(),
             sigma: 1.0,
         };
-        white.curves = orthonormal(beside.iter().map(|c| white.whitened(c)).collect());
+        white.curves = orthonormal(curves.iter().map(|c| white.whitened(c)).collect());
         white.residual = without(&white.whitened(&left), &white.curves);
         white.scale().then_some(white)
     }
 
-    /// Divides the residual by its standard deviation, if it has one: from the median of its absolute values, of as many as the
-    /// curves and the model leave free.
+    /// Divides the residual by its standard deviation, if it has one: of as many rows as the curves and the model leave free.
     pub(super) fn scale(&mut self) -> bool {
         let rows = self.residual.len() as f64;
         let absorbed: f64 = self.absorbed.iter().flatten().map(|x| x * x).sum();
         let free = (rows - self.curves.len() as f64 - absorbed).max(1.0);
-        let mut absolute: Vec<f64> = self.residual.iter().map(|x| x.abs()).collect();
-        let sigma = SIGMA_PER_MAD * median(&mut absolute) * (rows / free).sqrt();
+        let sigma = spread(self.residual.iter().copied()) * (rows / free).sqrt();
         let has_spread = sigma.is_finite() && sigma > 0.0;
         if has_spread {
             self.residual.iter_mut().for_each(|x| *x /= sigma);
@@ -105,12 +108,13 @@ impl White {
 
     /// A column over all rows, white, orthogonal to the curves, in standard deviations of the residual.
     pub(super) fn column(&self, x: &[f64]) -> Vec<f64> {
-        let mut column = without(&self.whitened(x), &self.curves);
+        let even: Vec<f64> = x.iter().zip(&self.deviations).map(|(x, d)| x / d).collect();
+        let mut column = without(&self.whitened(&even), &self.curves);
         column.iter_mut().for_each(|x| *x /= self.sigma);
         column
     }
 
-    /// Innovations of a series over all rows.
+    /// Innovations of a series over all rows whose noise is of one size.
     fn whitened(&self, x: &[f64]) -> Vec<f64> {
         (0..x.len()).map(|t| self.memory.innovation(t - self.stretch[t][0], |back| x[t - back])).collect()
     }
@@ -147,7 +151,7 @@ impl White {
         }
         let reach = (rows.end + self.memory.order()).min(self.stretch[rows.end - 1][1]);
         scratch.wave.clear();
-        scratch.wave.extend(rows.clone().map(|r| self.height(motion, r, &places)));
+        scratch.wave.extend(rows.clone().map(|r| self.height(motion, r, &places) / self.deviations[r]));
         scratch.wave.resize(reach - rows.start, 0.0);
         scratch.white.clear();
         for t in rows.start..reach {
@@ -179,6 +183,12 @@ impl Motion {
     /// Number of places up to its last row.
     pub fn length(&self) -> usize {
         self.places.last().map_or(0, |p| p + 1)
+    }
+
+    /// Whether enough of these places have rows to tell what the largest window there does.
+    pub(super) fn is_filled(&self, places: Range<usize>) -> bool {
+        let before = |place: usize| self.places.partition_point(|p| *p < place);
+        (before(places.end) - before(places.start)) as f64 >= SCAN_FILLED * places.len() as f64
     }
 
     /// Its places with values of a series over all rows of the joint.
