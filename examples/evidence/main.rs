@@ -44,6 +44,9 @@ struct Options {
 
 fn main() -> Result<(), Failure> {
     let options = Options::parse();
+    if let Some(folder) = &options.out {
+        std::fs::create_dir_all(folder)?;
+    }
     let mut stories = Vec::new();
     for story in &STORIES {
         let wanted = options.robot.is_empty() || options.robot.iter().any(|r| r == story.robot);

@@ -155,6 +155,28 @@ mod tests {
     }
 
     #[test]
+    fn laws_of_a_dozen_stretches_are_as_uncertain_as_they_say() {
+        let mut rng = Pcg64::seed_from_u64(2);
+        let (stretches, runs) = (12, 8000);
+        let chances = Chances { joints: 1, stretches, known: stretches };
+        let mut doubts: Vec<f64> = (0..runs)
+            .map(|_| {
+                let mut largest = || -> Vec<f64> {
+                    (0..stretches).map(|_| 20.0 - 6.0 * (-rng.random::<f64>().ln()).ln()).collect()
+                };
+                let next = largest().into_iter().fold(0.0, f64::max);
+                let law = Law::of_unpushed(&mut largest()).expect("a dozen stretches");
+                chances.of_all(law.surprise(next))
+            })
+            .collect();
+        doubts.sort_by(f64::total_cmp);
+        for share in [0.1, 0.02, 0.005] {
+            let said = doubts[(share * runs as f64) as usize];
+            assert!((0.5 * share..2.0 * share).contains(&said), "{share}: {said}");
+        }
+    }
+
+    #[test]
     fn one_joint_alone_is_judged_by_its_own_law() {
         assert!((doubt(12.0, 1, 60.0) - 60.0 * (-12.0_f64).exp()).abs() < 1e-6);
         let ratio = doubt(12.0, 6, 10.0) / doubt(12.0, 1, 60.0);
