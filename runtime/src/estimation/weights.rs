@@ -6,6 +6,7 @@ use super::solve::{back_substitute, inverse_gram};
 use super::{Factor, RANK_TOLERANCE};
 use crate::statistics::moderation::{Lent, Prior, Variance};
 use nalgebra::DMatrix;
+use std::borrow::Cow;
 
 /// Largest relative change of a sigma at which the weights have converged.
 const CONVERGED: f64 = 1e-4;
@@ -26,11 +27,22 @@ pub(super) struct Weights {
 
 /// All groups as one factor, each divided by its sigma.
 pub(super) fn stack(observation: &Observation, sigma: &[f64]) -> Factor {
+    stacked(observation, sigma, |group| Cow::Borrowed(&group.factor))
+}
+
+/// The same of all rows, with what the moments of the reversals take.
+pub(super) fn stack_all_rows(observation: &Observation, sigma: &[f64]) -> Factor {
+    stacked(observation, sigma, |group| Cow::Owned(group.of_all_rows()))
+}
+
+fn stacked<'a>(
+    observation: &'a Observation,
+    sigma: &[f64],
+    factor: impl Fn(&'a EquationFactor) -> Cow<'a, Factor>,
+) -> Factor {
     let mut all = Factor::new(observation.unknowns.len());
-    for (group, sigma) in observation.groups.iter().zip(sigma) {
-        if group.factor.rows() > 0 {
-            all.merge_weighted(&group.factor, &group.columns, 1.0 / sigma);
-        }
+    for (group, sigma) in observation.groups.iter().zip(sigma).filter(|(g, _)| g.factor.rows() > 0) {
+        all.merge_weighted(&factor(group), &group.columns, 1.0 / sigma);
     }
     all
 }

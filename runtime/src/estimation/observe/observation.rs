@@ -85,6 +85,18 @@ impl EquationFactor {
         EquationFactor { columns, factor: self.factor.hold(&held), reversals, ..*self }
     }
 
+    /// R of [W Y] of all rows, with what the moments of the reversals take.
+    pub(crate) fn of_all_rows(&self) -> Factor {
+        let mut all = self.factor.clone();
+        let stride = self.reversals.len().next_multiple_of(4);
+        let mut block = vec![0.0; (self.columns.len() + 1) * stride];
+        for (i, row) in self.reversals.iter().enumerate() {
+            row.iter().enumerate().for_each(|(l, x)| block[l * stride + i] = *x);
+        }
+        all.push(self.reversals.len(), stride, &mut block);
+        all
+    }
+
     /// Sum of the squares of Y - W chi over all rows, for all unknowns of the observation.
     pub(crate) fn squares_left(&self, chi: &[f64]) -> f64 {
         let own: Vec<f64> = self.columns.iter().map(|&u| chi[u]).collect();

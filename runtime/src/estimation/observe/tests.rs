@@ -327,10 +327,7 @@ fn parameters_do_not_depend_on_the_moment_at_which_friction_changes_its_sign() {
     };
     assert!(error(&true_friction.groups[0].factor) < 1e-9);
     let group = &late.groups[0];
-    let mut as_measured = group.factor.clone();
-    let mut row: Vec<f64> = group.reversals[0].iter().flat_map(|&x| [x, 0.0, 0.0, 0.0]).collect();
-    as_measured.push(1, 4, &mut row);
-    let (own, plain) = (error(&group.factor), error(&as_measured));
+    let (own, plain) = (error(&group.factor), error(&group.of_all_rows()));
     assert!(plain > 1e-5 && own < 0.1 * plain, "{own} {plain}");
 }
 
@@ -342,5 +339,7 @@ fn errors_count_what_the_moments_of_reversals_take() {
     let left = group.squares_left(&chi);
     let own: Vec<f64> = group.columns.iter().map(|&u| chi[u]).collect();
     assert!(left > group.factor.residual_norm(&own).powi(2));
+    assert!((group.of_all_rows().residual_norm(&own).powi(2) - left).abs() < 1e-12 * left);
+    assert_eq!(group.of_all_rows().rows(), group.factor.rows() + group.reversals.len());
     assert!(group.squares_measured() > group.factor.norm_y().powi(2));
 }

@@ -18,7 +18,7 @@ mod pseudo_inertia;
 mod release;
 
 use super::observe::Observation;
-use super::weights::stack;
+use super::weights::stack_all_rows;
 use super::{Estimate, per_equation, relative_error};
 use crate::model::Robot;
 use problem::Problem;
@@ -59,12 +59,15 @@ pub fn physical_fit(robot: &Robot, observation: &Observation, estimate: &Estimat
         return None;
     }
     let sigma = sigmas(observation, estimate)?;
-    let stacked = stack(observation, &sigma);
-    let free = stacked.residual_norm(&estimate.chi()).powi(2);
+    // Errors count all rows. A friction and an offset that only rows around a reversal tell apart can be anything for a fit
+    // whose moment of the reversal is free, and leave any error in these rows.
+    let stacked = stack_all_rows(observation, &sigma);
+    let unknowns = stacked.unknowns();
+    let free = stacked.r(unknowns, unknowns).powi(2);
     if !(free.is_finite() && free > 0.0) {
         return None;
     }
-    let unweighted = stack(observation, &vec![1.0; observation.groups.len()]);
+    let unweighted = stack_all_rows(observation, &vec![1.0; observation.groups.len()]);
     let problem = Problem::new(robot, &stacked, &unweighted, free);
     let standard = problem.solve()?;
     let chi = robot.base_from_standard(standard.as_slice());

@@ -12,16 +12,28 @@ fn pendulum() -> RecursiveModel {
 
 /// Fits a swing whose torque is `zz` ddq + `weight` sin q + friction(dq): the free estimate and the physical one.
 fn fitted(zz: f64, weight: f64, friction: impl Fn(f64) -> f64) -> (Estimate, PhysicalFit) {
+    fitted_on([0.0, 20.0], zz, weight, friction)
+}
+
+/// The same of a swing that goes on by `turning` rad/s besides, for so many seconds.
+fn fitted_on(
+    [turning, seconds]: [f64; 2],
+    zz: f64,
+    weight: f64,
+    friction: impl Fn(f64) -> f64,
+) -> (Estimate, PhysicalFit) {
     let model = pendulum();
-    let (rate, samples) = (200.0, 4000);
+    let rate = 200.0;
+    let samples = (seconds * rate) as usize;
     let time = |k: usize| k as f64 / rate;
     // Two frequencies, so that inertia, weight and friction are told apart; a torque noise that never repeats.
     let wave = |t: f64, power: i32| {
         let (a, b) = (1.7_f64, 5.3_f64);
         [a.powi(power) * 1.1, b.powi(power) * 0.4].into_iter().zip([a * t, b * t])
     };
-    let q: Vec<f64> = (0..samples).map(|k| wave(time(k), 0).map(|(s, x)| s * x.sin()).sum()).collect();
-    let dq: Vec<f64> = (0..samples).map(|k| wave(time(k), 1).map(|(s, x)| s * x.cos()).sum()).collect();
+    let q = |k: usize| turning * time(k) + wave(time(k), 0).map(|(s, x)| s * x.sin()).sum::<f64>();
+    let dq = |k: usize| turning + wave(time(k), 1).map(|(s, x)| s * x.cos()).sum::<f64>();
+    let (q, dq): (Vec<f64>, Vec<f64>) = ((0..samples).map(q).collect(), (0..samples).map(dq).collect());
     let ddq: Vec<f64> = (0..samples).map(|k| wave(time(k), 2).map(|(s, x)| -s * x.sin()).sum()).collect();
     let torque = (0..samples)
         .map(|k| zz * ddq[k] + weight * q[k].sin() + friction(dq[k]) + 0.05 * (37.7 * time(k).powi(2)).sin())
@@ -87,6 +99,16 @@ fn what_a_weight_needs_of_inertia_is_demanded() {
     assert!(
         impossible.strain > 10.0 && impossible.relative_error.unwrap() > 2.0 * free.relative_error.unwrap()
     );
+}
+
+#[test]
+fn a_friction_that_only_the_end_of_a_motion_tells_from_an_offset_leaves_no_more_than_a_free_one() {
+    // Forwards all the time but for its last hundredths of a second, in which friction does not turn round.
+    let (free, fit) = fitted_on([3.9, 1.935], 0.6, 7.0, |v| 0.8 * v + 0.5 * (v + 0.1).signum());
+    let value = |name: &str| free.parameters.iter().find(|p| p.name == name).unwrap().value;
+    assert!(value("Fc1") < -1.0 && value("off1") > 2.0, "{} and {}", value("Fc1"), value("off1"));
+    let [free, fit] = [free.relative_error, fit.relative_error].map(Option::unwrap);
+    assert!(fit < 0.85 * free, "{fit} and {free}");
 }
 
 #[test]
