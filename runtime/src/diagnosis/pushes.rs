@@ -100,7 +100,8 @@ fn pushed_in_motion(
 ) -> (Option<Contacts>, Option<Contacts>) {
     let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
     let context = &search.model.context;
-    let level = if search.model.terms.is_empty() { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
+    let nothing_else = search.model.terms.is_empty() && search.ties.is_empty() && search.rejected.is_empty();
+    let level = if nothing_else { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
     let ringing = ringing(&search.model, &outside);
     let left = Left {
         residual: &search.model.residual_on(&outside),

@@ -456,9 +456,13 @@ pub(super) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording in which nothing else was found. Statistics: one in five thousand, of which the candidates that
 /// are left out of what they are compared with make one in a thousand; size and power in the tests of `scan`.
 pub(super) const SCAN_LEVEL: f64 = 2e-4;
-/// The same beside laws. Judgement: a law that is fitted nearly right leaves short waves where it acts, which the law of the
-/// largest means knows nothing of; pushes of a hand are mostly far beyond.
-pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 4e-5;
+/// The same beside laws, and where laws were found that could not be told apart or kept. Judgement: a law that is fitted nearly
+/// right, or not at all, leaves short waves where it acts, which the law of the largest means knows nothing of, and of which
+/// joints feel the same; pushes of a hand are mostly far beyond.
+pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-6;
+/// A push whose half wave is longer than this, s, is none. Mechanics: what lasts longer than the longest window goes on as slowly
+/// as the motion does, and a law that acts as long as a stroke looks like it.
+pub(super) const SCAN_LONGEST: f64 = 2.7;
 /// Windows that one of so many recordings has by accident do not count among what the residual does by itself until they have
 /// turned out to be no pushes. Statistics: hardly anything is left out of noise.
 pub(super) const SCAN_SUSPECT: f64 = 0.05;

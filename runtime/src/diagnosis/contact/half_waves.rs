@@ -3,7 +3,7 @@
 use crate::diagnosis::contact::memory::widening;
 use crate::diagnosis::contact::white::{Motion, Scratch, White};
 use crate::diagnosis::rules::{
-    SCAN_EDGE, SCAN_IMPACT, SCAN_LENGTHS, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH,
+    SCAN_EDGE, SCAN_IMPACT, SCAN_LENGTHS, SCAN_LONGEST, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH,
 };
 
 /// How much wider than its standard deviation the half waves of each length spread.
@@ -147,7 +147,7 @@ impl HalfWaves {
 
     /// The window of any length near one of the grid whose half wave fits best, with how well its edges are known: as far as
     /// the squared deviation falls by one, and as far as pushes of other shapes begin and end elsewhere. `None` where what fits
-    /// best is over too soon.
+    /// best is over too soon, or lasts too long.
     pub fn refined(&self, motion: usize, window: Window) -> Option<Refined> {
         let (white, length) = (&self.white, self.widths.lengths[window.length]);
         let [from, to] = self.places(window);
@@ -167,9 +167,11 @@ impl HalfWaves {
             }
         }
         // What is over sooner is an impact, and none where the rows are too far apart to tell.
-        let shortest = (SCAN_IMPACT / self.step) as usize;
-        let best =
-            tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0)).filter(|t| t.2 - t.1 >= shortest)?;
+        let [shortest, longest] = [SCAN_IMPACT, SCAN_LONGEST].map(|lasts| (lasts / self.step) as usize);
+        let best = tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0))?;
+        if !(shortest..=longest.max(shortest)).contains(&(best.2 - best.1)) {
+            return None;
+        }
         let near: Vec<&(f64, usize, usize)> = tried.iter().filter(|t| t.0 >= best.0 - 1.0).collect();
         let width = |edge: fn(&(f64, usize, usize)) -> usize| {
             let (low, high) = near.iter().fold((usize::MAX, 0), |(l, h), t| (l.min(edge(t)), h.max(edge(t))));
