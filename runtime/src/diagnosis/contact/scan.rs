@@ -117,8 +117,7 @@ impl<'a> Scan<'a> {
         scan
     }
 
-    /// Looks at all windows beside the model and the candidates: their half waves, what joints feel of the candidates, and the
-    /// laws of windows away from candidates.
+    /// Looks at all windows beside the model and the candidates: their half waves, and what joints feel of the candidates.
     fn look(&mut self) {
         let (whites, amplitudes) = self.whites(&self.candidates);
         for (joint, white) in self.joints.iter_mut().zip(whites) {
@@ -135,7 +134,6 @@ impl<'a> Scan<'a> {
             };
             candidate.felt = self.joints.iter().zip(amplitudes).map(felt).collect();
         }
-        self.fit_laws(Law::of);
     }
 
     /// The residuals beside the model and half waves of each joint for these candidates, where no candidate is what a residual
@@ -144,6 +142,9 @@ impl<'a> Scan<'a> {
         let half_wave =
             |joint: &Joint<'_>, c: &Candidate| joint.rows.of_half_wave(c.pushed.motion, c.places());
         let white = |joint: &Joint<'_>| {
+            if self.candidates.is_empty() {
+                return joint.rows.clone();
+            }
             let pushes: Vec<Vec<f64>> = self.candidates.iter().map(|c| half_wave(joint, c)).collect();
             White::of(joint.track, &pushes).unwrap_or_else(|| joint.rows.clone())
         };
@@ -194,6 +195,7 @@ impl<'a> Scan<'a> {
     /// Adds the windows in which one joint does what it does by accident in one of [`SCAN_SUSPECT`] recordings, the surest first,
     /// none next to another, as long as all of them are an exception; whether there are any.
     fn add_suspects(&mut self) -> bool {
+        self.fit_laws(Law::of);
         let mut beyond: Vec<(f64, usize, usize, Window)> = Vec::new();
         for (k, joint) in self.joints.iter().enumerate() {
             let Some(law) = joint.law else { continue };
@@ -243,10 +245,10 @@ impl<'a> Scan<'a> {
     /// The candidates, where those of a joint take so little of the motion that they are an exception.
     fn pushes(&self) -> Vec<Pushed> {
         let of_joint = |joint: &Joint<'_>| {
-            let own = self.candidates.iter().map(|c| &c.pushed).filter(|p| p.joint == joint.track.joint);
-            let pushed: usize = own.clone().map(|p| p.places[1] + 1 - p.places[0]).sum();
+            let own = self.candidates.iter().filter(|c| c.pushed.joint == joint.track.joint);
+            let pushed: usize = own.clone().map(|c| c.places().len()).sum();
             let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * joint.waves.targets() as f64;
-            if few { own.cloned().collect() } else { Vec::new() }
+            if few { own.map(|c| c.pushed.clone()).collect() } else { Vec::new() }
         };
         self.joints.iter().flat_map(of_joint).collect()
     }
