@@ -117,7 +117,8 @@ impl Prepared {
     pub fn context<'a>(&'a self, model: &'a dyn Model) -> Result<Context<'a>, DiagnosisError> {
         let signals = &self.motions.signals;
         let context = Context::new(model, signals, scales(model, signals, &self.chi), self.chi.clone())?;
-        Ok(context.beside(self.motions.settings().reference.clone()))
+        let settings = self.motions.settings();
+        Ok(context.on(settings.threads).beside(settings.reference.clone()))
     }
 
     /// A skew of more than a part of a sample is taken out of the motions themselves: what is to be expected of it, as one

@@ -108,8 +108,10 @@ pub(super) const ENOUGH_BLOCKS: usize = 24;
 /// Relative ridge of a fit: what is not determined stays small. Mechanics: far below any part that counts
 /// as own, far above rounding.
 pub(super) const FIT_RIDGE: f64 = 1e-10;
-/// Rounds of weights from the residuals' own standard deviations. Judgement: they have converged; not measured.
+/// Most rounds of weights from the residuals' own standard deviations. Judgement: they have converged; not measured.
 pub(super) const WEIGHT_ROUNDS: usize = 6;
+/// Relative change of these standard deviations at which the rounds end. Numerics: far below how well they are known.
+pub(super) const WEIGHTS_AT_REST: f64 = 1e-9;
 /// Least standard deviation of a joint relative to its largest torque: noise-free recordings stay finite. Mechanics.
 pub(super) const LEAST_RELATIVE_SIGMA: f64 = 1e-9;
 /// Least standard deviation of a joint, N.m or N: the same for a joint without torque. Mechanics.
@@ -242,6 +244,8 @@ pub(super) const NOISE_MISSED: f64 = 0.25;
 
 /// Most candidates of a round whose evidence is worked out. Times only: those further down explain too little.
 pub(super) const MOST_CHECKED: usize = 30;
+/// How many of them go through the gate at a time. Times: threads have work, and little of it is for nothing.
+pub(super) const GATES_AHEAD: usize = 4;
 /// Part of the error of all joints that must stay for the joint on which most is gained to be told too. Words only.
 pub(super) const SHOWS_IN_ALL: f64 = 0.95;
 /// Rivals that are told. Words only.
@@ -323,6 +327,8 @@ pub(super) const CURVE_RIDGE: f64 = 1e-3;
 /// Part of a variable's values beyond each end of the interval that curves are over. Statistics: single spikes do not
 /// stretch it.
 pub(super) const FREE_FORM_TAIL: f64 = 0.001;
+/// Most single variables that are judged on held-out motion. Times only: more than are told.
+pub(super) const FREE_FORM_SINGLES: usize = 12;
 /// Most pairs of variables that are judged on held-out motion, and as many with the best variable alone. Times only.
 pub(super) const FREE_FORM_PAIRS: usize = 8;
 

@@ -5,7 +5,7 @@ use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::free::values;
-use crate::diagnosis::rules::{AIC_PENALTY, CURVE_RIDGE, FREE_FORM_PAIRS, FREE_FORM_TAIL};
+use crate::diagnosis::rules::{AIC_PENALTY, CURVE_RIDGE, FREE_FORM_PAIRS, FREE_FORM_SINGLES, FREE_FORM_TAIL};
 use crate::effects::{Axis, EffectKind, FreeLaw, Place, Seen, Variable};
 use crate::parallel;
 use nalgebra::{DMatrix, DVector};
@@ -26,7 +26,7 @@ pub(in crate::diagnosis) struct Screened {
     pub tried: usize,
 }
 
-/// Judges every law over one variable on a joint, and over two those that gain most at a first look.
+/// Judges the laws over one variable on a joint, and over two, that gain most at a first look.
 pub(in crate::diagnosis) fn screen(
     context: &Context<'_>,
     regression: &Regression,
@@ -43,24 +43,25 @@ pub(in crate::diagnosis) fn screen(
         let law = laws.get(verdict.trial)?.clone();
         Some(Judged { law, candidate, verdict })
     };
-    let single = sorted(parallel::map(threads, axes.len(), |k| judged(&[FreeLaw::one(axes[k])])));
+    let glance = Glance::new(context, regression, joint, &axes);
+    let gains = parallel::map(threads, axes.len(), |k| glance.gain(&FreeLaw::one(axes[k]), &[k]));
+    let most = most_gained(&gains, FREE_FORM_SINGLES);
+    let single = sorted(parallel::map(threads, most.len(), |k| judged(&[FreeLaw::one(axes[most[k]])])));
     let pairs: Vec<[usize; 2]> =
         (0..axes.len()).flat_map(|a| (a + 1..axes.len()).map(move |b| [a, b])).collect();
-    let glance = Glance::new(context, regression, joint, &axes);
     // Products, and sums with the best variable: it may be half of one.
     let best = single.first().and_then(|j| axes.iter().position(|a| a.variable == j.law.axes[0].variable));
     let gains = parallel::map(threads, pairs.len(), |k| {
         let [product, sum, _] = FreeLaw::two(axes[pairs[k][0]], axes[pairs[k][1]]);
         let with_best = best.is_some_and(|b| pairs[k].contains(&b));
-        let of = |law: &FreeLaw| glance.gain(law, pairs[k]);
+        let of = |law: &FreeLaw| glance.gain(law, &pairs[k]);
         [of(&product), if with_best { of(&sum) } else { f64::NEG_INFINITY }]
     });
     let mut order: Vec<usize> = Vec::new();
     for way in 0..2 {
-        let mut ranked: Vec<usize> =
-            (0..pairs.len()).filter(|k| gains[*k][way] > 0.0 && !order.contains(k)).collect();
-        ranked.sort_by(|&a, &b| gains[b][way].total_cmp(&gains[a][way]));
-        order.extend(ranked.into_iter().take(FREE_FORM_PAIRS));
+        let left = |k: usize| if order.contains(&k) { f64::NEG_INFINITY } else { gains[k][way] };
+        let left: Vec<f64> = (0..pairs.len()).map(left).collect();
+        order.extend(most_gained(&left, FREE_FORM_PAIRS));
     }
     let judge_pair = |k: usize| judged(&FreeLaw::two(axes[pairs[order[k]][0]], axes[pairs[order[k]][1]]));
     let judged_pairs = sorted(parallel::map(threads, order.len(), judge_pair));
@@ -83,6 +84,14 @@ pub(in crate::diagnosis) fn best_of_pairs(
     let of_shape = |shape| make(context, &regression.design, EffectKind::FreeForm, place, &[shape], change);
     let judged = shapes.map(of_shape).filter_map(|c| Some((regression.judge(&c)?.total(), c)));
     judged.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
+}
+
+/// The first so many that gain, those that gain most first.
+fn most_gained(gains: &[f64], count: usize) -> Vec<usize> {
+    let mut ranked: Vec<usize> = (0..gains.len()).filter(|&k| gains[k] > 0.0).collect();
+    ranked.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]));
+    ranked.truncate(count);
+    ranked
 }
 
 fn sorted(judged: Vec<Option<Judged>>) -> Vec<Judged> {
@@ -115,8 +124,9 @@ fn axes(context: &Context<'_>, regression: &Regression, joint: usize) -> Vec<Axi
 struct Glance {
     /// Variables with their directions at the rows, `[axis][row]`.
     seen: Vec<Vec<Seen>>,
-    /// Orthonormal columns of the model.
+    /// Orthonormal columns of the model, one a row.
     model: DMatrix<f64>,
+    /// What the model leaves, without what its columns make on these rows alone.
     residual: DVector<f64>,
     /// One over the variance of the residual.
     weight: f64,
@@ -155,28 +165,34 @@ impl Glance {
                 kept.push(&*column / left);
             }
         }
-        let residual = regression.residual();
+        let left = regression.residual();
+        let mut residual = DVector::from_iterator(rows.len(), rows.iter().map(|&r| left[r]));
+        for q in &kept {
+            residual.axpy(-q.dot(&residual), q, 1.0);
+        }
         Self {
             seen: axes.iter().map(of_axis).collect(),
-            model: if kept.is_empty() { DMatrix::zeros(rows.len(), 0) } else { DMatrix::from_columns(&kept) },
-            residual: DVector::from_iterator(rows.len(), rows.iter().map(|&r| residual[r])),
+            model: DMatrix::from_fn(kept.len(), rows.len(), |k, r| kept[k][r]),
+            residual,
             weight: regression.sigma[joint].powi(-2),
         }
     }
 
     /// What a law gains in units of the noise variance, after a penalty for its numbers.
-    fn gain(&self, law: &FreeLaw, axes: [usize; 2]) -> f64 {
+    fn gain(&self, law: &FreeLaw, axes: &[usize]) -> f64 {
         let (rows, k) = (self.residual.len(), law.amplitudes());
         let mut z = DMatrix::zeros(rows, k);
-        let mut out = Vec::with_capacity(k);
+        let (mut at, mut out) = (Vec::with_capacity(axes.len()), Vec::with_capacity(k));
         for r in 0..rows {
-            law.columns(&axes.map(|a| self.seen[a][r]), &mut out);
+            at.clear();
+            at.extend(axes.iter().map(|&a| self.seen[a][r]));
+            law.columns(&at, &mut out);
             out.iter().enumerate().for_each(|(c, x)| z[(r, c)] = *x);
         }
-        let made = self.model.transpose() * &z;
-        z -= &self.model * made;
-        let mut g = z.transpose() * &z;
-        let b = z.transpose() * &self.residual;
+        // Products of what the columns of the model do not make of the law.
+        let made = &self.model * &z;
+        let mut g = z.tr_mul(&z) - made.tr_mul(&made);
+        let b = z.tr_mul(&self.residual);
         let largest = (0..k).map(|c| g[(c, c)]).fold(f64::MIN_POSITIVE, f64::max);
         for c in 0..k {
             g[(c, c)] += CURVE_RIDGE * largest;

@@ -85,7 +85,7 @@ fn nuisance_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
     for j in 0..design.joints {
         let mut on_joint = Vec::new();
         for (k, s) in context.signals.iter().enumerate() {
-            let curvature = twice_differentiated(&context.torques[k].rigid[j], s.rate);
+            let curvature = twice_differentiated(&context.torques(k).rigid[j], s.rate);
             design.sample(j, k, &curvature, &mut on_joint);
         }
         let mut column = vec![0.0; design.rows.len()];

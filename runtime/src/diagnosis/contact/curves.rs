@@ -21,7 +21,7 @@ pub(in crate::diagnosis) fn curves(
     out.extend([direction.clone(), vec![1.0; rows.len()]]);
     out.extend(over_position);
     out.extend(bent(&state(&|k, t| signals[k].dq[joint][t]), knots));
-    out.extend(bent(&state(&|k, t| context.torques[k].total[joint][t]), knots));
+    out.extend(bent(&state(&|k, t| context.torques(k).total[joint][t]), knots));
     out
 }
 

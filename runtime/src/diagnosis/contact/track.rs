@@ -63,7 +63,7 @@ impl Track {
         let of_joint = |column: &Vec<f64>| {
             if kept.iter().any(|&r| column[r] != 0.0) { on_kept(column) } else { Vec::new() }
         };
-        let torque = at.iter().map(|&(k, t)| context.torques[k].total[joint][t]).collect();
+        let torque = at.iter().map(|&(k, t)| context.torques(k).total[joint][t]).collect();
         let speed = at.iter().map(|&(k, t)| signals[k].dq[joint][t]).collect();
         let columns = left.fitted.iter().map(of_joint).collect();
         Self { joint, motions, beside, sizes: vec![torque, speed], columns }

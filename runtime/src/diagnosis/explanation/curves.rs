@@ -24,7 +24,7 @@ pub(in crate::diagnosis) fn abscissa(
     (signal, t): (usize, usize),
 ) -> f64 {
     let s = &context.signals[signal];
-    let torques = &context.torques[signal];
+    let torques = context.torques(signal);
     match effect.properties().abscissa {
         Abscissa::Speed => s.dq[joint][t],
         Abscissa::Position => s.q[joint][t],
@@ -169,7 +169,7 @@ fn ordered_by(model: &ExtendedModel<'_>, j: usize, residual: &[f64]) -> String {
         ("changes with time", over(&|s, r| s.time(r.centre))),
         (
             "has the sign of the speed and grows with the load torque",
-            over(&|s, r| context.torques[r.signal].rigid[j][r.centre] * s.dq[j][r.centre].signum()),
+            over(&|s, r| context.torques(r.signal).rigid[j][r.centre] * s.dq[j][r.centre].signum()),
         ),
     ];
     match candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {

@@ -26,6 +26,7 @@ use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
 use crate::effects::{Abscissa, EffectKind, EffectTerm, Form, Place, SmoothingWindow};
 use crate::model::{JointIndex, Robot};
+use crate::parallel;
 
 /// What is known when a search has ended, besides the search.
 pub(in crate::diagnosis) struct Ended<'a> {
@@ -54,7 +55,8 @@ pub(in crate::diagnosis) fn explain(
     let skew = ended.delay + model.slow.fit.chi[model.slow.design.parameters];
 
     // 1. What was found, and what it gains on motion that was held out.
-    let effects = (0..model.terms.len()).map(|k| of_term(model, k)).collect::<Result<Vec<_>, _>>()?;
+    let effects = parallel::map(settings.threads, model.terms.len(), |k| of_term(model, k));
+    let effects = effects.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut cannot_tell = cannot_tell(model, &effects);
     for tie in &search.ties {
         let [one, other] = [0, 1].map(|k| (tie.effects[k], tie.places[k]));

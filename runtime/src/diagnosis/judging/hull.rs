@@ -52,7 +52,7 @@ impl Beyond {
         let width = curve.columns.len() + 1;
         // One row of the joint a column.
         let value = |k: usize, local: usize| curve.columns.get(k).map_or(1.0, |c| c[local]);
-        let mut regressors = DMatrix::from_fn(width, all.len(), value);
+        let regressors = DMatrix::from_fn(width, all.len(), value);
         let fitted = regressors.select_columns(&trained);
         let Some((factor, scale)) = factored(&(&fitted * fitted.transpose())) else {
             return Self { joint, first, rows: vec![true; all.len()] };
@@ -60,12 +60,15 @@ impl Beyond {
         // A column that is zero on all fitted rows has no scale; a row on which it is not lies beyond them.
         let unseen = |row: DVectorView<'_, f64>| (0..width).any(|k| scale[k] == 0.0 && row[k] != 0.0);
         let mut beyond: Vec<bool> = regressors.column_iter().map(unseen).collect();
-        regressors.column_iter_mut().for_each(|mut row| row.component_mul_assign(&scale));
+        let mut whitening = DMatrix::from_diagonal(&scale);
         // The factor's diagonal is positive, so that there is a solution.
-        let _ = factor.l_dirty().solve_lower_triangular_mut(&mut regressors);
+        let _ = factor.l_dirty().solve_lower_triangular_mut(&mut whitening);
+        let regressors = whitening * regressors;
         let leverage: Vec<f64> = regressors.column_iter().map(|row| row.norm_squared()).collect();
         let largest = trained.iter().map(|&local| leverage[local]).fold(0.0, f64::max);
-        beyond.iter_mut().zip(leverage).for_each(|(beyond, leverage)| *beyond |= leverage > largest);
+        // What a fitted row has itself is passed, however its leverage was rounded.
+        let passed = largest * (1.0 + 1e-9);
+        beyond.iter_mut().zip(leverage).for_each(|(beyond, leverage)| *beyond |= leverage > passed);
         Self { joint, first, rows: beyond }
     }
 

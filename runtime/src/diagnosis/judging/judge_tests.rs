@@ -78,9 +78,9 @@ fn beside_a_curve_other_laws_are_not_judged_where_it_says_nothing() {
     let mut regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
     let mut judged_beside = |curve_on| {
         let besides = Besides { known: None, gains: Vec::new(), deviation: 1.0 };
-        let term =
-            |_: &Design, _| TermColumns { columns: columns.clone(), fixed: None, is_curve: false, curve_on };
-        regression.set_terms(1, besides, term).expect("a small problem is regular");
+        let term = TermColumns { columns: columns.clone(), fixed: None, is_curve: false, curve_on };
+        regression.set_terms(vec![term], besides).expect("a small problem is regular");
+        regression.hold_out().expect("a small problem is regular");
         let candidate = candidate(&regression.design, EffectKind::Spring, vec![other.clone()]);
         regression.judge(&candidate).expect("a small problem is regular")
     };

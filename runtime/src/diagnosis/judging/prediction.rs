@@ -6,7 +6,8 @@ use crate::diagnosis::judging::folds::Fold;
 use crate::diagnosis::judging::partial_regression::{BySegment, Residualised};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rows::fit::{Fit, add_rows};
+use crate::diagnosis::rows::gram::dot;
 use nalgebra::DVector;
 
 /// A trial with its amplitudes, and what the other parameters of a fit change by when it is added.
@@ -35,12 +36,7 @@ impl<'a> Prediction<'a> {
             if d[i] == 0.0 {
                 continue;
             }
-            let mut fitted = 0.0;
-            let mut moved = 0.0;
-            for (k, product) in gram.row(i).iter().enumerate() {
-                fitted += product * chi[k];
-                moved += product * d[k];
-            }
+            let [fitted, moved] = [chi, d].map(|x| dot(gram.row(i), x.as_slice()));
             linear += d[i] * (gram.with_y(i) - fitted);
             square += d[i] * moved;
         }
@@ -61,14 +57,11 @@ impl<'a> Prediction<'a> {
     pub fn changes(&self, design: &Design, joint: usize, rows: &[usize]) -> Vec<f64> {
         let first = design.of_joint(joint).start;
         let mut changes = vec![0.0; rows.len()];
-        let mut add = |column: &[f64], first: usize, factor: f64| {
-            changes.iter_mut().zip(rows).for_each(|(sum, r)| *sum += factor * column[r - first]);
-        };
         for (column, a) in self.trial.on_joint(joint).into_iter().zip(&self.amplitude) {
-            column.into_iter().for_each(|column| add(column, first, *a));
+            column.into_iter().for_each(|column| add_rows(&mut changes, *a, column, (rows, first)));
         }
         for (column, shift) in design.columns.iter().zip(&self.shift).filter(|(_, shift)| **shift != 0.0) {
-            add(column, 0, *shift);
+            add_rows(&mut changes, *shift, column, (rows, 0));
         }
         changes
     }

@@ -102,16 +102,11 @@ impl Regression {
         })
     }
 
-    /// Puts exactly `count` terms into the design, `columns(design, k)` those of term k, and fits again.
+    /// Puts exactly these terms into the design and fits again; what is held out follows by [`Self::hold_out`].
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
-    pub fn set_terms(
-        &mut self,
-        count: usize,
-        besides: Besides,
-        columns: impl Fn(&Design, usize) -> TermColumns,
-    ) -> Result<(), SingularDesign> {
+    pub fn set_terms(&mut self, terms: Vec<TermColumns>, besides: Besides) -> Result<(), SingularDesign> {
         self.design.columns.truncate(self.fixed_columns);
         self.design.y.clone_from(&self.measured);
         let known = besides.known.unwrap_or_default();
@@ -126,8 +121,7 @@ impl Regression {
             self.design.prior = Some(Arc::new(prior));
         }
         besides.gains.into_iter().for_each(|column| self.design.push(column));
-        for k in 0..count {
-            let term = columns(&self.design, k);
+        for term in terms {
             let start = self.design.columns.len();
             for column in term.columns {
                 match term.fixed {
@@ -144,6 +138,14 @@ impl Regression {
         self.design.refresh_from(self.fixed_columns);
         self.fit = Fit::weighted(&self.design, &self.sigma)?;
         self.sigma.clone_from(&self.fit.sigma);
+        Ok(())
+    }
+
+    /// Fits the folds of the design as it is, and works out what each leaves of the motion that it holds out.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where a fold has no fit.
+    pub fn hold_out(&mut self) -> Result<(), SingularDesign> {
         self.folds = folds(&self.design, &self.sigma)?;
         self.beyond = self.beyond_curves();
         self.held_out_squares = held_out_squares(&self.design, &self.fit, &self.folds, &self.beyond);

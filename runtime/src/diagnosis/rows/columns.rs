@@ -74,7 +74,7 @@ impl Context<'_> {
         shape: &[f64],
     ) -> Vec<Series> {
         let s = &self.signals[signal];
-        let torques = &self.torques[signal];
+        let torques = self.torques(signal);
         let gravity = law.needs_gravity(shape).then(|| &self.gravity(signal)[j]);
         let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
         let mut out = vec![0.0; columns.len()];
@@ -185,7 +185,7 @@ impl Context<'_> {
 
     fn compliant(&self, signal: usize, j: usize, shape: &[f64]) -> Series {
         let t = self.transmission(j, shape);
-        let motion = (&self.signals[signal], &self.torques[signal]);
+        let motion = (&self.signals[signal], self.torques(signal));
         self.links(signal).compliant((self.model, &self.chi_in(signal)), motion, j, &t)
     }
 

@@ -43,7 +43,7 @@ pub(in crate::diagnosis) struct Context<'a> {
     pub(super) engine: Arc<RecursiveModel>,
     pub(super) tables: Vec<Link<f64>>,
     pub signals: &'a [Signals],
-    pub torques: Vec<ModelTorques>,
+    torques: Vec<OnceLock<ModelTorques>>,
     pub scales: Vec<Scale>,
     /// Base parameters, without the bodies that were found.
     pub chi: Vec<f64>,
@@ -56,6 +56,8 @@ pub(in crate::diagnosis) struct Context<'a> {
     pub transmissions: Vec<(usize, Transmission)>,
     /// The robot before it changed, as a model.
     pub reference: Option<Arc<Reference>>,
+    /// Threads for what is made of it; 0: as many as the machine has.
+    pub threads: usize,
 }
 
 impl<'a> Context<'a> {
@@ -66,13 +68,12 @@ impl<'a> Context<'a> {
         chi: Vec<f64>,
     ) -> Result<Self, DiagnosisError> {
         let robot = model.robot();
-        let torques = signals.iter().map(|s| ModelTorques::new(model, &chi, s)).collect();
         Ok(Self {
             model,
             engine: Arc::new(derivable(robot)?),
             tables: Link::of(robot),
             signals,
-            torques,
+            torques: signals.iter().map(|_| OnceLock::new()).collect(),
             scales,
             chi,
             carried: Vec::new(),
@@ -81,7 +82,13 @@ impl<'a> Context<'a> {
             inertias: (0..robot.joints()).map(|_| OnceLock::new()).collect(),
             transmissions: Vec::new(),
             reference: None,
+            threads: 1,
         })
+    }
+
+    /// The same on so many threads.
+    pub fn on(self, threads: usize) -> Self {
+        Self { threads, ..self }
     }
 
     /// The same beside a model of the robot before it changed, and with the bodies that it has.
@@ -97,11 +104,16 @@ impl<'a> Context<'a> {
     /// Takes other base parameters and bodies: loads and model torques follow.
     pub fn update(&mut self, chi: Vec<f64>, carried: Vec<Carried>) {
         (self.chi, self.carried) = (chi, carried);
-        let of_motion = |k: usize| ModelTorques::new(self.model, &self.chi_in(k), &self.signals[k]);
-        self.torques = (0..self.signals.len()).map(of_motion).collect();
+        self.torques = self.signals.iter().map(|_| OnceLock::new()).collect();
         self.links = self.signals.iter().map(|_| OnceLock::new()).collect();
         self.gravity = self.signals.iter().map(|_| OnceLock::new()).collect();
         self.inertias.iter_mut().for_each(|i| *i = OnceLock::new());
+    }
+
+    /// What the model makes of a motion; worked out when it is first asked for.
+    pub fn torques(&self, signal: usize) -> &ModelTorques {
+        self.torques[signal]
+            .get_or_init(|| ModelTorques::new(self.model, &self.chi_in(signal), &self.signals[signal]))
     }
 
     /// A copy that carries these bodies.

@@ -58,6 +58,8 @@ pub(in crate::diagnosis) struct Design {
     pub short: bool,
     /// Inner products of the columns and y: `[joint][segment]`.
     grams: Vec<Vec<Gram>>,
+    /// The same over all segments of a joint.
+    sums: Vec<Gram>,
 }
 
 impl Design {
@@ -84,6 +86,7 @@ impl Design {
             step: selection.half,
             short: false,
             grams: Vec::new(),
+            sums: Vec::new(),
         };
         design.select(signals, selection);
         let targets = design.rows.iter().filter(|r| signals[r.signal].is_target);
@@ -206,6 +209,11 @@ impl Design {
         &self.grams[joint][segment]
     }
 
+    /// Inner products on all rows of one joint.
+    pub fn gram_of_joint(&self, joint: usize) -> &Gram {
+        &self.sums[joint]
+    }
+
     /// Ranges of a joint's rows in one motion, with their segments.
     pub fn of_signal(&self, joint: usize, signal: usize) -> Vec<(Range<usize>, usize)> {
         (0..self.segments.len())
@@ -314,6 +322,7 @@ impl Design {
         };
         let of_joint = |j: usize| (0..self.segments.len()).map(|g| gram(j, g)).collect();
         self.grams = (0..self.joints).map(of_joint).collect();
+        self.sums = self.grams.iter().map(|of_joint| Gram::sum(self.columns.len(), of_joint)).collect();
     }
 
     /// Rows of a joint in all segments that `wanted` accepts.
@@ -350,6 +359,7 @@ impl Design {
             step: 0.02,
             short: false,
             grams: Vec::new(),
+            sums: Vec::new(),
         };
         for j in 0..joints {
             let mut next = vec![0; signals];

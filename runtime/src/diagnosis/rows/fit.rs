@@ -3,7 +3,7 @@
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::{Gram, dot};
-use crate::diagnosis::rules::{LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS};
+use crate::diagnosis::rules::{LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS, WEIGHTS_AT_REST};
 use crate::statistics::moderation::{Lent, Variance};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
@@ -66,7 +66,12 @@ impl Fit {
     pub fn weighted(design: &Design, start: &[f64]) -> Result<Self, SingularDesign> {
         let mut fit = Self::whole(design, start)?;
         for _ in 0..WEIGHT_ROUNDS {
-            fit = Self::whole(design, &fit.deviations(design))?;
+            let sigma = fit.deviations(design);
+            let moved = sigma.iter().zip(&fit.sigma).map(|(now, before)| (now / before - 1.0).abs());
+            if moved.fold(0.0, f64::max) <= WEIGHTS_AT_REST {
+                break;
+            }
+            fit = Self::whole(design, &sigma)?;
         }
         Ok(fit)
     }
@@ -97,14 +102,11 @@ impl Fit {
         told.iter().enumerate().map(deviation).collect()
     }
 
-    /// Trace of a joint's part of the hat matrix, W (Wᵀ W)⁻¹ Wᵀ of the weighted rows.
+    /// Trace of a joint's part of the hat matrix, W (Wᵀ W)⁻¹ Wᵀ of the weighted rows of all segments.
     fn leverage(&self, design: &Design, joint: usize, inverse: &DMatrix<f64>) -> f64 {
-        let trained = (0..self.train.len()).filter(|&g| self.train[g]);
-        let of_segment = |g: usize| {
-            let gram = design.gram(joint, g);
-            (0..gram.columns()).map(|i| dot(gram.row(i), inverse.column(i).as_slice())).sum::<f64>()
-        };
-        trained.map(of_segment).sum::<f64>() / (self.sigma[joint] * self.sigma[joint])
+        let gram = design.gram_of_joint(joint);
+        let trace = (0..gram.columns()).map(|i| dot(gram.row(i), inverse.column(i).as_slice())).sum::<f64>();
+        trace / (self.sigma[joint] * self.sigma[joint])
     }
 
     /// (Wᵀ W)⁻¹ in units of the columns.
@@ -121,18 +123,19 @@ impl Fit {
 
     /// Squared residuals on the rows of one joint in one segment, unweighted.
     pub fn squares(&self, design: &Design, joint: usize, segment: usize) -> f64 {
-        let gram = design.gram(joint, segment);
-        let mut sum = gram.y_squares();
-        for i in 0..gram.columns() {
-            let product: f64 = gram.row(i).iter().zip(self.chi.iter()).map(|(a, b)| a * b).sum();
-            sum += self.chi[i] * (product - 2.0 * gram.with_y(i));
-        }
-        sum.max(0.0)
+        self.squares_on(design.gram(joint, segment))
     }
 
     /// The same in all segments.
     fn squares_of_joint(&self, design: &Design, joint: usize) -> f64 {
-        (0..design.segments.len()).map(|g| self.squares(design, joint, g)).sum()
+        self.squares_on(design.gram_of_joint(joint))
+    }
+
+    /// Squared residuals on the rows of a Gram matrix.
+    fn squares_on(&self, gram: &Gram) -> f64 {
+        let chi = self.chi.as_slice();
+        let of = |i: usize| chi[i] * (dot(gram.row(i), chi) - 2.0 * gram.with_y(i));
+        ((0..gram.columns()).map(of).sum::<f64>() + gram.y_squares()).max(0.0)
     }
 
     /// Squared residuals on all rows, in units of the joints' noise.
@@ -158,7 +161,7 @@ impl Fit {
     pub fn residual_on(&self, design: &Design, rows: &[usize]) -> Vec<f64> {
         let mut left: Vec<f64> = rows.iter().map(|&r| design.y[r]).collect();
         for (column, &x) in design.columns.iter().zip(self.chi.iter()) {
-            left.iter_mut().zip(rows).for_each(|(left, &r)| *left -= column[r] * x);
+            add_rows(&mut left, -x, column, (rows, 0));
         }
         left
     }
@@ -208,11 +211,32 @@ impl Fit {
     }
 }
 
+/// Adds a multiple of some values of a column, whose first is that of row `first`, given the rows in ascending order.
+pub(in crate::diagnosis) fn add_rows(
+    sums: &mut [f64],
+    factor: f64,
+    column: &[f64],
+    (rows, first): (&[usize], usize),
+) {
+    let (Some(start), Some(last)) = (rows.first(), rows.last()) else { return };
+    if last - start + 1 == rows.len() {
+        // Mostly all of a stretch, which is read in one go.
+        let stretch = &column[start - first..=last - first];
+        sums.iter_mut().zip(stretch).for_each(|(sum, x)| *sum += factor * x);
+    } else {
+        sums.iter_mut().zip(rows).for_each(|(sum, r)| *sum += factor * column[r - first]);
+    }
+}
+
 /// Weighted inner products over the segments that are fitted.
 fn weighted_sum(design: &Design, sigma: &[f64], train: &[bool]) -> Gram {
     let mut sum = Gram::zero(design.columns.len());
     for (j, s) in sigma.iter().enumerate() {
         let weight = 1.0 / (s * s);
+        if !train.contains(&false) {
+            sum.add(weight, design.gram_of_joint(j));
+            continue;
+        }
         for segment in (0..train.len()).filter(|&g| train[g]) {
             sum.add(weight, design.gram(j, segment));
         }

@@ -33,7 +33,7 @@ pub(in crate::diagnosis) fn free_columns(
 /// A variable at every sample of a motion.
 pub(in crate::diagnosis) fn values(context: &Context<'_>, signal: usize, variable: Variable) -> Vec<f64> {
     let s = &context.signals[signal];
-    let torques = &context.torques[signal];
+    let torques = context.torques(signal);
     let since = |j: usize, of: fn(&SinceReversal) -> f64| {
         let mut since = SinceReversal::default();
         (0..s.len())

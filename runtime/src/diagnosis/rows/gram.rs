@@ -43,6 +43,13 @@ impl Gram {
         gram
     }
 
+    /// Of the rows of all `parts` together, of so many columns each.
+    pub fn sum(columns: usize, parts: &[Gram]) -> Self {
+        let mut sum = Self::zero(columns);
+        parts.iter().for_each(|part| sum.add(1.0, part));
+        sum
+    }
+
     /// Number of columns p, y not counted.
     pub fn columns(&self) -> usize {
         self.columns
@@ -153,9 +160,7 @@ mod tests {
             let slices: Vec<&[f64]> = w.iter().map(|c| &c[range.clone()]).collect();
             Gram::new(&slices, &y[range], None)
         };
-        let mut sum = Gram::zero(3);
-        sum.add(1.0, &part(0..7));
-        sum.add(1.0, &part(7..20));
+        let sum = Gram::sum(3, &[part(0..7), part(7..20)]);
         let (matrix, vector) = part(0..20).normal_equations();
         let (added, with_y) = sum.normal_equations();
         assert!((matrix - added).norm() < 1e-12 && (vector - with_y).norm() < 1e-12);

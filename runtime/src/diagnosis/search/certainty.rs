@@ -12,6 +12,7 @@ use crate::diagnosis::rules::LONGEST_BLOCK;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::Settings;
+use crate::parallel;
 use nalgebra::DMatrix;
 use std::ops::Range;
 
@@ -44,7 +45,7 @@ impl Search<'_> {
     /// [`SingularDesign`] where the model without a law has no fit.
     pub(super) fn take_out_uncertain(&mut self, settings: &Settings) -> Result<(), SingularDesign> {
         loop {
-            let certainty: Vec<f64> = (0..self.model.terms.len()).map(|k| self.certainty(k)).collect();
+            let certainty = parallel::map(self.threads, self.model.terms.len(), |k| self.certainty(k));
             let least = certainty.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
             match least {
                 Some((k, &certain)) if certain < settings.least_confidence => {

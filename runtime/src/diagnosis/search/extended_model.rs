@@ -16,6 +16,7 @@ use crate::diagnosis::rules::{GAIN_DEVIATION, LARGEST_ERROR, REFITS, REFITS_OF_B
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
+use crate::parallel;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -87,7 +88,7 @@ impl<'a> ExtendedModel<'a> {
         let mut deviation = GAIN_DEVIATION;
         let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
         for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
-            self.put_terms(deviation)?;
+            self.put_terms(SmoothingWindow::Slow, deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi, self.carried());
@@ -101,13 +102,35 @@ impl<'a> ExtendedModel<'a> {
                 }
             }
         }
-        self.put_terms(deviation)?;
-        put_terms(&mut self.fast, &self.context, (&self.terms, deviation), self.change)
+        for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
+            self.put_terms(window, deviation)?;
+        }
+        let mut held_out = [(&mut self.slow, Ok(())), (&mut self.fast, Ok(()))];
+        parallel::for_each(self.context.threads, &mut held_out, |(regression, outcome)| {
+            *outcome = regression.hold_out();
+        });
+        held_out.into_iter().try_for_each(|(_, outcome)| outcome)
     }
 
-    /// Puts the terms into the regression on the slow rows.
-    fn put_terms(&mut self, deviation: f64) -> Result<(), SingularDesign> {
-        put_terms(&mut self.slow, &self.context, (&self.terms, deviation), self.change)
+    /// Puts the terms into the regression on the rows of a window.
+    fn put_terms(&mut self, window: SmoothingWindow, deviation: f64) -> Result<(), SingularDesign> {
+        let (context, design) = (&self.context, &self.regression(window).design);
+        let known = more_of_standing_laws(context, design);
+        let besides = Besides { known, gains: gain_columns(context, design), deviation };
+        let columns = parallel::map(context.threads, self.terms.len(), |k| {
+            let term = &self.terms[k];
+            let form = term.effect.form();
+            TermColumns {
+                columns: self.columns_of(design, term),
+                fixed: term.fixed,
+                is_curve: form.is_curve(),
+                curve_on: term.own.first().copied().filter(|_| form.holds_only_where_seen()),
+            }
+        });
+        match window {
+            SmoothingWindow::Slow => self.slow.set_terms(columns, besides),
+            SmoothingWindow::Fast => self.fast.set_terms(columns, besides),
+        }
     }
 
     /// How much the gains differ that bodies show.
@@ -216,22 +239,4 @@ impl<'a> ExtendedModel<'a> {
         }
         residual
     }
-}
-
-/// Puts exactly these terms into a regression.
-fn put_terms(
-    regression: &mut Regression,
-    context: &Context<'_>,
-    (terms, deviation): (&[Accepted], f64),
-    change: bool,
-) -> Result<(), SingularDesign> {
-    let known = more_of_standing_laws(context, &regression.design);
-    let besides = Besides { known, gains: gain_columns(context, &regression.design), deviation };
-    regression.set_terms(terms.len(), besides, |design, k| {
-        let term = &terms[k];
-        let columns = dense_columns(context, design, term.effect, term.place, &term.shape, change);
-        let form = term.effect.form();
-        let curve_on = term.own.first().copied().filter(|_| form.holds_only_where_seen());
-        TermColumns { columns, fixed: term.fixed, is_curve: form.is_curve(), curve_on }
-    })
 }

@@ -14,6 +14,7 @@ use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
 use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::parallel;
 
 impl Search<'_> {
     /// A law over any variables that holds, where the catalogue has none.
@@ -42,9 +43,9 @@ impl Search<'_> {
             tried += screened.tried;
             let best = |list: &[Judged]| list.first().map_or(0.0, |j| j.verdict.total());
             let most_gained = best(&screened.single).max(best(&screened.pairs));
-            let Some((law, rivals)) = fewest_variables(regression, screened) else { continue };
-            let most = FREE_FORM_SHARE * slow_part(regression, &residual, j);
-            if law.verdict.explained_fraction < most.max(settings.least_share) {
+            let mut laws = fewest_variables(regression, screened);
+            let least = settings.least_share.max(FREE_FORM_SHARE * slow_part(regression, &residual, j));
+            if laws.first().is_none_or(|law| law.verdict.explained_fraction < least) {
                 continue;
             }
             let nearly = NEARLY_AS_MUCH * most_gained;
@@ -52,7 +53,8 @@ impl Search<'_> {
             if !self.ranked(Some(j)).iter().any(|r| r.verdict.total() >= nearly)
                 && self.most_of_small(j) < nearly
             {
-                chosen.push((law, rivals));
+                let rivals = not_told_from_first(regression, &laws, self.threads);
+                chosen.push((laws.swap_remove(0), rivals));
             }
         }
         if chosen.is_empty() {
@@ -139,8 +141,9 @@ impl Search<'_> {
     }
 }
 
-/// The law over the fewest variables that no other is certainly ahead of, and those that cannot be told from it.
-fn fewest_variables(regression: &Regression, screened: Screened) -> Option<(Judged, Vec<Rival>)> {
+/// The law over the fewest variables that no other is certainly ahead of, and after it the others over as many, those that
+/// gain most first.
+fn fewest_variables(regression: &Regression, screened: Screened) -> Vec<Judged> {
     let Screened { single, pairs, tried } = screened;
     let ahead = |a: &Judged, b: &Judged| {
         let law = |j: &Judged| j.verdict.trial;
@@ -151,24 +154,25 @@ fn fewest_variables(regression: &Regression, screened: Screened) -> Option<(Judg
         (Some(one), Some(two)) => ahead(two, one),
         (one, _) => one.is_none(),
     };
-    let mut list = if two { pairs } else { single }.into_iter();
-    let best = list.next()?;
-    let rivals = list
-        .take(RIVALS)
-        .filter_map(|other| {
-            let (law, rival) =
-                ((&best.candidate, best.verdict.trial), (&other.candidate, other.verdict.trial));
-            let p = regression.difference_p_value(law, rival);
-            (p > TOLD_APART).then(|| Rival {
-                effect: EffectKind::FreeForm,
-                place: best.candidate.place,
-                shape: other.law.shape(),
-                explained_fraction: other.verdict.explained_fraction,
-                difference_p_value: p,
-            })
-        })
-        .collect();
-    Some((best, rivals))
+    if two { pairs } else { single }
+}
+
+/// Those of the next laws that cannot be told from the first.
+fn not_told_from_first(regression: &Regression, laws: &[Judged], threads: usize) -> Vec<Rival> {
+    let Some((best, others)) = laws.split_first() else { return Vec::new() };
+    let others = &others[..others.len().min(RIVALS)];
+    let differences = parallel::map(threads, others.len(), |k| {
+        let [law, rival] = [best, &others[k]].map(|judged| (&judged.candidate, judged.verdict.trial));
+        regression.difference_p_value(law, rival)
+    });
+    let rival = |(other, difference_p_value): (&Judged, f64)| Rival {
+        effect: EffectKind::FreeForm,
+        place: best.candidate.place,
+        shape: other.law.shape(),
+        explained_fraction: other.verdict.explained_fraction,
+        difference_p_value,
+    };
+    others.iter().zip(differences).filter(|(_, p)| *p > TOLD_APART).map(rival).collect()
 }
 
 /// Part of a joint's residual that is the same two rows later, whose windows do not overlap: no more of it can depend on

@@ -236,8 +236,9 @@ impl Search<'_> {
     fn friction_of_baseline(&self, joint: usize) -> [f64; 2] {
         let design = &self.model.slow.design;
         let mut friction = Vec::new();
-        for (k, torques) in self.model.context.torques.iter().enumerate() {
-            design.sample(joint, k, &torques.friction[joint], &mut friction);
+        let context = &self.model.context;
+        for k in 0..context.signals.len() {
+            design.sample(joint, k, &context.torques(k).friction[joint], &mut friction);
         }
         let columns = &self.model.bench(SmoothingWindow::Slow).friction[joint][..2];
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();

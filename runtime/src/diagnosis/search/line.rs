@@ -35,10 +35,11 @@ pub(in crate::diagnosis) fn all_lines(
         let residuals: Vec<(Vec<f64>, f64)> = context
             .signals
             .iter()
-            .zip(&context.torques)
-            .map(|(s, m)| {
+            .enumerate()
+            .map(|(k, s)| {
                 let (torque, band) = s.recorded_torque(j);
-                (torque.iter().zip(&m.total[j]).map(|(y, t)| y - t).collect(), band)
+                let model = &context.torques(k).total[j];
+                (torque.iter().zip(model).map(|(y, t)| y - t).collect(), band)
             })
             .collect();
         let strokes = |target: bool| -> Vec<Stroke<'_>> {

@@ -15,6 +15,7 @@ use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::EffectKind;
+use crate::parallel;
 
 impl Search<'_> {
     /// Adds effects as long as one improves held-out motion; takes out what does not hold beside the others.
@@ -145,48 +146,39 @@ impl Search<'_> {
         Ok(SearchReport { stop: StopReason::Given, removed: Vec::new() })
     }
 
-    /// Takes out what no longer earns its place beside the others, and returns it.
+    /// Takes out what no longer earns its place beside the others, one after the other, and returns it.
     fn prune(&mut self, settings: &Settings) -> Result<Vec<Accepted>, SingularDesign> {
         let mut rejected = Vec::new();
-        let mut k = 0;
-        while k < self.model.terms.len() {
-            // What differs between days is no matter of held-out motion: there the friction of the day is fitted.
-            if self.model.terms[k].effect == EffectKind::FrictionLevelChange {
-                k += 1;
-                continue;
-            }
-            // Beside what was found later it may be no body any more, as one half of two that cancel.
-            if body::of_term(&self.model, &self.model.terms[k]).is_some_and(|(_, is_one)| !is_one) {
-                rejected.push(self.model.terms.remove(k));
-                self.model.refit()?;
-                continue;
-            }
-            let curves = self.model.regression(self.model.terms[k].effect.properties().window).curves();
-            let with = held_out_error(&self.model, &self.model.terms[k], &curves)?;
-            let term = self.model.terms.remove(k);
-            self.model.refit()?;
-            if self.earns_its_place(&term, (with, &curves), settings)? {
-                self.model.terms.insert(k, term);
-                k += 1;
-            } else {
-                rejected.push(term);
-            }
+        let mut from = 0;
+        loop {
+            // Beside the others as they are, all that come later can be asked at once.
+            let left = self.model.terms.len().saturating_sub(from);
+            let mut earned = parallel::map(self.threads, left, |i| self.earns_its_place(from + i, settings));
+            let Some(i) = earned.iter().position(|earned| !matches!(earned, Ok(true))) else {
+                return Ok(rejected);
+            };
+            earned.swap_remove(i)?;
+            from += i;
+            rejected.push(self.model.terms.remove(from));
             self.model.refit()?;
         }
-        Ok(rejected)
     }
 
-    /// Whether a term that is not in the model improves it; `with` is the held-out error with it, where the curves of the
-    /// model with it say something.
-    fn earns_its_place(
-        &self,
-        term: &Accepted,
-        (with, curves): (f64, &[Curve]),
-        settings: &Settings,
-    ) -> Result<bool, SingularDesign> {
-        let model = &self.model;
-        let without = held_out_error(model, term, curves)?;
-        let regression = model.regression(term.effect.properties().window);
+    /// Whether the model is better with term k than without it.
+    fn earns_its_place(&self, k: usize, settings: &Settings) -> Result<bool, SingularDesign> {
+        let term = &self.model.terms[k];
+        // What differs between days is no matter of held-out motion: there the friction of the day is fitted.
+        if term.effect == EffectKind::FrictionLevelChange {
+            return Ok(true);
+        }
+        // Beside what was found later it may be no body any more, as one half of two that cancel.
+        if body::of_term(&self.model, term).is_some_and(|(_, is_one)| !is_one) {
+            return Ok(false);
+        }
+        let window = term.effect.properties().window;
+        let curves = self.model.regression(window).curves();
+        let (with, model) = (held_out_error(&self.model, term, &curves)?, self.model.without(k)?);
+        let (without, regression) = (held_out_error(&model, term, &curves)?, model.regression(window));
         let shape = std::slice::from_ref(&term.shape);
         let candidate =
             make(&model.context, &regression.design, term.effect, term.place, shape, model.change);

@@ -6,7 +6,7 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rules::{
-    FITTED_TO_HELD_OUT, MOST_CHECKED, MOTIONS_PER_LOSS, RIVALS, STRETCHES_PER_LOSS,
+    FITTED_TO_HELD_OUT, GATES_AHEAD, MOST_CHECKED, MOTIONS_PER_LOSS, RIVALS, STRETCHES_PER_LOSS,
 };
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::gate::{Outcome, RoundEvidence};
@@ -49,7 +49,12 @@ impl Search<'_> {
         let ranked = self.ranked(joint);
         let evidence_of_round = RoundEvidence::new(ranked.len());
         let holding = self.in_order(&ranked, self.holding(&ranked, settings));
-        for &k in &holding {
+        for (at, &k) in holding.iter().enumerate() {
+            if at % GATES_AHEAD == 0 {
+                // Several gates at once: mostly the first that holds is not the first.
+                let next = &holding[at..holding.len().min(at + GATES_AHEAD)];
+                parallel::map(self.threads, next.len(), |i| self.gate(&evidence_of_round, &ranked, next[i]));
+            }
             let (regression, candidate) = self.of(&ranked[k]);
             let verdict = &ranked[k].verdict;
             let Some(most) = self.waveform_confidence(&ranked[k], rounds, settings) else { continue };
@@ -201,24 +206,23 @@ impl Search<'_> {
             (r.window, r.index) != (winner.window, winner.index)
                 && self.of(r).1.own.iter().any(|j| candidate.own.contains(j))
         });
-        rivals
-            .take(RIVALS)
-            .map(|other| {
-                let rival = self.of(other).1;
-                let comparable = other.window == winner.window
-                    && rival.own == candidate.own
-                    && holds(regression, rival, &other.verdict, settings);
-                let difference_p_value = if comparable {
-                    let (law, rival) = ((candidate, winner.verdict.trial), (rival, other.verdict.trial));
-                    regression.difference_p_value(law, rival)
-                } else {
-                    0.0
-                };
-                let explained_fraction = other.verdict.explained_fraction;
-                let (effect, place, shape) = (rival.effect, rival.place, Vec::new());
-                Rival { effect, place, shape, explained_fraction, difference_p_value }
-            })
-            .collect()
+        let rivals: Vec<&Ranked> = rivals.take(RIVALS).collect();
+        parallel::map(self.threads, rivals.len(), |r| {
+            let other = rivals[r];
+            let rival = self.of(other).1;
+            let comparable = other.window == winner.window
+                && rival.own == candidate.own
+                && holds(regression, rival, &other.verdict, settings);
+            let difference_p_value = if comparable {
+                let (law, rival) = ((candidate, winner.verdict.trial), (rival, other.verdict.trial));
+                regression.difference_p_value(law, rival)
+            } else {
+                0.0
+            };
+            let explained_fraction = other.verdict.explained_fraction;
+            let (effect, place, shape) = (rival.effect, rival.place, Vec::new());
+            Rival { effect, place, shape, explained_fraction, difference_p_value }
+        })
     }
 
     /// Whether the nested special case of a law explains nearly as much at the same place. Where the law's amplitudes

@@ -5,6 +5,7 @@ use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
 use crate::diagnosis::candidates::trial::columns;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::outcome::OrderSpectrum;
+use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::line::{JointLines, all_lines};
@@ -217,12 +218,10 @@ impl<'a> Search<'a> {
 fn order_spectra(model: &ExtendedModel<'_>, slowest: &[f64], threads: usize) -> Vec<OrderSpectrum> {
     let context = &model.context;
     parallel::map(threads, model.slow.design.joints, |j| {
-        let residual: Vec<Vec<f64>> = context
-            .signals
-            .iter()
-            .zip(&context.torques)
-            .map(|(s, m)| s.torque[j].iter().zip(&m.total[j]).map(|(y, t)| y - t).collect())
-            .collect();
+        let of_motion = |(k, s): (usize, &Signals)| -> Vec<f64> {
+            s.torque[j].iter().zip(&context.torques(k).total[j]).map(|(y, t)| y - t).collect()
+        };
+        let residual: Vec<Vec<f64>> = context.signals.iter().enumerate().map(of_motion).collect();
         let scale = &context.scales[j];
         let slowest = SPECTRUM_STANDSTILL_FACTOR * slowest[j];
         let mut spectrum = order_spectrum(j, context.signals, &residual, scale, slowest);

@@ -8,6 +8,7 @@ use crate::diagnosis::rules::SHAPE_STEP;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::Step;
+use crate::parallel;
 
 /// Derivatives of a term's torque on the rows of a design by the numbers of its shape that are estimated, by central
 /// differences; each with its place in the shape. What changes nothing is left out.
@@ -72,14 +73,14 @@ pub(in crate::diagnosis) fn along_parameters(
         sum
     };
     let here = torque(&model.context);
-    let mut moved = model.context.clone();
     let along = |i: usize| {
-        let mut chi = model.context.chi.clone();
+        let (mut chi, mut moved) = (model.context.chi.clone(), model.context.clone());
         chi[i] += deviations[i];
         moved.update(chi, model.context.carried().to_vec());
         let mut slope = torque(&moved);
         slope.iter_mut().zip(&here).for_each(|(there, here)| *there = (*there - here) / deviations[i]);
         (i, slope)
     };
-    (0..design.parameters).filter(|&i| deviations[i] > 0.0).map(along).collect()
+    let known: Vec<usize> = (0..design.parameters).filter(|&i| deviations[i] > 0.0).collect();
+    parallel::map(model.context.threads, known.len(), |k| along(known[k]))
 }
