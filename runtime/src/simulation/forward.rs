@@ -79,20 +79,30 @@ impl Plant<'_> {
 
     /// Torques of the effects, and the levels of dry friction with theirs.
     fn add_effects(&mut self, at: &Driven<'_>, right: &mut [f64]) {
-        let &Driven { time, q, dq, .. } = at;
+        let &Driven { time, q, dq, hold, .. } = at;
         let n = self.joints;
         let work = &mut self.work;
         for j in 0..n {
             work.seen.q[j] = q[self.motor[j]];
             work.seen.dq[j] = dq[self.motor[j]];
         }
-        let at = work.seen.at(time);
         work.extra.fill(0.0);
         work.joint_levels.fill([0.0; 2]);
-        for effect in &self.effects {
-            effect.torque(&at, &mut work.extra);
-            effect.dry_friction(&at, &mut work.joint_levels);
+        self.effects.iter().for_each(|effect| effect.torque(&work.seen.at(time), &mut work.extra));
+        // Where a step passes a reversal before it is cut there, friction of a direction is that of rest: a level that
+        // grows with the speed would push on, the further the more.
+        for (element, hold) in self.friction.elements.iter().zip(hold) {
+            if let Some(j) = element.joint {
+                let dq = &mut work.seen.dq[j];
+                *dq = match hold {
+                    Hold::Sticking => *dq,
+                    Hold::Forward => dq.max(0.0),
+                    Hold::Backward => dq.min(0.0),
+                };
+            }
         }
+        let seen = work.seen.at(time);
+        self.effects.iter().for_each(|effect| effect.dry_friction(&seen, &mut work.joint_levels));
         for j in 0..n {
             right[self.motor[j]] -= work.extra[j];
         }

@@ -56,9 +56,22 @@ impl Plant<'_> {
         }
         if left > 0.0 {
             self.accept(state, left)?;
+            self.follow_slip(state);
         }
         state.time = end;
         Ok(())
+    }
+
+    /// After a step that was not cut at every reversal in it: elements that slip the other way do so from now on.
+    fn follow_slip(&mut self, state: &mut State) {
+        for (element, hold) in self.friction.elements.iter().zip(&mut state.hold) {
+            let slip = element.slip(&state.dq);
+            match *hold {
+                Hold::Forward if slip < -REST => *hold = Hold::Backward,
+                Hold::Backward if slip > REST => *hold = Hold::Forward,
+                _ => {}
+            }
+        }
     }
 
     /// Time into the step of `h` at which the first slipping element comes to rest; `None` where none does.

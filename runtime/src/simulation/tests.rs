@@ -125,6 +125,45 @@ fn friction_takes_from_the_energy_exactly_what_it_does_as_work() {
     assert!((lost - 0.3 * way).abs() < 1e-5 * lost, "{lost} {}", 0.3 * way);
 }
 
+/// Friction that rises from rest with the root of the speed: steeper there than any step can follow.
+struct Steep;
+
+impl ExtraTorque for Steep {
+    fn dry_friction(&self, at: &Instant<'_>, levels: &mut [[f64; 2]]) {
+        let more = 6.0 * at.dq[0].abs().powf(0.35);
+        levels[0].iter_mut().for_each(|level| *level += more);
+    }
+
+    fn has_dry_friction(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn friction_that_rises_steeply_from_rest_never_pushes_the_way_it_moves() {
+    let (model, chi) = pendulum(0.5, 0.2, 1.0, 0.5);
+    for step in [1e-4, 2e-4, 1e-3] {
+        let mut plant = Plant::with_torques(&model, &chi, vec![Box::new(Steep)]).unwrap();
+        let mut state = plant.state(&[0.1], &[0.0]);
+        let (mut reversals, mut last) = (0, 0.0_f64);
+        for k in 0..(6.0 / step) as usize {
+            let time = k as f64 * step;
+            // Slow and fast, large and just above what friction holds.
+            let torque = 12.0 * (3.0 * time).sin() + 4.0 * (41.0 * time).sin();
+            plant.advance(&mut state, &[torque], step).unwrap();
+            let (dq, hold) = (state.dq[0], state.hold[0]);
+            match hold {
+                Hold::Sticking => assert_eq!(dq, 0.0),
+                Hold::Forward => assert!(dq >= -1e-9, "{dq} at {time} s in steps of {step} s"),
+                Hold::Backward => assert!(dq <= 1e-9, "{dq} at {time} s in steps of {step} s"),
+            }
+            reversals += usize::from(dq * last < 0.0 || (dq == 0.0) != (last == 0.0));
+            last = dq;
+        }
+        assert!(reversals > 10, "{reversals}");
+    }
+}
+
 #[test]
 fn two_joints_and_their_shared_motor_hold_together() {
     // Fc1 = 1, Fc2 = 1 and 2 at the motor that turns with dq1 + dq2: (2.9, 2.9) can be held, (2.9, 0) cannot.
