@@ -519,6 +519,9 @@ pub(super) const LINE_MULTIPLES: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0];
 /// Part of the sampling rate up to which recorded torques are taken for what they say. Mechanics: four fifths of what
 /// can be sampled at all.
 pub(super) const RECORDED_BAND: f64 = 0.4;
+/// Parts of that band in which a wave is sought. Mechanics: a position loop reaches a twentieth to a fifth of the rate at
+/// which a robot is recorded, and its motor answers to no ripple that is faster.
+pub(super) const LINE_BANDS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 /// Orders of a spectrum that are looked at besides.
 pub(super) const LINE_PICKED: usize = 4;
 /// How far a known order must stand above the larger median of the orders on both sides of it to be a line of a motion.

@@ -5,11 +5,14 @@
 //! dilutes it. How far it stands out is not enough either: the foot of a strong line, or of what is left of friction,
 //! reaches far. Both are asked for, motion by motion, at the full rate, of the residual without what is slower than a few
 //! waves.
+//!
+//! A motor's torque shows a ripple only as far as its controller answers to it: what is faster than the loop is left in the
+//! speed. How fast that is nobody knows beforehand, so that a wave is also sought where the joint is slow.
 
 use super::wave::{Orders, Sample, Wave, turned, wave};
 use crate::diagnosis::rules::{
-    LINE_ABOVE, LINE_AROUND, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES, LINE_LEAST_WAVES,
-    LINE_PICKED_ABOVE, LINE_SLOWER,
+    LINE_ABOVE, LINE_AROUND, LINE_BANDS, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES,
+    LINE_LEAST_WAVES, LINE_PICKED_ABOVE, LINE_SLOWER,
 };
 use crate::statistics::greatest_of::highest_p_value;
 use crate::statistics::median::median;
@@ -37,8 +40,8 @@ pub(in crate::diagnosis) struct Line {
     pub sigma: f64,
     /// Rms of the residual without what is slower, N.m or N, the median of the motions.
     pub rms: f64,
-    /// Probability that noise stands as far above the orders on both sides of it anywhere near the order that was asked for, all
-    /// motions together.
+    /// Probability that noise stands as far above the orders on both sides of it anywhere near the order that was asked for, in
+    /// any of the bands, all motions together.
     pub p_value: f64,
     /// Whether motors have lines at its order, so that it was looked for there.
     pub known: bool,
@@ -66,36 +69,13 @@ pub(in crate::diagnosis) fn lines(
     let known = known.iter().map(|&o| (o, LINE_ABOVE, true));
     let picked = picked.iter().map(|&o| (o, LINE_PICKED_ABOVE, false));
     let resolved = resolution(strokes);
-    let mut found: Vec<Line> = Vec::new();
-    for (order, above, known) in known.chain(picked) {
-        let looked: Vec<Look> = strokes.iter().map(|s| look(s, order, slowest)).collect();
-        let able = looked.iter().filter(|l| !matches!(l, Look::Blind)).count();
-        let shown: Vec<&InMotion> = looked.iter().filter_map(|l| l.line(above)).collect();
-        if shown.is_empty() || 2 * shown.len() <= able {
-            continue;
-        }
-        let usual = |value: fn(&InMotion) -> f64| {
-            let mut values: Vec<f64> = shown.iter().map(|l| value(l)).collect();
-            median(&mut values)
-        };
-        let all: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, slowest)).collect();
-        let Some((order, together)) = highest(&all, usual(|l| l.order), resolved) else { continue };
-        // A wave over the joint's angle has one phase in all motions: together they show it no worse than one by one.
-        let around = Around::of(&all, order, resolved);
-        if together.norm() < above * around.level {
-            continue;
-        }
-        found.push(Line {
-            order,
-            cosine: together.c,
-            sine: together.s,
-            sigma: deviation(around.level),
-            rms: usual(|l| l.rms),
-            p_value: highest_p_value(together.norm() / around.level, around.orders, resolved * spread(&all)),
-            known,
-            share: usual(|l| l.share),
-        });
-    }
+    let best = |(order, above, known): (f64, f64, bool)| {
+        let in_band = |part: f64| line(strokes, (order, above, known), (part, slowest), resolved);
+        let found = LINE_BANDS.into_iter().filter_map(in_band);
+        let best = found.min_by(|a, b| a.p_value.total_cmp(&b.p_value))?;
+        Some(Line { p_value: LINE_BANDS.len() as f64 * best.p_value, ..best })
+    };
+    let mut found: Vec<Line> = known.chain(picked).filter_map(best).collect();
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     // The same line may have been asked for twice: what the travel cannot resolve is one.
     let mut apart: Vec<Line> = Vec::new();
@@ -105,6 +85,40 @@ pub(in crate::diagnosis) fn lines(
         }
     }
     apart
+}
+
+/// The line at an order where the wave is slower than this part of what the residual holds.
+fn line(
+    strokes: &[Stroke<'_>],
+    (order, above, known): (f64, f64, bool),
+    (part, slowest): (f64, f64),
+    resolved: f64,
+) -> Option<Line> {
+    let sampled: Vec<Vec<Sample>> = strokes.iter().map(|s| samples(s, order, (part, slowest))).collect();
+    let looked: Vec<Look> = strokes.iter().zip(&sampled).map(|(s, all)| look(s, all, order)).collect();
+    let able = looked.iter().filter(|l| !matches!(l, Look::Blind)).count();
+    let shown: Vec<&InMotion> = looked.iter().filter_map(|l| l.line(above)).collect();
+    if shown.is_empty() || 2 * shown.len() <= able {
+        return None;
+    }
+    let usual = |value: fn(&InMotion) -> f64| {
+        let mut values: Vec<f64> = shown.iter().map(|l| value(l)).collect();
+        median(&mut values)
+    };
+    let all: Vec<Sample> = sampled.into_iter().flatten().collect();
+    let (order, together) = highest(&all, usual(|l| l.order), resolved)?;
+    // A wave over the joint's angle has one phase in all motions: together they show it no worse than one by one.
+    let around = Around::of(&all, order, resolved);
+    (together.norm() >= above * around.level).then(|| Line {
+        order,
+        cosine: together.c,
+        sine: together.s,
+        sigma: deviation(around.level),
+        rms: usual(|l| l.rms),
+        p_value: highest_p_value(together.norm() / around.level, around.orders, resolved * spread(&all)),
+        known,
+        share: usual(|l| l.share),
+    })
 }
 
 /// Step between orders that the longest travel tells apart.
@@ -146,9 +160,8 @@ impl Look {
     }
 }
 
-/// Looks for one order in one motion.
-fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
-    let samples = samples(stroke, order, slowest);
+/// Looks for one order in the samples of one motion.
+fn look(stroke: &Stroke<'_>, samples: &[Sample], order: f64) -> Look {
     let half = samples.len() / 2;
     let (first, second) = samples.split_at(half);
     let turns = |part: &[Sample]| {
@@ -159,8 +172,8 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
         return Look::Blind;
     }
     let step = TAU / travel(stroke.q).max(1e-9);
-    let Some((order, fitted)) = highest(&samples, order, step) else { return Look::Blind };
-    let turned = turned(&samples, order);
+    let Some((order, fitted)) = highest(samples, order, step) else { return Look::Blind };
+    let turned = turned(samples, order);
     let (first, second) = ((first, &turned[..half]), (second, &turned[half..]));
     let predicted = |fit: (&[Sample], &[(f64, f64)]), test: (&[Sample], &[(f64, f64)])| {
         let w = wave(fit.0, fit.1);
@@ -179,7 +192,7 @@ fn look(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Look {
     Look::Wave(InMotion {
         order,
         rms: (samples.iter().map(|s| s.r * s.r).sum::<f64>() / samples.len() as f64).sqrt(),
-        above: fitted.norm() / Around::of(&samples, order, step).level,
+        above: fitted.norm() / Around::of(samples, order, step).level,
         share,
     })
 }
@@ -230,9 +243,9 @@ impl Around {
     }
 }
 
-/// Samples at which the joint moves slowly enough for the band to hold the wave.
-fn samples(stroke: &Stroke<'_>, order: f64, slowest: f64) -> Vec<Sample> {
-    let fastest = 0.9 * stroke.band * TAU / order;
+/// Samples at which the joint moves slowly enough for this part of the band to hold the wave.
+fn samples(stroke: &Stroke<'_>, order: f64, (part, slowest): (f64, f64)) -> Vec<Sample> {
+    let fastest = 0.9 * part * stroke.band * TAU / order;
     let usable = |t: usize| stroke.dq[t].abs() > slowest && stroke.dq[t].abs() < fastest;
     let reach = 0.5 * LINE_SLOWER * TAU / order;
     let mut out = Vec::new();

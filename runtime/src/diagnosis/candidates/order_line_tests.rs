@@ -106,6 +106,36 @@ fn a_line_with_four_per_cent_of_the_variance_is_found_at_any_speed() {
     }
 }
 
+/// A motor's torque follows a ripple as far as its controller does: a loop of 10 Hz, of first order. The joint is slow at
+/// first, and fast for twice as long.
+#[test]
+fn a_wave_that_is_mostly_faster_than_the_controller_is_found_where_the_joint_is_slow() {
+    let mut rng = Pcg64::seed_from_u64(24);
+    let order = 4.0 * GEAR;
+    let (mut hits, mut in_whole_band) = (0, 0);
+    for _ in 0..40 {
+        let [mut whole, fast, faster] = [0.25, 1.6, 1.7].map(|speed| motion(&mut rng, speed, order, 0.0));
+        for part in [fast, faster] {
+            whole.q.extend(part.q);
+            whole.dq.extend(part.dq);
+            whole.residual.extend(part.residual);
+        }
+        for k in 0..whole.q.len() {
+            let lag = whole.dq[k] * order / TAU / 10.0;
+            whole.residual[k] += 0.85 * (order * whole.q[k] - lag.atan()).sin() / lag.hypot(1.0);
+        }
+        let motions = [whole];
+        let is_there = |line: &Line| (line.order - order).abs() < 1.0 && line.p_value < 1e-4;
+        hits += usize::from(found(&motions).iter().any(is_there));
+        let strokes = strokes(&motions);
+        let one = line(&strokes, (order, LINE_ABOVE, true), (1.0, 0.05), resolution(&strokes));
+        in_whole_band += usize::from(one.as_ref().is_some_and(is_there));
+    }
+    println!("{hits} of 40, {in_whole_band} in the whole band");
+    assert!(hits >= 20, "{hits} of 40");
+    assert!(in_whole_band <= 4, "{in_whole_band} of 40");
+}
+
 #[test]
 fn a_line_with_three_per_cent_is_mostly_found_where_several_motions_show_it() {
     let mut rng = Pcg64::seed_from_u64(23);

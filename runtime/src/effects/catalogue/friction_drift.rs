@@ -74,7 +74,7 @@ impl JointLaw for FrictionDrift {
     }
 
     fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
-        let times = [0.2, 0.4, 0.8, 1.5, 4.0];
+        let times = [0.05, 0.1, 0.2, 0.4, 0.8, 1.5, 4.0];
         [0.0, 1.0, 2.0]
             .iter()
             .flat_map(|&what| times.iter().map(move |t| vec![what, t * scale.duration]))
