@@ -88,7 +88,8 @@ impl Plant<'_> {
         }
         work.extra.fill(0.0);
         work.joint_levels.fill([0.0; 2]);
-        self.effects.iter().for_each(|effect| effect.torque(&work.seen.at(time), &mut work.extra));
+        let seen = work.seen.at(time);
+        self.effects.iter().for_each(|effect| effect.torque(&seen, &mut work.extra));
         // Where a step passes a reversal before it is cut there, friction of a direction is that of rest: a level that
         // grows with the speed would push on, the further the more.
         for (element, hold) in self.friction.elements.iter().zip(hold) {

@@ -120,6 +120,14 @@ fn axes(context: &Context<'_>, regression: &Regression, joint: usize) -> Vec<Axi
     Variable::all(joint, design.joints).into_iter().filter(moves).filter_map(interval).collect()
 }
 
+/// Takes the parts along orthonormal vectors out of another.
+fn take_out(orthonormal: &[DVector<f64>], vector: &mut DVector<f64>) {
+    for q in orthonormal {
+        let part = q.dot(vector);
+        vector.axpy(-part, q, 1.0);
+    }
+}
+
 /// A first look: laws at the middles of the rows of the joint alone, beside what the columns of the model make there.
 struct Glance {
     /// Variables with their directions at the rows, `[axis][row]`.
@@ -155,10 +163,7 @@ impl Glance {
             let whole = column.norm();
             // Twice is enough (Giraud, Langou and Rozloznik 2005).
             for _ in 0..2 {
-                for q in &kept {
-                    let part = q.dot(column);
-                    column.axpy(-part, q, 1.0);
-                }
+                take_out(&kept, column);
             }
             let left = column.norm();
             if left > 1e-6 * whole {
@@ -167,9 +172,7 @@ impl Glance {
         }
         let left = regression.residual();
         let mut residual = DVector::from_iterator(rows.len(), rows.iter().map(|&r| left[r]));
-        for q in &kept {
-            residual.axpy(-q.dot(&residual), q, 1.0);
-        }
+        take_out(&kept, &mut residual);
         Self {
             seen: axes.iter().map(of_axis).collect(),
             model: DMatrix::from_fn(kept.len(), rows.len(), |k, r| kept[k][r]),

@@ -70,16 +70,10 @@ impl Regression {
                     let rows: Vec<usize> = design.ranges[j][g].clone().filter(seen).collect();
                     let residual = prediction.fit.residual_on(design, &rows);
                     let changes = prediction.changes(design, j, &rows);
-                    let of = |r: &usize| design.block(design.rows[*r], per_block);
-                    let mut from = 0;
-                    // Rows of a block are neighbours.
-                    for of_block in rows.chunk_by(|a, b| of(a) == of(b)) {
-                        let block = blocks.entry(of(&of_block[0])).or_default();
-                        for k in from..from + of_block.len() {
-                            block.with_residual += changes[k] * residual[k] / (s * s);
-                            block.squares += changes[k] * changes[k] / (s * s);
-                        }
-                        from += of_block.len();
+                    for ((&r, residual), change) in rows.iter().zip(residual).zip(changes) {
+                        let block = blocks.entry(design.block(design.rows[r], per_block)).or_default();
+                        block.with_residual += change * residual / (s * s);
+                        block.squares += change * change / (s * s);
                     }
                 }
             }

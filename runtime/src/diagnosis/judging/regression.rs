@@ -76,21 +76,17 @@ impl Regression {
         }
         design.refresh();
         let fit = Fit::weighted(&design, &vec![1.0; design.joints])?;
-        let folds = folds(&design, &fit.sigma)?;
         let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
         let sigma = fit.sigma.clone();
-        let held_out_squares = held_out_squares(&design, &fit, &folds, &[]);
-        let residual_products = residual_products(&design, &fit);
-        let target_squares = target_squares(&design, &fit);
         let (known, curves) = (design.prior.clone(), design.shrunk.clone());
-        Ok(Self {
+        let mut regression = Self {
             design,
             sigma,
             fit,
-            folds,
-            held_out_squares,
-            residual_products,
-            target_squares,
+            folds: Vec::new(),
+            held_out_squares: Vec::new(),
+            residual_products: Vec::new(),
+            target_squares: Vec::new(),
             term_columns: Vec::new(),
             gains: fixed_columns..fixed_columns,
             measured,
@@ -99,7 +95,9 @@ impl Regression {
             curves,
             bounded: Vec::new(),
             beyond: Vec::new(),
-        })
+        };
+        regression.hold_out()?;
+        Ok(regression)
     }
 
     /// Puts exactly these terms into the design and fits again; what is held out follows by [`Self::hold_out`].

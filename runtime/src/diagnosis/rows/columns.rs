@@ -59,7 +59,7 @@ impl Context<'_> {
 
     /// What gravity asks for in a motion, `[j][t]`.
     fn gravity(&self, signal: usize) -> &[Vec<f64>] {
-        self.gravity[signal].get_or_init(|| {
+        self.made.gravity[signal].get_or_init(|| {
             let at_rest = self.signals[signal].at_rest();
             ModelTorques::new(self.model, &self.chi_in(signal), &at_rest).link
         })
@@ -168,7 +168,7 @@ impl Context<'_> {
         if let Some((_, known)) = self.transmissions.iter().find(|(k, _)| *k == j) {
             return *known;
         }
-        let [least, median] = self.inertias[j].get_or_init(|| self.inertia(j));
+        let [least, median] = self.made.inertias[j].get_or_init(|| self.inertia(j));
         let (least, median) = (*least, *median);
         Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].kind)
     }
@@ -201,6 +201,7 @@ impl Context<'_> {
     }
 
     fn links(&self, signal: usize) -> &Links {
-        self.links[signal].get_or_init(|| Links::new(self.model, &self.chi_in(signal), &self.signals[signal]))
+        self.made.links[signal]
+            .get_or_init(|| Links::new(self.model, &self.chi_in(signal), &self.signals[signal]))
     }
 }

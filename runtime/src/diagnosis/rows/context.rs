@@ -37,21 +37,44 @@ impl Carried {
     }
 }
 
+/// What is made of the motions with the base parameters and bodies as they are, each when it is first asked for.
+pub(super) struct Made {
+    /// Of each motion.
+    torques: Vec<OnceLock<ModelTorques>>,
+    pub(super) links: Vec<OnceLock<Links>>,
+    /// Torques of gravity, `[j][t]` of each motion.
+    pub(super) gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
+    /// Least and median inertia that each joint moves.
+    pub(super) inertias: Vec<OnceLock<[f64; 2]>>,
+}
+
+impl Made {
+    /// Nothing yet.
+    fn nothing(motions: usize, joints: usize) -> Self {
+        fn unasked<T>(count: usize) -> Vec<OnceLock<T>> {
+            (0..count).map(|_| OnceLock::new()).collect()
+        }
+        Self {
+            torques: unasked(motions),
+            links: unasked(motions),
+            gravity: unasked(motions),
+            inertias: unasked(joints),
+        }
+    }
+}
+
 #[derive(Clone)]
 pub(in crate::diagnosis) struct Context<'a> {
     pub model: &'a dyn Model,
     pub(super) engine: Arc<RecursiveModel>,
     pub(super) tables: Vec<Link<f64>>,
     pub signals: &'a [Signals],
-    torques: Vec<OnceLock<ModelTorques>>,
     pub scales: Vec<Scale>,
     /// Base parameters, without the bodies that were found.
     pub chi: Vec<f64>,
     pub(super) carried: Vec<Carried>,
-    pub(super) links: Vec<OnceLock<Links>>,
-    /// Torques of gravity, `[j][t]` of each motion.
-    pub(super) gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
-    pub(super) inertias: Vec<OnceLock<[f64; 2]>>,
+    /// What follows from these; copies share it until they take others.
+    pub(super) made: Arc<Made>,
     /// Transmissions that are known in physical units, per joint.
     pub transmissions: Vec<(usize, Transmission)>,
     /// The robot before it changed, as a model.
@@ -73,13 +96,10 @@ impl<'a> Context<'a> {
             engine: Arc::new(derivable(robot)?),
             tables: Link::of(robot),
             signals,
-            torques: signals.iter().map(|_| OnceLock::new()).collect(),
             scales,
             chi,
             carried: Vec::new(),
-            links: signals.iter().map(|_| OnceLock::new()).collect(),
-            gravity: signals.iter().map(|_| OnceLock::new()).collect(),
-            inertias: (0..robot.joints()).map(|_| OnceLock::new()).collect(),
+            made: Arc::new(Made::nothing(signals.len(), robot.joints())),
             transmissions: Vec::new(),
             reference: None,
             threads: 1,
@@ -104,15 +124,12 @@ impl<'a> Context<'a> {
     /// Takes other base parameters and bodies: loads and model torques follow.
     pub fn update(&mut self, chi: Vec<f64>, carried: Vec<Carried>) {
         (self.chi, self.carried) = (chi, carried);
-        self.torques = self.signals.iter().map(|_| OnceLock::new()).collect();
-        self.links = self.signals.iter().map(|_| OnceLock::new()).collect();
-        self.gravity = self.signals.iter().map(|_| OnceLock::new()).collect();
-        self.inertias.iter_mut().for_each(|i| *i = OnceLock::new());
+        self.made = Arc::new(Made::nothing(self.signals.len(), self.model.robot().joints()));
     }
 
     /// What the model makes of a motion; worked out when it is first asked for.
     pub fn torques(&self, signal: usize) -> &ModelTorques {
-        self.torques[signal]
+        self.made.torques[signal]
             .get_or_init(|| ModelTorques::new(self.model, &self.chi_in(signal), &self.signals[signal]))
     }
 

@@ -231,9 +231,10 @@ pub(in crate::diagnosis) fn add_rows(
 /// Weighted inner products over the segments that are fitted.
 fn weighted_sum(design: &Design, sigma: &[f64], train: &[bool]) -> Gram {
     let mut sum = Gram::zero(design.columns.len());
+    let all = !train.contains(&false);
     for (j, s) in sigma.iter().enumerate() {
         let weight = 1.0 / (s * s);
-        if !train.contains(&false) {
+        if all {
             sum.add(weight, design.gram_of_joint(j));
             continue;
         }

@@ -45,7 +45,7 @@ impl Search<'_> {
     /// [`SingularDesign`] where the model without a law has no fit.
     pub(super) fn take_out_uncertain(&mut self, settings: &Settings) -> Result<(), SingularDesign> {
         loop {
-            let certainty = parallel::map(self.threads, self.model.terms.len(), |k| self.certainty(k));
+            let certainty = parallel::map(self.threads(), self.model.terms.len(), |k| self.certainty(k));
             let least = certainty.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
             match least {
                 Some((k, &certain)) if certain < settings.least_confidence => {

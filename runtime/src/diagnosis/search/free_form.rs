@@ -39,7 +39,7 @@ impl Search<'_> {
         let joints: Vec<usize> = (0..regression.design.joints).filter(|&j| wanted(j)).collect();
         let (mut chosen, mut tried): (Vec<(Judged, Vec<Rival>)>, usize) = (Vec::new(), 0);
         for j in joints {
-            let screened = screen(&model.context, regression, j, model.change, self.threads);
+            let screened = screen(&model.context, regression, j, model.change, self.threads());
             tried += screened.tried;
             let best = |list: &[Judged]| list.first().map_or(0.0, |j| j.verdict.total());
             let most_gained = best(&screened.single).max(best(&screened.pairs));
@@ -53,7 +53,7 @@ impl Search<'_> {
             if !self.ranked(Some(j)).iter().any(|r| r.verdict.total() >= nearly)
                 && self.most_of_small(j) < nearly
             {
-                let rivals = not_told_from_first(regression, &laws, self.threads);
+                let rivals = not_told_from_first(regression, &laws, self.threads());
                 chosen.push((laws.swap_remove(0), rivals));
             }
         }

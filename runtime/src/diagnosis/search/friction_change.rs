@@ -69,7 +69,7 @@ impl Search<'_> {
         let background = |without: Range<usize>| {
             let shared = columns_but(design, &without);
             let regressors = Regressors { shared: &shared, ..bench.regressors(design) };
-            let background = Background::new(&bench.units, &regressors, &residual, self.threads);
+            let background = Background::new(&bench.units, &regressors, &residual, self.threads());
             (shared, background)
         };
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.

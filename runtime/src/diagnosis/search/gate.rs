@@ -154,9 +154,9 @@ impl Search<'_> {
             return None;
         }
         let regressors = bench.regressors(design);
-        let background = against
-            .of(ranked.window)
-            .get_or_init(|| Background::new(&bench.units, &regressors, &regression.residual(), self.threads));
+        let background = against.of(ranked.window).get_or_init(|| {
+            Background::new(&bench.units, &regressors, &regression.residual(), self.threads())
+        });
         let law = self.law(ranked, &columns, &left);
         let calibrated = calibrate(&bench.units, &regressors, background, &law)?;
         let is_event = candidate.is_trend()
@@ -233,7 +233,7 @@ impl Search<'_> {
         ranked.retain(|r| r.verdict.total() > 0.0 && r.verdict.fitted_fraction > 0.0);
         ranked.truncate(MOST_COMPARED);
         let round = RoundEvidence::new(ranked.len());
-        let outcomes = parallel::map(self.threads, ranked.len(), |k| {
+        let outcomes = parallel::map(self.threads(), ranked.len(), |k| {
             self.judged_by_gate(&round, &ranked, k, settings.least_confidence)
         });
         let mut small = self.small.clone();

@@ -77,7 +77,7 @@ impl Search<'_> {
             .retain(|r| self.of(r).1.own.len() == 1 && r.verdict.explained_fraction >= settings.least_share);
         ranked.truncate(MOST_FIRSTS);
         let round = RoundEvidence::new(ranked.len());
-        let evidence = parallel::map(self.threads, ranked.len(), |k| match self.gate(&round, &ranked, k) {
+        let evidence = parallel::map(self.threads(), ranked.len(), |k| match self.gate(&round, &ranked, k) {
             Some(gate) => gate.calibrated.evidence(),
             None => Evidence::NONE,
         });

@@ -19,7 +19,7 @@ impl Search<'_> {
         }
         self.polished_beside.push(laws);
         let (model, regression, candidates) = (&self.model, &self.model.fast, &self.fast);
-        let polished = parallel::map(self.threads, candidates.len(), |k| {
+        let polished = parallel::map(self.threads(), candidates.len(), |k| {
             let candidate = &candidates[k];
             candidate.fixed?;
             let [best, nearest] = regression.best_and_nearest(candidate)?;
@@ -101,7 +101,7 @@ impl Search<'_> {
     ) {
         let mut starts = vec![term.shape.clone()];
         starts.extend(regression.best_of_each(candidate, MOST_STARTS));
-        let tuned = parallel::map(self.threads, starts.len(), |k| {
+        let tuned = parallel::map(self.threads(), starts.len(), |k| {
             let shape = self.refined(regression, candidate, &starts[k]);
             let mut tuning = Tuning::beside(&self.model, &Accepted { shape, ..term.clone() }).ok()?;
             tuning.run();

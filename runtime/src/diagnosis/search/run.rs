@@ -153,7 +153,8 @@ impl Search<'_> {
         loop {
             // Beside the others as they are, all that come later can be asked at once.
             let left = self.model.terms.len().saturating_sub(from);
-            let mut earned = parallel::map(self.threads, left, |i| self.earns_its_place(from + i, settings));
+            let mut earned =
+                parallel::map(self.threads(), left, |i| self.earns_its_place(from + i, settings));
             let Some(i) = earned.iter().position(|earned| !matches!(earned, Ok(true))) else {
                 return Ok(rejected);
             };

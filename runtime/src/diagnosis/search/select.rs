@@ -53,7 +53,9 @@ impl Search<'_> {
             if at % GATES_AHEAD == 0 {
                 // Several gates at once: mostly the first that holds is not the first.
                 let next = &holding[at..holding.len().min(at + GATES_AHEAD)];
-                parallel::map(self.threads, next.len(), |i| self.gate(&evidence_of_round, &ranked, next[i]));
+                parallel::map(self.threads(), next.len(), |i| {
+                    self.gate(&evidence_of_round, &ranked, next[i])
+                });
             }
             let (regression, candidate) = self.of(&ranked[k]);
             let verdict = &ranked[k].verdict;
@@ -157,7 +159,7 @@ impl Search<'_> {
         let mut ranked = Vec::new();
         for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
             let (regression, candidates) = (self.model.regression(window), self.candidates(window));
-            let verdicts = parallel::map(self.threads, candidates.len(), |index| {
+            let verdicts = parallel::map(self.threads(), candidates.len(), |index| {
                 let candidate = &candidates[index];
                 if joint.is_some_and(|j| !candidate.own.contains(&j)) || self.is_excluded(candidate) {
                     return None;
@@ -207,7 +209,7 @@ impl Search<'_> {
                 && self.of(r).1.own.iter().any(|j| candidate.own.contains(j))
         });
         let rivals: Vec<&Ranked> = rivals.take(RIVALS).collect();
-        parallel::map(self.threads, rivals.len(), |r| {
+        parallel::map(self.threads(), rivals.len(), |r| {
             let other = rivals[r];
             let rival = self.of(other).1;
             let comparable = other.window == winner.window

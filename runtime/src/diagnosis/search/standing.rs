@@ -50,7 +50,7 @@ impl Search<'_> {
         rivals.truncate(MOST_COMPARED);
         let penalty = penalty(self.tries());
         let worth = |c: &Calibrated| c.squares - penalty * c.numbers as f64;
-        let standings = parallel::map(self.threads, rivals.len(), |r| {
+        let standings = parallel::map(self.threads(), rivals.len(), |r| {
             let Some(other) = self.gate(round, ranked, rivals[r]) else { return Standing::Ahead };
             let ahead = worth(&own.calibrated) - worth(&other.calibrated);
             if rival_p_value(&own.calibrated, &other.calibrated, ahead) <= TOLD_APART

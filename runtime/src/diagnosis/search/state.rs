@@ -45,7 +45,6 @@ pub(in crate::diagnosis) struct Search<'a> {
     /// Laws beside which the shapes of compliant transmissions have been refined: refined once more they end where they
     /// are.
     pub(super) polished_beside: Vec<Vec<Law>>,
-    pub threads: usize,
 }
 
 /// A law of the model: effect, place and shape.
@@ -60,7 +59,7 @@ impl<'a> Search<'a> {
         progress: &dyn Progress,
     ) -> Self {
         progress.at(0.15, "order spectra");
-        let (threads, change) = (settings.threads, model.change);
+        let (threads, change) = (model.context.threads, model.change);
         let spectra = order_spectra(&model, slowest, threads);
         let mut lines = all_lines(&model.context, &spectra, slowest, threads);
         for (j, lines) in lines.iter_mut().enumerate() {
@@ -104,7 +103,6 @@ impl<'a> Search<'a> {
             tried,
             more_tries: 0,
             polished_beside: Vec::new(),
-            threads,
         }
     }
 
@@ -139,6 +137,11 @@ impl<'a> Search<'a> {
         self.refit_and_update()
     }
 
+    /// Threads to work on.
+    pub(super) fn threads(&self) -> usize {
+        self.model.context.threads
+    }
+
     /// Settings with the confidence that the next law needs.
     pub fn settings_of_next(&self, settings: &Settings) -> Settings {
         if self.model.terms.is_empty() { settings.clone() } else { settings.beside_laws() }
@@ -167,7 +170,7 @@ impl<'a> Search<'a> {
         let model = &self.model;
         for (candidates, regression) in [(&mut self.slow, &model.slow), (&mut self.fast, &model.fast)] {
             let (design, first) = (&regression.design, regression.fixed_columns());
-            parallel::for_each(self.threads, candidates, |candidate| {
+            parallel::for_each(model.context.threads, candidates, |candidate| {
                 if joint.is_some_and(|j| !candidate.own.contains(&j)) {
                     return;
                 }
