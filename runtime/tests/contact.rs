@@ -104,7 +104,7 @@ fn how_sure_a_contact_is_follows_from_how_far_it_stands_out() {
 }
 
 #[test]
-fn errors_before_and_after_a_push_was_found_are_of_one_band() {
+fn errors_before_and_after_a_push_was_found_are_of_the_same_rows() {
     let robot = planar();
     let name = recorded(&robot, vec![], 1)[0].name.clone();
     let push = on_joint(&name, [3.0, 3.5], 2, 0.6);
@@ -112,9 +112,10 @@ fn errors_before_and_after_a_push_was_found_are_of_one_band() {
     let held = &diagnosis.held_out;
     assert_eq!(contact(&diagnosis).contacts.len(), 1);
     assert_eq!(held.band, diagnosis.sampling.slow_band);
-    // Outside of the push nothing has changed.
-    assert!(held.after < held.before, "{held:?}");
-    assert!(held.by_motion.iter().all(|(_, before, after)| (before - after).abs() < 1e-9), "{held:?}");
+    assert!(held.after < 0.95 * held.before, "{held:?}");
+    let falls = held.by_motion.iter().filter(|(_, before, after)| after < before);
+    let most = falls.max_by(|a, b| (a.1 - a.2).total_cmp(&(b.1 - b.2))).map(|(motion, _, _)| motion);
+    assert_eq!(most, Some(&name), "{held:?}");
 }
 
 #[test]

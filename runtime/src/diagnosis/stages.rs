@@ -193,9 +193,10 @@ impl<'a> Course<'a> {
     ) -> Result<Diagnosis, DiagnosisError> {
         let (search, prepared) = (&mut begun.search, self.prepared);
         let contacts = pushes.with_those_at_rest(prepared, search);
+        let rows_with_pushes = contacts.as_ref().map(|_| prepared.motions.rows(self.model, None).slow);
         let ended = Ended {
             standard: &begun.standard,
-            contacts: contacts.as_ref(),
+            contacts: contacts.as_ref().zip(rows_with_pushes.as_ref()),
             report,
             delay: prepared.delay,
             rate: prepared.rate.as_ref(),
@@ -227,7 +228,7 @@ impl<'a> Course<'a> {
         for candidates in [&mut search.slow, &mut search.fast] {
             candidates.retain(|c| c.own.iter().any(|&j| judged[j]));
         }
-        let standard = StandardModelFit::new(&search.model.without_nuisances()?, &prepared.aligned)?;
+        let standard = StandardModelFit::new(&search.model.without_nuisances()?)?;
         Ok(Begun { search, standard, sampling })
     }
 }

@@ -70,7 +70,10 @@ fn found(finding: &Finding) -> String {
         .map(|(name, p)| {
             let sigma =
                 if p.sigma > 0.0 { format!(" +- {}", significant(p.sigma, 2)) } else { String::new() };
-            format!("{name} {}{sigma} {}", significant(p.value, 4), p.unit)
+            let unit = if p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
+            let counts = p.unit == "1" && p.sigma == 0.0 && p.value.fract() == 0.0;
+            let value = if counts { p.value.to_string() } else { significant(p.value, 4) };
+            format!("{name} {value}{sigma}{unit}")
         })
         .collect();
     text.push_str(&format!("  {}\n", numbers.join(", ")));

@@ -1,7 +1,7 @@
 //! Columns that are always fitted and never named: what every recording of a real robot has, and what other laws would
 //! otherwise be taken for.
 
-use crate::diagnosis::candidates::trial::{delay_columns, dense_columns, term_columns};
+use crate::diagnosis::candidates::trial::{delay_columns, dense_columns, term_columns, term_columns_in};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::PRESLIDING_NUISANCE;
@@ -65,10 +65,12 @@ pub(in crate::diagnosis) fn more_of_standing_laws(
         return None;
     }
     let without = context.carrying(before);
+    // In motions of a baseline that the body is not in there is nothing more.
+    let differs = |k: usize| context.chi_in(k) != without.chi_in(k);
     let mut more = vec![0.0; design.rows.len()];
     for term in reference.standing() {
-        let both = term_columns(context, design, term).into_iter().zip(term_columns(&without, design, term));
-        for ((now, before), a) in both.zip(&term.amplitude) {
+        let columns = |context| term_columns_in(context, design, term, differs);
+        for ((now, before), a) in columns(context).into_iter().zip(columns(&without)).zip(&term.amplitude) {
             more.iter_mut()
                 .zip(now.iter().zip(before))
                 .for_each(|(m, (now, before))| *m += a * (now - before));

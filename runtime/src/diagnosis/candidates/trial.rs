@@ -93,8 +93,18 @@ pub(in crate::diagnosis) fn term_columns(
     design: &Design,
     term: &EffectTerm,
 ) -> Vec<Vec<f64>> {
+    term_columns_in(context, design, term, |_| true)
+}
+
+/// The same on the rows of the motions that are wanted, zero on all others.
+pub(super) fn term_columns_in(
+    context: &Context<'_>,
+    design: &Design,
+    term: &EffectTerm,
+    wanted: impl Fn(usize) -> bool,
+) -> Vec<Vec<f64>> {
     let mut out = vec![vec![0.0; design.rows.len()]; term.amplitude.len()];
-    for k in 0..context.signals.len() {
+    for k in (0..context.signals.len()).filter(|&k| wanted(k)) {
         for (column, series) in out.iter_mut().zip(context.series_of_term(k, term)) {
             for (j, values) in series {
                 for r in design.of_signal(j, k).into_iter().flat_map(|(range, _)| range) {

@@ -29,7 +29,7 @@ impl AddAssign for Squares {
 }
 
 /// Mean of the values before and behind one; 0 where it has none.
-pub(super) fn mean_beside(values: &[f64], i: usize) -> f64 {
+pub(in crate::diagnosis) fn mean_beside(values: &[f64], i: usize) -> f64 {
     let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|k| values.get(k));
     let (sum, count) = beside.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / f64::max(count, 1.0)

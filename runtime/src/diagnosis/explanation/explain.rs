@@ -7,7 +7,7 @@ use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
 use crate::diagnosis::explanation::{
-    covariance, curves, delay, free_form, line, rate, standing, transient, words,
+    covariance, curves, delay, free_form, line, pushed, rate, standing, transient, words,
 };
 use crate::diagnosis::judging::between_motions::between_motions;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
@@ -31,7 +31,8 @@ use crate::parallel;
 /// What is known when a search has ended, besides the search.
 pub(in crate::diagnosis) struct Ended<'a> {
     pub standard: &'a StandardModelFit,
-    pub contacts: Option<&'a Contacts>,
+    /// Pushes from outside, and slow rows that leave nothing out.
+    pub contacts: Option<(&'a Contacts, &'a Design)>,
     pub report: SearchReport,
     /// Skew of the torques that was taken out of the signals, s.
     pub delay: f64,
@@ -126,7 +127,7 @@ fn found(
 ) -> Result<(Vec<Finding>, HeldOut), DiagnosisError> {
     let model = &search.model;
     let robot = model.context.model.robot();
-    let mut findings: Vec<Finding> = ended.contacts.map(|c| of_contacts(robot, c)).into_iter().collect();
+    let mut findings: Vec<Finding> = ended.contacts.map(|(c, _)| of_contacts(robot, c)).into_iter().collect();
     findings.extend(effects);
     let settings = search.settings_of_next(settings);
     findings.extend(line::findings(search, &settings));
@@ -146,17 +147,22 @@ fn found(
     let held = regression.held_out(false, &curves)?;
     findings.extend(ended.rate.map(|wrong| rate::finding(model, wrong, &held)));
     // Both are told of the same rows.
-    let standard_where_seen = match curves.is_empty() {
-        true => None,
-        false => Some(model.standard()?.regression(window).held_out(model.change, &curves)?),
+    let held = match ended.contacts {
+        Some((contacts, all)) => pushed::aware(model, all, contacts, held),
+        None => held,
     };
-    let standard = standard_where_seen.as_ref().unwrap_or(standard);
+    let standard_on_same_rows = match ended.contacts {
+        Some((_, all)) => Some(pushed::unaware(model, all)?),
+        None if curves.is_empty() => None,
+        None => Some(model.standard()?.regression(window).held_out(model.change, &curves)?),
+    };
+    let standard = standard_on_same_rows.as_ref().unwrap_or(standard);
     let before = before(model, ended, (standard, named_skew))?;
     // Without a finding the model is the standard one.
     let held = if findings.is_empty() { standard } else { &held };
     let after = held.errors();
     let held_out = HeldOut {
-        how: how(model) + &of_curves(robot, &curves),
+        how: how(model) + ended.contacts.map_or("", |_| OF_PUSHES) + &of_curves(robot, &curves),
         band,
         before: before.relative_error.unwrap_or_default(),
         after: after.relative_error.unwrap_or_default(),
@@ -267,7 +273,7 @@ pub(in crate::diagnosis) fn small(search: &Search<'_>, settings: &Settings) -> V
 }
 
 /// Errors on held-out motion of the standard model on the recording as it is. What was found is not taken out of it: a
-/// wrong rate, a skew that is named, and the windows of contacts, which are predicted too.
+/// wrong rate, and a skew that is named.
 fn before(
     model: &ExtendedModel<'_>,
     ended: &Ended<'_>,
@@ -276,14 +282,14 @@ fn before(
     if let Some(wrong) = ended.rate {
         return Ok(wrong.errors.clone());
     }
-    if ended.contacts.is_some() {
-        return Ok(ended.standard.held_with_windows.clone());
-    }
-    match named_skew {
+    match named_skew.filter(|_| ended.contacts.is_none()) {
         Some(skew) => Ok(delay::unaware(model, skew)?.errors()),
         None => Ok(standard.errors()),
     }
 }
+
+/// How rows within a push are predicted.
+const OF_PUSHES: &str = "; within pushes, from the instants beside";
 
 /// Where motion is left out of held-out errors.
 fn of_curves(robot: &Robot, curves: &[Curve]) -> String {

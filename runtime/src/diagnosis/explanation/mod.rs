@@ -10,6 +10,7 @@ mod fine_law;
 pub(in crate::diagnosis) mod free_form;
 pub(in crate::diagnosis) mod line;
 mod proposal;
+pub(in crate::diagnosis) mod pushed;
 pub(in crate::diagnosis) mod quantities;
 pub(in crate::diagnosis) mod rate;
 pub(in crate::diagnosis) mod standard_model;

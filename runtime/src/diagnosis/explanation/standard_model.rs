@@ -4,8 +4,6 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::outcome::{Errors, Estimated};
-use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 
 /// Fit and errors of the standard model alone.
@@ -19,18 +17,15 @@ pub(in crate::diagnosis) struct StandardModelFit {
     pub held_slow: HeldOutSquares,
     /// Fitted torque of the fast rows.
     pub fitted_fast: Vec<f64>,
-    /// With the windows of contacts, slow rows.
-    pub held_with_windows: Errors,
 }
 
 impl StandardModelFit {
-    /// Of a model without terms; `aligned` are slow rows that leave nothing out.
+    /// Of a model without terms.
     ///
     /// # Errors
     /// [`SingularDesign`] where a split has no fit.
-    pub fn new(model: &ExtendedModel<'_>, aligned: &Design) -> Result<Self, SingularDesign> {
+    pub fn new(model: &ExtendedModel<'_>) -> Result<Self, SingularDesign> {
         let (slow, fast) = (&model.slow, &model.fast);
-        let sigma = Fit::weighted(aligned, &slow.sigma)?.sigma;
         let residual = fast.residual();
         Ok(Self {
             in_sample: in_sample(fast),
@@ -39,7 +34,6 @@ impl StandardModelFit {
             residual_slow: slow.residual(),
             held_slow: slow.held_out(model.change, &[])?,
             fitted_fast: residual.iter().enumerate().map(|(row, r)| fast.design.torque(row) - r).collect(),
-            held_with_windows: HeldOutSquares::of(aligned, &sigma, model.change, &[])?.errors(),
         })
     }
 }

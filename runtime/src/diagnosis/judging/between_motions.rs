@@ -5,7 +5,6 @@
 
 use crate::diagnosis::judging::calibration::{Compared, of_companions, prior, with_other_motions};
 use crate::diagnosis::judging::units::Units;
-use crate::diagnosis::judging::wald::Wald;
 use crate::diagnosis::judging::white_products::{Background, Regressors};
 use crate::diagnosis::outcome::BetweenMotions;
 use crate::parallel;
@@ -32,8 +31,8 @@ pub(in crate::diagnosis) fn between_motions(
         let companions = &regressors.companions[j];
         let laws = &companions[levels.min(companions.len())..];
         let products = background.with_companions(units, &freed, j, laws);
-        let compared = with_other_motions(units, &products, taken)?;
-        let of_laws = prior(&compared.first()?.whole, &of_companions(&compared, &products, p, p), p, p)?;
+        let compared = with_other_motions(units, &products, p, taken)?;
+        let of_laws = prior(compared.first()?, &of_companions(&compared, &products, p), p)?;
 
         // What its level differs by shows where it is the same in all motions.
         let (level, held) = friction[j].split_at(levels.min(friction[j].len()));
@@ -42,9 +41,8 @@ pub(in crate::diagnosis) fn between_motions(
         free[j] = held.to_vec();
         let bound = Regressors { free: &free, ..*regressors };
         let products = background.with(units, &bound, &level, residual);
-        let of_unit =
-            |c: &Compared| Wald::of(&c.whole, &products.units[*c.units.first()?], (p, level.len()), false);
-        let compared = with_other_motions(units, &products, taken)?;
+        let of_unit = |c: &Compared| c.wald(&products.units[*c.units.first()?], (p, level.len()));
+        let compared = with_other_motions(units, &products, p, taken)?;
         let own: Vec<f64> = compared.iter().filter_map(of_unit).map(|wald| wald.mean()).collect();
         (own.len() > 1).then(|| BetweenMotions {
             laws: of_laws.variance,

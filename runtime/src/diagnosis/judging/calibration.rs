@@ -8,11 +8,12 @@
 //! has, as a random effect of the units would have it (Laird and Ware 1982). A dozen units know a lambda badly: it is
 //! moderated by those of other laws on the same joint.
 
+use crate::diagnosis::judging::projection::Projection;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::uneven_noise::of_noise;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
-use crate::diagnosis::judging::white_products::{Background, Products, Regressors, factored};
+use crate::diagnosis::judging::white_products::{Background, Products, Regressors};
 use crate::diagnosis::rules::OWN_FRACTION;
 use crate::statistics::moderation::{Prior, Variance};
 use nalgebra::DMatrix;
@@ -49,8 +50,21 @@ impl Calibrated {
 pub(super) struct Compared {
     /// Inner products over the part and the rest.
     pub whole: DMatrix<f64>,
+    /// Its first columns: the model, and where it may be there in all motion, the law.
+    pub model: Option<Projection>,
     /// Units that are each compared with this whole.
     pub units: Vec<usize>,
+}
+
+impl Compared {
+    fn new(whole: DMatrix<f64>, m: usize, units: Vec<usize>) -> Self {
+        Self { model: Projection::of(&whole, m), whole, units }
+    }
+
+    /// Wald's statistic of the law in a unit.
+    pub fn wald(&self, unit: &DMatrix<f64>, (p, k): (usize, usize)) -> Option<Wald> {
+        Wald::beside(self.model.as_ref()?, &self.whole, unit, (p, k))
+    }
 }
 
 /// A law that is judged.
@@ -86,15 +100,14 @@ pub(in crate::diagnosis) fn calibrate(
     };
     // Without a baseline the law is in all units, and in each it may be another.
     let common = common || !change;
-    let compared = compared(units, &products, &whole);
+    let m = if common { p + k } else { p };
+    let compared = compared(units, &products, &whole, m);
     let own: Vec<f64> = compared
         .iter()
-        .flat_map(|c| c.units.iter().map(|&u| Wald::of(&c.whole, &products.units[u], (p, k), common)))
-        .flatten()
+        .flat_map(|c| c.units.iter().filter_map(|&u| c.wald(&products.units[u], (p, k))))
         .map(|wald| wald.mean())
         .collect();
-    let m = if common { p + k } else { p };
-    let others = of_companions(&compared, &products, m, p + k);
+    let others = of_companions(&compared, &products, p + k);
     let levels: Vec<f64> = others.iter().take(law.trend_of).flatten().map(|v| v.value).collect();
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
     // A level that differs from unit to unit remembers: a trend over a motion of n units is that of a random walk.
@@ -104,7 +117,7 @@ pub(in crate::diagnosis) fn calibrate(
         freedom: own.len().saturating_sub(1).max(1) as f64,
     };
     if variance.value > 0.0
-        && let Some(prior) = prior(&compared[0].whole, &others, m, p + k)
+        && let Some(prior) = prior(&compared[0], &others, p + k)
     {
         variance = prior.moderate(variance);
     }
@@ -209,23 +222,24 @@ fn between_motions(regressors: &Regressors<'_>, law: &Law<'_>) -> Option<Varianc
 
 /// The units in which nothing has changed, each with what it is compared with: against a baseline its other motions, or
 /// its other units where it is one motion; without one, the whole recording `all`.
-fn compared(units: &Units, products: &Products, all: &DMatrix<f64>) -> Vec<Compared> {
+fn compared(units: &Units, products: &Products, all: &DMatrix<f64>, m: usize) -> Vec<Compared> {
     let count = units.units.len();
     if !units.change() {
-        return vec![Compared { whole: all.clone(), units: (0..count).collect() }];
+        return vec![Compared::new(all.clone(), m, (0..count).collect())];
     }
-    if let Some(others) = with_other_motions(units, products, |f| !units.is_target(f)) {
+    if let Some(others) = with_other_motions(units, products, m, |f| !units.is_target(f)) {
         return others;
     }
     let whole = || sum(&products.units, |v| !units.units[v].target);
     let old = (0..count).filter(|&u| !units.units[u].target);
-    old.map(|u| Compared { whole: whole(), units: vec![u] }).collect()
+    old.map(|u| Compared::new(whole(), m, vec![u])).collect()
 }
 
 /// The units of some motions, each with the others of these motions; `None` where there are not two of them.
 pub(super) fn with_other_motions(
     units: &Units,
     products: &Products,
+    m: usize,
     taken: impl Fn(usize) -> bool,
 ) -> Option<Vec<Compared>> {
     if !units.are_several(&taken) {
@@ -234,38 +248,30 @@ pub(super) fn with_other_motions(
     let of_unit = |u: usize| {
         let file = units.units[u].file;
         let whole = sum(&products.files, |f| taken(f) && f != file) + &products.units[u];
-        Compared { whole, units: vec![u] }
+        Compared::new(whole, m, vec![u])
     };
     Some((0..units.units.len()).filter(|&u| taken(units.units[u].file)).map(of_unit).collect())
 }
 
 /// For each companion its mean statistic of a change from unit to unit, each unit compared with a law common to all,
-/// and the degrees of freedom of this mean, where it is determined; beside the first `m` columns.
-pub(super) fn of_companions(
-    compared: &[Compared],
-    products: &Products,
-    m: usize,
-    y: usize,
-) -> Vec<Option<Variance>> {
+/// and the degrees of freedom of this mean, where it is determined.
+pub(super) fn of_companions(compared: &[Compared], products: &Products, y: usize) -> Vec<Option<Variance>> {
     let count = products.companions;
     let mut sums = vec![(0.0, 0_usize); count];
-    for Compared { whole, units } in compared {
-        let Some((factor, scale)) = factored(&whole.view((0, 0), (m, m)).into_owned()) else { continue };
-        let scale = DMatrix::from_diagonal(&scale);
-        let scaled_y = factor.solve(&(&scale * whole.view((0, y), (m, 1))));
-        let of_whole = &scale * whole.view((0, y + 1), (m, count));
-        let solved = factor.solve(&of_whole);
+    for Compared { whole, model, units } in compared {
+        let Some(model) = model else { continue };
+        let white_y = model.white(whole, y, 1);
+        let of_whole = model.white(whole, y + 1, count);
         for &u in units {
             let part = &products.units[u];
-            let of_part = &scale * part.view((0, y + 1), (m, count));
-            let solved_part = factor.solve(&of_part);
+            let of_part = model.white(part, y + 1, count);
             for (b, sum) in sums.iter_mut().enumerate() {
                 let i = y + 1 + b;
                 let [all, own] = [of_whole.column(b), of_part.column(b)];
                 // Common amplitude and change, both without what the columns make of them.
-                let common = whole[(i, i)] - all.dot(&solved.column(b));
-                let both = part[(i, i)] - own.dot(&solved.column(b));
-                let change = part[(i, i)] - own.dot(&solved_part.column(b));
+                let common = whole[(i, i)] - all.norm_squared();
+                let both = part[(i, i)] - own.dot(&all);
+                let change = part[(i, i)] - own.norm_squared();
                 if common <= OWN_FRACTION * whole[(i, i)] || part[(i, i)] <= 0.0 {
                     continue;
                 }
@@ -273,10 +279,8 @@ pub(super) fn of_companions(
                 if determined <= OWN_FRACTION * part[(i, i)] {
                     continue;
                 }
-                let [with_all, with_part] = [
-                    whole[(i, y)] - all.dot(&scaled_y.column(0)),
-                    part[(i, y)] - own.dot(&scaled_y.column(0)),
-                ];
+                let [with_all, with_part] =
+                    [whole[(i, y)] - all.dot(&white_y.column(0)), part[(i, y)] - own.dot(&white_y.column(0))];
                 let slope = with_part - both / common * with_all;
                 *sum = (sum.0 + slope * slope / determined, sum.1 + 1);
             }
@@ -290,11 +294,10 @@ pub(super) fn of_companions(
 
 /// Where the variances of companions scatter around. Those of two that look alike beside the model are correlated by
 /// the square of what their columns are.
-pub(super) fn prior(whole: &DMatrix<f64>, others: &[Option<Variance>], m: usize, y: usize) -> Option<Prior> {
-    let (factor, scale) = factored(&whole.view((0, 0), (m, m)).into_owned())?;
-    let scaled = DMatrix::from_diagonal(&scale) * whole.view((0, y + 1), (m, others.len()));
-    let own =
-        whole.view((y + 1, y + 1), (others.len(), others.len())) - scaled.transpose() * factor.solve(&scaled);
+pub(super) fn prior(compared: &Compared, others: &[Option<Variance>], y: usize) -> Option<Prior> {
+    let Compared { whole, model, .. } = compared;
+    let white = model.as_ref()?.white(whole, y + 1, others.len());
+    let own = whole.view((y + 1, y + 1), (others.len(), others.len())) - white.tr_mul(&white);
     let known: Vec<usize> = (0..others.len()).filter(|&i| others[i].is_some()).collect();
     let variances: Vec<Variance> = others.iter().copied().flatten().collect();
     Prior::of(&variances, &|i, k| {

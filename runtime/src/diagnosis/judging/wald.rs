@@ -1,6 +1,6 @@
 //! Wald's statistic of a law in a part of the motion, from inner products.
 
-use crate::diagnosis::judging::white_products::factored;
+use crate::diagnosis::judging::projection::Projection;
 use crate::diagnosis::rules::{LEAST_EIGENVALUE, OWN_FRACTION};
 use nalgebra::{DMatrix, DVector};
 
@@ -30,18 +30,23 @@ impl Wald {
         common: bool,
     ) -> Option<Self> {
         let m = if common { p + k } else { p };
+        Self::beside(&Projection::of(whole, m)?, whole, part, (p, k))
+    }
+
+    /// The same beside columns of the `whole` that are factored: the first `p`, or, where the law may be there in all motion,
+    /// `p + k`.
+    pub fn beside(
+        model: &Projection,
+        whole: &DMatrix<f64>,
+        part: &DMatrix<f64>,
+        (p, k): (usize, usize),
+    ) -> Option<Self> {
         let (law, y) = (p, p + k);
-        let g = whole.view((0, 0), (m, m)).into_owned();
-        let v = DVector::from_fn(m, |i, _| whole[(i, y)]);
-        let z = part.view((0, law), (m, k)).into_owned();
         let own = part.view((law, law), (k, k)).into_owned();
-        let mut b = DVector::from_fn(k, |a, _| part[(law + a, y)]);
-        let (factor, scale) = factored(&g)?;
-        let scale = DMatrix::from_diagonal(&scale);
-        let scaled = &scale * &z;
-        let made = factor.solve(&scaled);
-        let information = &own - scaled.transpose() * &made;
-        b -= made.transpose() * (&scale * &v);
+        let white = model.white(part, law, k);
+        let information = &own - white.tr_mul(&white);
+        let b = part.view((law, y), (k, 1)) - white.tr_mul(&model.white(whole, y, 1));
+        let b = b.column(0).into_owned();
         // A number that is not determined has no scale, and by that no part in anything.
         let alive = |a: usize| own[(a, a)] > 0.0 && information[(a, a)] > OWN_FRACTION * own[(a, a)];
         let width = DVector::from_fn(k, |a, _| if alive(a) { 1.0 / information[(a, a)].sqrt() } else { 0.0 });
@@ -56,7 +61,7 @@ impl Wald {
             amplitude += eigen.eigenvectors.column(i) * (projected[i] / value);
         }
         let amplitude = amplitude.component_mul(&width);
-        let made = scale * made * &amplitude;
+        let made = model.made(&white * &amplitude);
         (numbers > 0).then_some(Self { squares, numbers, amplitude, made, information })
     }
 

@@ -12,6 +12,7 @@ use crate::parallel;
 use crate::statistics::moderation::Variance;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// What a law is judged against: everything by row, over all rows of all joints.
 pub(in crate::diagnosis) struct Regressors<'a> {
@@ -75,6 +76,8 @@ impl Products {
 /// Inner products without any law, joint by joint: the same for all laws of a round.
 pub(in crate::diagnosis) struct Background {
     of_joint: Vec<Products>,
+    /// Of all joints but one, each when it is first asked for.
+    of_others: Vec<OnceLock<Products>>,
     residual: Vec<f64>,
 }
 
@@ -84,8 +87,22 @@ impl Background {
         let of_joint = |j| of_joint(units, regressors, j, &[], &[], residual);
         Self {
             of_joint: parallel::map(threads, regressors.of_joint.len(), of_joint),
+            of_others: regressors.of_joint.iter().map(|_| OnceLock::new()).collect(),
             residual: residual.to_vec(),
         }
+    }
+
+    /// Of all joints but one.
+    fn of_others(&self, units: &Units, joint: usize) -> &Products {
+        self.of_others[joint].get_or_init(|| {
+            let width = self.of_joint[joint].units.first().map_or(0, DMatrix::nrows);
+            let mut sum = Products::zero(units, width, 0);
+            let places: Vec<usize> = (0..width).collect();
+            for (_, part) in self.of_joint.iter().enumerate().filter(|(j, _)| *j != joint) {
+                sum.add(part, &places);
+            }
+            sum
+        })
     }
 
     /// With a law, given as columns over all rows, that leaves `residual`, and the companions of its joints, all joints
@@ -109,7 +126,14 @@ impl Background {
         let companions = (0..own.len()).filter(|&j| own[j]).map(|j| regressors.companions[j].len()).sum();
         let mut out = Products::zero(units, p + k + 1 + companions, companions);
         let mut first = p + k + 1;
-        for j in 0..own.len() {
+        // Without the law, y is the column after the p of the model.
+        let without_law: Vec<usize> = (0..p).chain([p + k]).collect();
+        let mut rest: Vec<usize> = (0..own.len()).collect();
+        if let [joint] = (0..own.len()).filter(|&j| own[j] || frees(j)).collect::<Vec<_>>()[..] {
+            out.add(self.of_others(units, joint), &without_law);
+            rest = vec![joint];
+        }
+        for j in rest {
             if own[j] {
                 let companions = &regressors.companions[j];
                 let part = of_joint(units, regressors, j, law, companions, residual);
@@ -118,12 +142,9 @@ impl Background {
                 out.add(&part, &places);
             } else if frees(j) {
                 let part = of_joint(units, regressors, j, &[], &[], residual);
-                let places: Vec<usize> = (0..p).chain([p + k]).collect();
-                out.add(&part, &places);
+                out.add(&part, &without_law);
             } else {
-                // Without the law, y is the column after the p of the model.
-                let places: Vec<usize> = (0..p).chain([p + k]).collect();
-                out.add(&self.of_joint[j], &places);
+                out.add(&self.of_joint[j], &without_law);
             }
         }
         out
@@ -139,10 +160,7 @@ impl Background {
     ) -> Products {
         let width = regressors.shared.len() + 1;
         let mut out = Products::zero(units, width + companions.len(), companions.len());
-        let shared: Vec<usize> = (0..width).collect();
-        for (_, part) in self.of_joint.iter().enumerate().filter(|(j, _)| *j != joint) {
-            out.add(part, &shared);
-        }
+        out.add(self.of_others(units, joint), &(0..width).collect::<Vec<usize>>());
         let own = of_joint(units, regressors, joint, &[], companions, &self.residual);
         out.add(&own, &(0..width + companions.len()).collect::<Vec<usize>>());
         out
@@ -287,9 +305,15 @@ fn project(g: &DMatrix<f64>, f: usize) -> DMatrix<f64> {
 }
 
 fn add(sum: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
-    for (a, &i) in places.iter().enumerate() {
-        for (b, &k) in places.iter().enumerate() {
-            sum[(i, k)] += part[(a, b)];
+    // Places that are counted from the first on are added a column at a time.
+    let same = places.iter().enumerate().take_while(|&(a, &i)| a == i).count();
+    let (width, rows) = (sum.nrows(), part.nrows());
+    for (b, &k) in places.iter().enumerate() {
+        let to = &mut sum.as_mut_slice()[k * width..][..width];
+        let from = &part.as_slice()[b * rows..][..rows];
+        to.iter_mut().zip(&from[..same]).for_each(|(sum, x)| *sum += x);
+        for (&i, x) in places.iter().zip(from).skip(same) {
+            to[i] += x;
         }
     }
 }

@@ -164,7 +164,7 @@ impl<'a> Context<'a> {
     }
 
     /// Base parameters of the robot in a motion with what it carries there.
-    pub(super) fn chi_in(&self, signal: usize) -> Vec<f64> {
+    pub fn chi_in(&self, signal: usize) -> Vec<f64> {
         let mut chi = self.chi.clone();
         let is_there = |body: &&Carried| body.in_baseline || self.signals[signal].is_target;
         for body in self.carried.iter().filter(is_there) {

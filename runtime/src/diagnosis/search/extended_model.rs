@@ -88,7 +88,8 @@ impl<'a> ExtendedModel<'a> {
         let mut deviation = GAIN_DEVIATION;
         let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
         for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
-            self.put_terms(SmoothingWindow::Slow, deviation)?;
+            let (columns, besides) = self.terms_on(SmoothingWindow::Slow, deviation);
+            self.slow.set_terms(columns, besides)?;
             deviation = self.deviation_of_gains(deviation);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi, self.carried());
@@ -102,18 +103,22 @@ impl<'a> ExtendedModel<'a> {
                 }
             }
         }
-        for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
-            self.put_terms(window, deviation)?;
-        }
-        let mut held_out = [(&mut self.slow, Ok(())), (&mut self.fast, Ok(()))];
-        parallel::for_each(self.context.threads, &mut held_out, |(regression, outcome)| {
-            *outcome = regression.hold_out();
+        let windows = [SmoothingWindow::Slow, SmoothingWindow::Fast];
+        let put = parallel::map(self.context.threads, windows.len(), |w| {
+            Some(self.terms_on(windows[w], deviation))
         });
-        held_out.into_iter().try_for_each(|(_, outcome)| outcome)
+        let regressions = [&mut self.slow, &mut self.fast];
+        let mut fits: Vec<_> = regressions.into_iter().zip(put).map(|(r, put)| (r, put, Ok(()))).collect();
+        parallel::for_each(self.context.threads, &mut fits, |(regression, put, outcome)| {
+            if let Some((columns, besides)) = put.take() {
+                *outcome = regression.set_terms(columns, besides).and_then(|()| regression.hold_out());
+            }
+        });
+        fits.into_iter().try_for_each(|(_, _, outcome)| outcome)
     }
 
-    /// Puts the terms into the regression on the rows of a window.
-    fn put_terms(&mut self, window: SmoothingWindow, deviation: f64) -> Result<(), SingularDesign> {
+    /// The columns of the terms on the rows of a window, and what is put in beside them.
+    fn terms_on(&self, window: SmoothingWindow, deviation: f64) -> (Vec<TermColumns>, Besides) {
         let (context, design) = (&self.context, &self.regression(window).design);
         let known = more_of_standing_laws(context, design);
         let besides = Besides { known, gains: gain_columns(context, design), deviation };
@@ -127,10 +132,7 @@ impl<'a> ExtendedModel<'a> {
                 curve_on: term.own.first().copied().filter(|_| form.holds_only_where_seen()),
             }
         });
-        match window {
-            SmoothingWindow::Slow => self.slow.set_terms(columns, besides),
-            SmoothingWindow::Fast => self.fast.set_terms(columns, besides),
-        }
+        (columns, besides)
     }
 
     /// How much the gains differ that bodies show.

@@ -21,6 +21,7 @@ use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
 use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::parallel;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -76,27 +77,27 @@ impl Search<'_> {
         let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
         let beside_laws = settings.beside_laws().least_confidence;
         let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
-        let mut changed: Vec<Changed> = (0..joints)
-            .filter_map(|j| {
-                let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
-                let (shared, background) = own.as_ref().or(baseline.as_ref())?;
-                let (evidence, change) = self.friction_evidence(j, shared, background, &residual)?;
-                // Nor surer than the numbers allow that are shown.
-                let confidence = evidence.confidence(joints).min(of_amplitudes(
-                    &regression.fit,
-                    design,
-                    bench.own_friction_of(j),
-                    1.0,
-                ));
-                let sure = confidence >= beside_laws;
-                let excluded = match change {
-                    Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
-                    Change::DriveGain => is_excluded(DRIVE_GAIN, j),
-                };
-                let significance = evidence.significance;
-                (sure && !excluded).then_some(Changed { joint: j, change, significance, confidence })
-            })
-            .collect();
+        let on_joint = |j: usize| {
+            let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
+            let (shared, background) = own.as_ref().or(baseline.as_ref())?;
+            let (evidence, change) = self.friction_evidence(j, shared, background, &residual)?;
+            // Nor surer than the numbers allow that are shown.
+            let confidence = evidence.confidence(joints).min(of_amplitudes(
+                &regression.fit,
+                design,
+                bench.own_friction_of(j),
+                1.0,
+            ));
+            let sure = confidence >= beside_laws;
+            let excluded = match change {
+                Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
+                Change::DriveGain => is_excluded(DRIVE_GAIN, j),
+            };
+            let significance = evidence.significance;
+            (sure && !excluded).then_some(Changed { joint: j, change, significance, confidence })
+        };
+        let mut changed: Vec<Changed> =
+            parallel::map(self.threads(), joints, on_joint).into_iter().flatten().collect();
         let of_first = settings.confidence_of_first(EffectKind::FrictionLevelChange);
         if self.model.terms.is_empty() && changed.iter().all(|c| c.confidence < of_first) {
             changed.clear();

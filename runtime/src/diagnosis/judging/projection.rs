@@ -1,0 +1,64 @@
+//! What the columns of a model make of other columns, from inner products.
+
+use crate::diagnosis::judging::white_products::factored;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// The first columns of a table of inner products, factored once for all that is compared beside them.
+pub(in crate::diagnosis) struct Projection {
+    factor: Cholesky<f64, Dyn>,
+    scale: DVector<f64>,
+}
+
+impl Projection {
+    /// Of the first `m` columns; `None` where their products are not finite.
+    pub fn of(products: &DMatrix<f64>, m: usize) -> Option<Self> {
+        let (factor, scale) = factored(&products.view((0, 0), (m, m)).into_owned())?;
+        Some(Self { factor, scale })
+    }
+
+    /// How many columns they are.
+    pub fn columns(&self) -> usize {
+        self.scale.len()
+    }
+
+    /// Columns of inner products with them, made white: the product of two such columns is that of the parts which the
+    /// model's columns make of both.
+    pub fn white(&self, products: &DMatrix<f64>, from: usize, count: usize) -> DMatrix<f64> {
+        let mut white = products.view((0, from), (self.columns(), count)).into_owned();
+        for (i, scale) in self.scale.iter().enumerate() {
+            white.row_mut(i).scale_mut(*scale);
+        }
+        // The factor's diagonal is positive, so that there is a solution.
+        let _ = self.factor.l_dirty().solve_lower_triangular_mut(&mut white);
+        white
+    }
+
+    /// How much of each column of the model makes the part that is `white`.
+    pub fn made(&self, mut white: DVector<f64>) -> DVector<f64> {
+        let _ = self.factor.l_dirty().ad_solve_lower_triangular_mut(&mut white);
+        white.component_mul(&self.scale)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::normal;
+    use approx::assert_relative_eq;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64;
+
+    #[test]
+    fn parts_that_columns_make_of_others_are_those_of_a_regression() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let columns = DMatrix::from_fn(40, 5, |_, _| normal(&mut rng));
+        let (model, others) = (columns.columns(0, 3).into_owned(), columns.columns(3, 2).into_owned());
+        let projection = Projection::of(&columns.tr_mul(&columns), 3).expect("finite");
+        let white = projection.white(&columns.tr_mul(&columns), 3, 2);
+        let x = model.clone().svd(true, true).solve(&others, 1e-12).expect("both sides");
+        let fitted = &model * &x;
+        assert_relative_eq!(white.tr_mul(&white), fitted.tr_mul(&fitted), max_relative = 1e-8);
+        let made = projection.made(white.column(1).into_owned());
+        assert_relative_eq!(made, x.column(1).into_owned(), max_relative = 1e-8);
+    }
+}
