@@ -3,20 +3,20 @@
 use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::{JointIndex, Model};
 use dynid_runtime::recording::Trajectory;
-use dynid_runtime::simulation::Reference;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
+use dynid_runtime::simulation::{Reference, World};
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::failure::Failure;
 use crate::hiding::{hide, of, plain};
-use crate::motions::{planned, recorded};
+use crate::motions::{Noise, planned, recorded};
 use crate::outside::{Described, Outside};
 use crate::put::Number;
 use crate::random::Random;
 use crate::secret::{Secret, is_change};
 use crate::size::VISIBLE;
-use crate::visible::visible;
+use crate::visible::{Seen, visible};
 
 /// What a robot with a reference has before anything is hidden in it.
 const STANDING: [EffectKind; 2] = [EffectKind::LoadDependentFriction, EffectKind::Spring];
@@ -89,7 +89,8 @@ pub fn draw(model: &'static dyn Model, case: &Case) -> Result<Drawn, Failure> {
             secret.push(model, case.push, motions.first().map_or(0.0, |m| m.duration()));
         }
         if let (EffectKind::TorqueSaturation | EffectKind::FreeForm, Some(joint)) = (effect, secret.joint) {
-            secret.most_torque = most_torque(&recorded(&plain(model)?, &motions, &[], noise)?, joint);
+            secret.most_torque =
+                most_torque(&recorded(&plain(model)?, &motions, &[], Noise::Nominal(noise))?, joint);
         }
         let (size, seen) = sized(model, &secret, VISIBLE[case.size], &motions[..1], noise)?;
         hidden.push(Hidden {
@@ -127,7 +128,12 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
     }
     let change = case.baseline || case.reference.is_some() || case.effects.iter().any(|&e| is_change(e));
     let baseline = if change {
-        recorded(&before, &planned(model, count, length, &mut random)?, &standing, noise.wrapping_add(100))?
+        recorded(
+            &before,
+            &planned(model, count, length, &mut random)?,
+            &standing,
+            Noise::Nominal(noise.wrapping_add(100)),
+        )?
     } else {
         Vec::new()
     };
@@ -141,10 +147,10 @@ pub fn recordings(model: &'static dyn Model, case: &Case, with_test: bool) -> Re
         for (secret, size) in &lasting {
             hide(&mut world, model, secret, *size)?;
         }
-        test = recorded(&world, &planned, &lasting, noise.wrapping_add(200))?;
+        test = recorded(&world, &planned, &lasting, Noise::Nominal(noise.wrapping_add(200)))?;
     }
     let there: Vec<(Secret, f64)> = standing.into_iter().chain(secrets).collect();
-    let motions = recorded(&world, &motions, &there, noise)?;
+    let motions = recorded(&world, &motions, &there, Noise::Nominal(noise))?;
     let mut recordings = Recordings { hidden, motions, baseline, test };
     let parts = [&mut recordings.motions, &mut recordings.baseline, &mut recordings.test];
     for (part, motions) in (0..).zip(parts) {
@@ -168,16 +174,23 @@ fn sized(
     motions: &[ExcitingMotion],
     noise: u64,
 ) -> Result<(f64, f64), Failure> {
-    let without = recorded(&plain(model)?, motions, &[], noise)?;
+    let both = |world: &World<'static>, secrets: &[(Secret, f64)]| -> Result<Seen, Failure> {
+        Ok(Seen {
+            recorded: recorded(world, motions, secrets, Noise::OfTorques(noise))?,
+            without_noise: recorded(world, motions, secrets, Noise::None)?,
+        })
+    };
+    let nominal = recorded(&plain(model)?, motions, &[], Noise::Nominal(noise))?;
+    let without = both(&plain(model)?, &[])?;
     let seen = |size: f64| -> Result<f64, Failure> {
         let mut world = plain(model)?;
         hide(&mut world, model, secret, size)?;
-        let with = recorded(&world, motions, &[(secret.clone(), size)], noise)?;
-        let joints = visible(model, &with, &without, is_change(secret.effect))?;
+        let with = both(&world, &[(secret.clone(), size)])?;
+        let joints = visible(model, &with, &without, (&nominal, is_change(secret.effect)))?;
         let most = joints.into_iter().fold(0.0, f64::max);
         // A contact is looked for where it is, not over the whole motion.
         let [from, to] = secret.window;
-        let lasts = without.first().and_then(|m| Some(m.time.last()? - m.time.first()?)).unwrap_or(0.0);
+        let lasts = nominal.first().and_then(|m| Some(m.time.last()? - m.time.first()?)).unwrap_or(0.0);
         Ok(if secret.effect == EffectKind::Contact { most * (lasts / (to - from)).sqrt() } else { most })
     };
     let hiding = of(secret.effect).ok_or("it is not in the table")?;

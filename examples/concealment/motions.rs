@@ -52,18 +52,38 @@ pub fn name(k: usize) -> String {
     format!("motion {}", k + 1)
 }
 
-/// Records a world on planned motions. Motions that are recorded with the same `noise` seed have the same noise.
+/// What the sensors add. The same seed gives the same noise.
+#[derive(Clone, Copy)]
+pub enum Noise {
+    /// The robot's nominal noise.
+    Nominal(u64),
+    /// Of torques alone.
+    OfTorques(u64),
+    /// Nothing.
+    None,
+}
+
+/// Records a world on planned motions.
 pub fn recorded(
     world: &World<'_>,
     motions: &[ExcitingMotion],
     secrets: &[(Secret, f64)],
-    noise: u64,
+    noise: Noise,
 ) -> Result<Vec<Trajectory>, Failure> {
     let late = secrets.iter().any(|(s, _)| s.effect == EffectKind::TimeDelay);
     let mut all = Vec::new();
     for (k, motion) in motions.iter().enumerate() {
-        let mut settings =
-            LoopSettings::nominal(world.model(), &world.chi(), motion, RATE, noise.wrapping_add(k as u64));
+        let seed = match noise {
+            Noise::Nominal(seed) | Noise::OfTorques(seed) => seed.wrapping_add(k as u64),
+            Noise::None => 0,
+        };
+        let mut settings = LoopSettings::nominal(world.model(), &world.chi(), motion, RATE, seed);
+        if !matches!(noise, Noise::Nominal(_)) {
+            settings.sensors.position_noise.clear();
+        }
+        if matches!(noise, Noise::None) {
+            settings.sensors.torque_noise.clear();
+        }
         settings.record_every = if late { 1 } else { RECORD_EVERY };
         settings.name = name(k);
         let mut trajectory = simulate(&mut world.plant(&name(k))?, motion, &settings, &mut |_| {})?.recorded;

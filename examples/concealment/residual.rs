@@ -40,8 +40,3 @@ pub fn residuals(observation: &Observation, chi: &[f64]) -> Vec<f64> {
         })
         .collect()
 }
-
-/// What of a torque stands out of a residual r0 where r is left with it: sqrt(r² - r0²) / r0.
-pub fn beside(r: f64, r0: f64) -> f64 {
-    (r * r - r0 * r0).max(0.0).sqrt() / r0.max(1e-12)
-}

@@ -93,8 +93,9 @@ pub fn about_sizes(text: &mut String) {
     let _ = writeln!(
         text,
         "The sizes are relative to what can be seen. *Visible* is the torque of the effect that no refit of the standard \
-         parameters can take over, relative to the noise: sqrt(r² - r0²)/r0 of the residuals of the standard model \
-         with and without the effect, on the same motion with the same noise, in a band of 25 Hz or 100 Hz, where it \
+         parameters can take over, relative to the noise: sqrt(r² - s²)/r0, where r0 is the residual of the standard \
+         model without the effect, and r and s are what its parameters leave with the effect and without it on the \
+         same motion where sensors have no noise, in a band of 25 Hz or 100 Hz, where it \
          shows more, on the joint where it shows most (a contact: while it lasts). `small` aims at {}, `medium` at {}, \
          `large` at {}; where no robot has that much of an effect, at the most that it may have, and the column says \
          what was seen.\n",

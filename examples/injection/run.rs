@@ -15,7 +15,6 @@ use crate::failure::Failure;
 use crate::fit::{Fitted, fit};
 use crate::options::Options;
 use crate::random::Random;
-use crate::residual::beside;
 
 /// What windows are cut from.
 pub struct Recordings<'a> {
@@ -246,4 +245,9 @@ fn added(
         }
     }
     Ok(out)
+}
+
+/// What of a torque stands out of a residual r0 where r is left with it: sqrt(r² - r0²) / r0.
+fn beside(r: f64, r0: f64) -> f64 {
+    (r * r - r0 * r0).max(0.0).sqrt() / r0.max(1e-12)
 }

@@ -119,9 +119,14 @@ pub(super) const LEAST_SIGMA: f64 = 1e-12;
 
 // ---- Partial regression and judgement -----------------------------------------------------------------------------
 
-/// Least fraction of a trial column's squares that the design does not make: below it, the column is the design's.
-/// Judgement, above rounding and the ridge; geometry_error in `docs/concealment.md`.
+/// Least fraction of a trial column's squares that the design does not make: below it, the column is the design's, and what
+/// is left of it is what is wrong with either. Judgement: no column of a real robot is right to better than a hundredth of
+/// its torque.
 pub(super) const OWN_FRACTION: f64 = 2e-4;
+/// The same of a derivative of the model, which is wrong in the same way as the model's own columns: what an error of the
+/// table or of the time adds is nearly that of other inertias, and shows by a thousandth of its torque. Mechanics: ten
+/// thousand times [`FIT_RIDGE`], below which the part of its own is what the ridge leaves.
+pub(super) const OWN_FRACTION_OF_DERIVATIVE: f64 = 1e-6;
 /// Relative ridge of a candidate's amplitudes. Mechanics, as [`FIT_RIDGE`], for columns that nearly agree.
 pub(super) const AMPLITUDE_RIDGE: f64 = 1e-7;
 /// What one more number must gain to be worth it, in units of the noise variance (Akaike 1974). Statistics.

@@ -3,7 +3,8 @@
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::effects::{Abscissa, EffectKind, Place, SmoothingWindow, UserLaw};
+use crate::diagnosis::rules::OWN_FRACTION_OF_DERIVATIVE;
+use crate::effects::{Abscissa, EffectKind, Form, Place, SmoothingWindow, UserLaw};
 use crate::parallel;
 
 /// An effect at a place.
@@ -98,6 +99,9 @@ pub(in crate::diagnosis) fn make(
             if effect.form().is_curve() {
                 // Of a curve, the motion shows what it passes.
                 trial.needed = 1;
+            }
+            if matches!(effect.form(), Form::Sensitivity(_)) {
+                trial.own_fraction = OWN_FRACTION_OF_DERIVATIVE;
             }
             if place.law().is_some() {
                 // A person who wrote a constant down asks for it.

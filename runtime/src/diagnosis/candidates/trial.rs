@@ -4,6 +4,7 @@ use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rows::series::Series;
+use crate::diagnosis::rules::OWN_FRACTION;
 use crate::effects::{EffectKind, EffectTerm, Place};
 use nalgebra::DMatrix;
 
@@ -19,6 +20,8 @@ pub(in crate::diagnosis) struct Trial {
     pub products: Vec<Vec<Products>>,
     /// Columns that must have a part of their own.
     pub needed: usize,
+    /// Least fraction of a column's squares that is a part of its own.
+    pub own_fraction: f64,
 }
 
 /// Inner products of a trial on one group of rows.
@@ -148,7 +151,7 @@ fn columns_needed(k: usize) -> usize {
 impl Trial {
     pub fn new(design: &Design, shape: Vec<f64>, columns: Vec<Sparse>) -> Self {
         let needed = columns_needed(columns.len());
-        let mut trial = Self { shape, columns, products: Vec::new(), needed };
+        let mut trial = Self { shape, columns, products: Vec::new(), needed, own_fraction: OWN_FRACTION };
         trial.refresh(design);
         trial
     }

@@ -9,7 +9,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
-use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, KEPT_BESIDE, OWN_FRACTION};
+use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, KEPT_BESIDE};
 use nalgebra::{DMatrix, DVector};
 
 /// A trial with the columns of a design projected out.
@@ -48,7 +48,7 @@ impl Fit {
         let mut b = y - z.transpose() * &self.chi;
         let alive = (0..k).filter(|&a| c[(a, a)] > 0.0).count();
         let own: Vec<bool> =
-            (0..k).map(|a| c[(a, a)] > 0.0 && s[(a, a)] > OWN_FRACTION * c[(a, a)]).collect();
+            (0..k).map(|a| c[(a, a)] > 0.0 && s[(a, a)] > trial.own_fraction * c[(a, a)]).collect();
         for a in (0..k).filter(|&a| !own[a]) {
             s.row_mut(a).fill(0.0);
             s.column_mut(a).fill(0.0);
