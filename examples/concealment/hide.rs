@@ -16,7 +16,7 @@ use crate::put::Number;
 use crate::random::Random;
 use crate::secret::{Secret, is_change};
 use crate::size::VISIBLE;
-use crate::visible::{Seen, visible};
+use crate::visible::{Plain, Seen, visible};
 
 /// What a robot with a reference has before anything is hidden in it.
 const STANDING: [EffectKind; 2] = [EffectKind::LoadDependentFriction, EffectKind::Spring];
@@ -181,12 +181,12 @@ fn sized(
         })
     };
     let nominal = recorded(&plain(model)?, motions, &[], Noise::Nominal(noise))?;
-    let without = both(&plain(model)?, &[])?;
+    let unhidden = Plain::of(model, &nominal, &both(&plain(model)?, &[])?)?;
     let seen = |size: f64| -> Result<f64, Failure> {
         let mut world = plain(model)?;
         hide(&mut world, model, secret, size)?;
         let with = both(&world, &[(secret.clone(), size)])?;
-        let joints = visible(model, &with, &without, (&nominal, is_change(secret.effect)))?;
+        let joints = visible(model, &with, &unhidden, is_change(secret.effect))?;
         let most = joints.into_iter().fold(0.0, f64::max);
         // A contact is looked for where it is, not over the whole motion.
         let [from, to] = secret.window;

@@ -40,3 +40,8 @@ pub fn residuals(observation: &Observation, chi: &[f64]) -> Vec<f64> {
         })
         .collect()
 }
+
+/// What of a torque stands out of the `noise` where r is left with it and s without: sqrt(r² - s²) / noise.
+pub fn beside(r: f64, s: f64, noise: f64) -> f64 {
+    (r * r - s * s).max(0.0).sqrt() / noise.max(1e-12)
+}

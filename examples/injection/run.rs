@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::fit::{Fitted, fit};
 use crate::options::Options;
 use crate::random::Random;
+use crate::residual::beside;
 
 /// What windows are cut from.
 pub struct Recordings<'a> {
@@ -214,7 +215,7 @@ fn resize(
         term.amplitude.iter_mut().for_each(|a| *a *= factor);
         let with = fit(model, &[added(model, &plain[0], fitted, term)?], known)?;
         let left = with.residual.iter().zip(&fitted.residual);
-        seen = left.map(|(r, r0)| beside(*r, *r0)).fold(0.0, f64::max);
+        seen = left.map(|(r, r0)| beside(*r, *r0, *r0)).fold(0.0, f64::max);
         factor = (wanted / seen.max(0.1 * wanted)).min(10.0);
         if (factor - 1.0).abs() < 0.1 {
             break;
@@ -245,9 +246,4 @@ fn added(
         }
     }
     Ok(out)
-}
-
-/// What of a torque stands out of a residual r0 where r is left with it: sqrt(r² - r0²) / r0.
-fn beside(r: f64, r0: f64) -> f64 {
-    (r * r - r0 * r0).max(0.0).sqrt() / r0.max(1e-12)
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dynid_runtime::diagnosis::{DiagnosisError, Portrait, imitators, portrait};
-use dynid_runtime::effects::EffectKind;
+use dynid_runtime::effects::{EffectKind, unit_behind};
 use dynid_runtime::recording::meant;
 use dynid_runtime::report::{Plot, Role, SeriesKind, alone, significant};
 
@@ -142,14 +142,7 @@ fn page(about: &About) -> String {
         let values: Vec<String> = portrait
             .parameters
             .iter()
-            .map(|p| {
-                format!(
-                    "{} {}{}",
-                    p.name,
-                    significant(p.value, 3),
-                    if p.unit == "1" { String::new() } else { format!(" {}", p.unit) }
-                )
-            })
+            .map(|p| format!("{} {}{}", p.name, significant(p.value, 3), unit_behind(&p.unit)))
             .collect();
         let torque = format!("torque of joint {} of a planar arm, {}", portrait.joint, portrait.unit);
         parts.push(format!(

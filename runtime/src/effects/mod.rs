@@ -50,7 +50,7 @@ pub use form::Form;
 pub use free_law::{Axis, FreeLaw, Seen, Together};
 pub use joint_law::{At, AtRest, HEARD_JOINT, JointLaw, Scale};
 pub use place::Place;
-pub use quantity::{Parameter, Quantities};
+pub use quantity::{Parameter, Quantities, unit_behind};
 pub use rigid_body::{BODY_SYMBOLS, BodyEstimate, BodyOnLink, body_columns, body_detail};
 pub use sensitivity::{Direction, Distortion, Seeds, Sensitivity, Variant, derivable, derivative};
 pub use shape::{Move, ShapeSearch, Step};

@@ -68,7 +68,7 @@ impl Quantities {
     pub fn value(&self, name: &str) -> String {
         self.get(name).map_or_else(String::new, |p| match self.by_name {
             true => p.name.clone(),
-            false => format!("{}{}", short(p.value), unit(p)),
+            false => format!("{}{}", short(p.value), unit_behind(&p.unit)),
         })
     }
 
@@ -77,9 +77,9 @@ impl Quantities {
     pub fn text(&self, name: &str) -> String {
         self.get(name).map_or_else(String::new, |p| {
             if p.sigma > 0.0 && p.sigma < p.value.abs() {
-                format!("{} ± {}{}", short(p.value), short(p.sigma), unit(p))
+                format!("{} ± {}{}", short(p.value), short(p.sigma), unit_behind(&p.unit))
             } else {
-                format!("{}{}", short(p.value), unit(p))
+                format!("{}{}", short(p.value), unit_behind(&p.unit))
             }
         })
     }
@@ -89,8 +89,14 @@ impl Quantities {
     }
 }
 
-fn unit(p: &Parameter) -> String {
-    if p.unit == "1" { String::new() } else { format!(" {}", p.unit) }
+/// A unit behind its number: nothing for a number without one, which is written `1` in data.
+///
+/// ```
+/// use dynid_runtime::effects::unit_behind;
+/// assert_eq!(format!("0.31{}, 4{}", unit_behind("N.m"), unit_behind("1")), "0.31 N.m, 4");
+/// ```
+pub fn unit_behind(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
 }
 
 /// A number with three significant digits.

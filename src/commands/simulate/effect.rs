@@ -1,6 +1,6 @@
 //! The option `--effect ID:JOINT[:SIZE]`.
 
-use dynid_runtime::effects::{EffectTerm, Form, Place};
+use dynid_runtime::effects::{EffectTerm, Form, Place, unit_behind};
 use dynid_runtime::model::{JointIndex, JointNumber, Model};
 use dynid_runtime::report::{capital, significant};
 use dynid_runtime::simulation::excitation::{TellError, typical_law};
@@ -52,10 +52,7 @@ pub(super) fn words(term: &EffectTerm) -> String {
     let quantities = law.parameters(&scale.into(), &term.shape, &term.amplitude, &term.sigma);
     let each: Vec<String> = quantities
         .iter()
-        .map(|q| {
-            let unit = if q.unit == "1" { String::new() } else { format!(" {}", q.unit) };
-            format!("{} {}{unit}", q.name, significant(q.value, 4))
-        })
+        .map(|q| format!("{} {}{}", q.name, significant(q.value, 4), unit_behind(&q.unit)))
         .collect();
     let joints: Vec<String> = term.joints.iter().map(ToString::to_string).collect();
     format!("{} on joint {}: {}", capital(&effect_words(term.id())), joints.join(", "), each.join(", "))

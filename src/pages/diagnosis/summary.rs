@@ -1,6 +1,7 @@
 //! What `diagnose` prints.
 
 use dynid_runtime::diagnosis::{Diagnosis, Finding};
+use dynid_runtime::effects::unit_behind;
 use dynid_runtime::report::{capital, percent, significant};
 
 use super::extras::Extras;
@@ -70,7 +71,7 @@ fn found(finding: &Finding) -> String {
         .map(|(name, p)| {
             let sigma =
                 if p.sigma > 0.0 { format!(" +- {}", significant(p.sigma, 2)) } else { String::new() };
-            let unit = if p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
+            let unit = unit_behind(&p.unit);
             let counts = p.unit == "1" && p.sigma == 0.0 && p.value.fract() == 0.0;
             let value = if counts { p.value.to_string() } else { significant(p.value, 4) };
             format!("{name} {value}{sigma}{unit}")

@@ -66,10 +66,11 @@ pub(in crate::diagnosis) fn more_of_standing_laws(
     }
     let without = context.carrying(before);
     // In motions of a baseline that the body is not in there is nothing more.
-    let differs = |k: usize| context.chi_in(k) != without.chi_in(k);
+    let differs: Vec<bool> =
+        (0..context.signals.len()).map(|k| context.chi_in(k) != without.chi_in(k)).collect();
     let mut more = vec![0.0; design.rows.len()];
     for term in reference.standing() {
-        let columns = |context| term_columns_in(context, design, term, differs);
+        let columns = |context| term_columns_in(context, design, term, |k| differs[k]);
         for ((now, before), a) in columns(context).into_iter().zip(columns(&without)).zip(&term.amplitude) {
             more.iter_mut()
                 .zip(now.iter().zip(before))

@@ -11,7 +11,9 @@ use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::term::Accepted;
 use crate::effects::ContactForce;
+use crate::model::JointIndex;
 
 /// The standard model, which knows of no push, on all rows of which the curves of the `model` say something.
 ///
@@ -22,14 +24,12 @@ pub(in crate::diagnosis) fn unaware(
     all: &Design,
 ) -> Result<HeldOutSquares, SingularDesign> {
     let sigma = Fit::weighted(all, &model.slow.sigma)?.sigma;
-    let bounded = model.terms.iter().filter(|term| term.effect.form().holds_only_where_seen());
-    let curves: Vec<Curve> = bounded
-        .filter_map(|term| {
-            let joint = *term.own.first()?;
-            let of_joint = |column: Vec<f64>| column[all.of_joint(joint)].to_vec();
-            Some(Curve { joint, columns: model.columns_of(all, term).into_iter().map(of_joint).collect() })
-        })
-        .collect();
+    let curve = |term: &Accepted| {
+        let joint = term.curve_on()?;
+        let of_joint = |column: Vec<f64>| column[all.of_joint(joint)].to_vec();
+        Some(Curve { joint, columns: model.columns_of(all, term).into_iter().map(of_joint).collect() })
+    };
+    let curves: Vec<Curve> = model.terms.iter().filter_map(curve).collect();
     HeldOutSquares::of(all, &sigma, model.change, &curves)
 }
 
@@ -63,14 +63,11 @@ pub(in crate::diagnosis) fn aware(
 
 /// Whether a joint feels one of the contacts of a motion: one that a force explains is felt by all.
 fn feels(model: &ExtendedModel<'_>, contacts: &Contacts, (motion, joint): (usize, usize)) -> bool {
-    let joint_of_frame = model.context.model.robot().joint_of_frame();
-    let is_of_joint = |number: usize| {
-        number.checked_sub(1).and_then(|frame| joint_of_frame.get(frame)).is_some_and(|j| *j == Some(joint))
-    };
+    let number = model.context.model.robot().joint_number(JointIndex(joint)).0;
     let name = &model.context.signals[motion].name;
     let of_motion = |push: &&ContactForce| push.motion == *name;
     contacts.wrenches.iter().filter(of_motion).any(|push| {
-        push.joint_torques.is_empty() || push.joint_torques.iter().any(|torque| is_of_joint(torque.joint))
+        push.joint_torques.is_empty() || push.joint_torques.iter().any(|torque| torque.joint == number)
     })
 }
 

@@ -7,7 +7,7 @@
 
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::trial::Trial;
-use crate::diagnosis::judging::white_products::factored;
+use crate::diagnosis::judging::projection::factored;
 use crate::diagnosis::rows::design::Design;
 use nalgebra::{DMatrix, DVectorView};
 

@@ -13,7 +13,7 @@ pub(in crate::diagnosis) mod judge;
 mod judge_tests;
 pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;
-mod projection;
+pub(in crate::diagnosis) mod projection;
 pub(in crate::diagnosis) mod regression;
 pub(in crate::diagnosis) mod significance;
 pub(in crate::diagnosis) mod skew;

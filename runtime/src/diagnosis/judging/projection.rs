@@ -1,6 +1,6 @@
 //! What the columns of a model make of other columns, from inner products.
 
-use crate::diagnosis::judging::white_products::factored;
+use crate::diagnosis::rules::CALIBRATION_RIDGE;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// The first columns of a table of inner products, factored once for all that is compared beside them.
@@ -16,15 +16,10 @@ impl Projection {
         Some(Self { factor, scale })
     }
 
-    /// How many columns they are.
-    pub fn columns(&self) -> usize {
-        self.scale.len()
-    }
-
     /// Columns of inner products with them, made white: the product of two such columns is that of the parts which the
     /// model's columns make of both.
     pub fn white(&self, products: &DMatrix<f64>, from: usize, count: usize) -> DMatrix<f64> {
-        let mut white = products.view((0, from), (self.columns(), count)).into_owned();
+        let mut white = products.view((0, from), (self.scale.len(), count)).into_owned();
         for (i, scale) in self.scale.iter().enumerate() {
             white.row_mut(i).scale_mut(*scale);
         }
@@ -38,6 +33,23 @@ impl Projection {
         let _ = self.factor.l_dirty().ad_solve_lower_triangular_mut(&mut white);
         white.component_mul(&self.scale)
     }
+}
+
+/// Cholesky factor with a unit diagonal and a ridge, and the scale of each column (0 where it is zero).
+pub(in crate::diagnosis) fn factored(g: &DMatrix<f64>) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
+    let n = g.nrows();
+    let scale = DVector::from_fn(n, |k, _| if g[(k, k)] > 0.0 { 1.0 / g[(k, k)].sqrt() } else { 0.0 });
+    let scaled = DMatrix::from_fn(n, n, |i, k| {
+        let diagonal = if i != k {
+            0.0
+        } else if scale[k] == 0.0 {
+            1.0
+        } else {
+            CALIBRATION_RIDGE
+        };
+        g[(i, k)] * scale[i] * scale[k] + diagonal
+    });
+    Some((scaled.cholesky()?, scale))
 }
 
 #[cfg(test)]

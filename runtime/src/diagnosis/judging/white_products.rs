@@ -4,13 +4,14 @@
 //! (its friction level, where there is a baseline) is projected out.
 
 use crate::diagnosis::judging::ar::Autoregression;
+use crate::diagnosis::judging::projection::{Projection, factored};
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rows::prior::Prior;
-use crate::diagnosis::rules::{CALIBRATION_RIDGE, FREED, HIGHEST_AR_ORDER};
+use crate::diagnosis::rules::{FREED, HIGHEST_AR_ORDER};
 use crate::parallel;
 use crate::statistics::moderation::Variance;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -298,10 +299,9 @@ fn project(g: &DMatrix<f64>, f: usize) -> DMatrix<f64> {
     if f == 0 {
         return rest;
     }
-    let Some((factor, scale)) = factored(&g.view((0, 0), (f, f)).into_owned()) else { return rest };
-    let scale = DMatrix::from_diagonal(&scale);
-    let cross = scale * g.view((0, f), (f, n));
-    rest - cross.transpose() * factor.solve(&cross)
+    let Some(free) = Projection::of(g, f) else { return rest };
+    let white = free.white(g, f, n);
+    rest - white.tr_mul(&white)
 }
 
 fn add(sum: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
@@ -316,21 +316,4 @@ fn add(sum: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
             to[i] += x;
         }
     }
-}
-
-/// Cholesky factor with a unit diagonal and a ridge, and the scale of each column (0 where it is zero).
-pub(in crate::diagnosis) fn factored(g: &DMatrix<f64>) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
-    let n = g.nrows();
-    let scale = DVector::from_fn(n, |k, _| if g[(k, k)] > 0.0 { 1.0 / g[(k, k)].sqrt() } else { 0.0 });
-    let scaled = DMatrix::from_fn(n, n, |i, k| {
-        let diagonal = if i != k {
-            0.0
-        } else if scale[k] == 0.0 {
-            1.0
-        } else {
-            CALIBRATION_RIDGE
-        };
-        g[(i, k)] * scale[i] * scale[k] + diagonal
-    });
-    Some((scaled.cholesky()?, scale))
 }

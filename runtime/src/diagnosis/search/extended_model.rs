@@ -88,8 +88,7 @@ impl<'a> ExtendedModel<'a> {
         let mut deviation = GAIN_DEVIATION;
         let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
         for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
-            let (columns, besides) = self.terms_on(SmoothingWindow::Slow, deviation);
-            self.slow.set_terms(columns, besides)?;
+            put_terms(&mut self.slow, (&self.context, self.change), &self.terms, deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi, self.carried());
@@ -103,36 +102,12 @@ impl<'a> ExtendedModel<'a> {
                 }
             }
         }
-        let windows = [SmoothingWindow::Slow, SmoothingWindow::Fast];
-        let put = parallel::map(self.context.threads, windows.len(), |w| {
-            Some(self.terms_on(windows[w], deviation))
+        let mut fits = [(&mut self.slow, Ok(())), (&mut self.fast, Ok(()))];
+        parallel::for_each(self.context.threads, &mut fits, |(regression, outcome)| {
+            *outcome = put_terms(regression, (&self.context, self.change), &self.terms, deviation)
+                .and_then(|()| regression.hold_out());
         });
-        let regressions = [&mut self.slow, &mut self.fast];
-        let mut fits: Vec<_> = regressions.into_iter().zip(put).map(|(r, put)| (r, put, Ok(()))).collect();
-        parallel::for_each(self.context.threads, &mut fits, |(regression, put, outcome)| {
-            if let Some((columns, besides)) = put.take() {
-                *outcome = regression.set_terms(columns, besides).and_then(|()| regression.hold_out());
-            }
-        });
-        fits.into_iter().try_for_each(|(_, _, outcome)| outcome)
-    }
-
-    /// The columns of the terms on the rows of a window, and what is put in beside them.
-    fn terms_on(&self, window: SmoothingWindow, deviation: f64) -> (Vec<TermColumns>, Besides) {
-        let (context, design) = (&self.context, &self.regression(window).design);
-        let known = more_of_standing_laws(context, design);
-        let besides = Besides { known, gains: gain_columns(context, design), deviation };
-        let columns = parallel::map(context.threads, self.terms.len(), |k| {
-            let term = &self.terms[k];
-            let form = term.effect.form();
-            TermColumns {
-                columns: self.columns_of(design, term),
-                fixed: term.fixed,
-                is_curve: form.is_curve(),
-                curve_on: term.own.first().copied().filter(|_| form.holds_only_where_seen()),
-            }
-        });
-        (columns, besides)
+        fits.into_iter().try_for_each(|(_, outcome)| outcome)
     }
 
     /// How much the gains differ that bodies show.
@@ -241,4 +216,26 @@ impl<'a> ExtendedModel<'a> {
         }
         residual
     }
+}
+
+/// Puts the terms into a regression.
+fn put_terms(
+    regression: &mut Regression,
+    (context, change): (&Context<'_>, bool),
+    terms: &[Accepted],
+    deviation: f64,
+) -> Result<(), SingularDesign> {
+    let design = &regression.design;
+    let known = more_of_standing_laws(context, design);
+    let besides = Besides { known, gains: gain_columns(context, design), deviation };
+    let columns = parallel::map(context.threads, terms.len(), |k| {
+        let term = &terms[k];
+        TermColumns {
+            columns: dense_columns(context, design, term.effect, term.place, &term.shape, change),
+            fixed: term.fixed,
+            is_curve: term.effect.form().is_curve(),
+            curve_on: term.curve_on(),
+        }
+    });
+    regression.set_terms(columns, besides)
 }

@@ -31,6 +31,11 @@ pub(in crate::diagnosis) struct Accepted {
 }
 
 impl Accepted {
+    /// The joint of a curve that says nothing of values which no motion has passed; `None` for every other law.
+    pub fn curve_on(&self) -> Option<usize> {
+        self.own.first().copied().filter(|_| self.effect.form().holds_only_where_seen())
+    }
+
     /// A candidate with a shape, before anything is known of how well it does.
     pub fn tried(candidate: &Candidate, shape: Vec<f64>) -> Self {
         Self {
