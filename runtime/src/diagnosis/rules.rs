@@ -291,6 +291,9 @@ pub(super) const LARGEST_ERROR: f64 = 0.7;
 pub(super) const REFITS: usize = 2;
 /// The same where a term changes the number that its own column is the derivative by. Judgement; not measured.
 pub(super) const REFITS_OF_BENT_COLUMNS: usize = 4;
+/// Errors that change by no more than this part of themselves have converged. Statistics: a tenth of a standard deviation of one
+/// that is known to a hundredth.
+pub(super) const SETTLED_ERROR: f64 = 1e-3;
 
 /// Shapes that a refinement tries at most. Times, and how sharp a resonance is; joint_elasticity in
 /// `docs/concealment.md`.

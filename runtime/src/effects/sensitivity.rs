@@ -105,12 +105,17 @@ pub struct Direction<'a> {
     pub at: &'a [f64],
 }
 
-/// Points of the path that a mean is taken over (midpoint rule).
-const POINTS: usize = 4;
+/// Most points of the path that a mean is taken over (midpoint rule).
+const MOST_POINTS: usize = 4;
+
+/// Way from one point to the next, rad or a part of what is wrong: over it derivatives, which are sines and cosines of angles
+/// and polynomials of lengths, bend so little that their mean is that in the middle to one in ten thousand.
+const WAY: f64 = 0.05;
 
 impl Direction<'_> {
     fn points(&self) -> usize {
-        if self.at.iter().all(|x| *x == 0.0) { 1 } else { POINTS }
+        let longest = self.variants.iter().zip(self.at).map(|(_, x)| x.abs()).fold(0.0, f64::max);
+        ((longest / WAY).ceil() as usize).clamp(1, MOST_POINTS)
     }
 
     /// Share of the path from the point before (from nothing for the first) to a point.

@@ -156,7 +156,7 @@ impl Trial {
         trial
     }
 
-    /// Inner products with the design as it is now.
+    /// Inner products with the design as it is now, whose own are up to date.
     pub fn refresh(&mut self, design: &Design) {
         self.refresh_from(design, 0);
     }
@@ -178,12 +178,19 @@ impl Trial {
                     .map(|(g, range)| {
                         let local = range.start - start..range.end - start;
                         let slice = |a: usize| mine[a].map_or(&[][..], |v| &v[local.clone()]);
+                        // Most columns act on few joints, and a change on few motions.
+                        let acts: Vec<bool> = (0..k).map(|a| slice(a).iter().any(|x| *x != 0.0)).collect();
+                        let gram = design.gram(j, g);
+                        let with_column = |i: usize, a: usize| {
+                            let seen = acts[a] && gram.squares(i) != 0.0;
+                            if seen { dot(&design.columns[i][range.clone()], slice(a)) } else { 0.0 }
+                        };
                         let before = old.get(j).and_then(|segments| segments.get(g));
                         let kept = before.map_or(0, |_| first);
                         Products {
                             with: DMatrix::from_fn(p, k, |i, a| match before {
                                 Some(before) if i < kept => before.with[(i, a)],
-                                _ => dot_or_zero(&design.columns[i][range.clone()], slice(a)),
+                                _ => with_column(i, a),
                             }),
                             y: (0..k).map(|a| dot_or_zero(&design.y[range.clone()], slice(a))).collect(),
                             own: match before {

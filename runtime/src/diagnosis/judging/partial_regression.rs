@@ -123,6 +123,24 @@ impl Residualised {
         Some((a, gain))
     }
 
+    /// Amplitudes of the columns after the first ones, which have these values; and the squares of the residual that all of them
+    /// take away.
+    pub fn solve_beside(&self, known: &[f64]) -> Option<(DVector<f64>, f64)> {
+        let (k, first) = (self.with_residual.len(), known.len());
+        let s = self.squares.view((first, first), (k - first, k - first));
+        let given = DVector::from_column_slice(known);
+        let b = self.with_residual.rows(first, k - first)
+            - self.squares.view((first, 0), (k - first, first)) * &given;
+        let scale = s.diagonal().map(|x| if x > 0.0 { 1.0 / x.sqrt() } else { 0.0 });
+        let scaled = DMatrix::from_fn(k - first, k - first, |i, j| {
+            s[(i, j)] * scale[i] * scale[j] + if i == j { AMPLITUDE_RIDGE } else { 0.0 }
+        });
+        let x = scaled.cholesky()?.solve(&b.component_mul(&scale)).component_mul(&scale);
+        let all = DVector::from_iterator(k, given.iter().chain(&x).copied());
+        let gain = self.gain(&all);
+        Some((x, gain))
+    }
+
     /// Information on the amplitudes, in units of the residual variance; zero where the design makes a column itself.
     pub fn information(&self) -> &DMatrix<f64> {
         &self.squares

@@ -12,7 +12,7 @@ use crate::diagnosis::judging::skew::usual_deviation;
 use crate::diagnosis::rows::context::{Carried, Context};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
-use crate::diagnosis::rules::{GAIN_DEVIATION, LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS};
+use crate::diagnosis::rules::{GAIN_DEVIATION, LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
@@ -87,19 +87,13 @@ impl<'a> ExtendedModel<'a> {
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
         let mut deviation = GAIN_DEVIATION;
         let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
-        for _ in 0..if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
+        for round in 1..=if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
             put_terms(&mut self.slow, (&self.context, self.change), &self.terms, deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
             self.context.update(chi, self.carried());
-            // An error that is not small bends its own column: derivatives are taken along the way to it.
-            for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
-                if term.effect.form().shape_is_amplitude() {
-                    term.shape = columns
-                        .clone()
-                        .map(|c| self.slow.fit.chi[c].clamp(-LARGEST_ERROR, LARGEST_ERROR))
-                        .collect();
-                }
+            if self.follow_errors() && round >= REFITS {
+                break;
             }
         }
         let mut fits = [(&mut self.slow, Ok(())), (&mut self.fast, Ok(()))];
@@ -108,6 +102,22 @@ impl<'a> ExtendedModel<'a> {
                 .and_then(|()| regression.hold_out());
         });
         fits.into_iter().try_for_each(|(_, outcome)| outcome)
+    }
+
+    /// An error that is not small bends its own column: derivatives are taken along the way to it. Says whether all errors stay
+    /// where they were.
+    fn follow_errors(&mut self) -> bool {
+        let mut settled = true;
+        for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
+            if term.effect.form().shape_is_amplitude() {
+                let error = |c: usize| self.slow.fit.chi[c].clamp(-LARGEST_ERROR, LARGEST_ERROR);
+                let shape: Vec<f64> = columns.clone().map(error).collect();
+                let stays = |(new, old): (&f64, &f64)| (new - old).abs() <= SETTLED_ERROR * new.abs();
+                settled &= shape.len() == term.shape.len() && shape.iter().zip(&term.shape).all(stays);
+                term.shape = shape;
+            }
+        }
+        settled
     }
 
     /// How much the gains differ that bodies show.

@@ -2,81 +2,81 @@
 //!
 //! A search by steps along the numbers of a shape stops in a narrow valley that lies across them, as where a longer play
 //! with a stiffer spring tells nearly the same. From there Gauss-Newton steps go on, all linear parameters and the numbers
-//! of the shape together (variable projection; Golub and Pereyra 1973, Kaufman 1975).
+//! of the shape together (variable projection; Golub and Pereyra 1973, Kaufman 1975). What stays is projected out of the
+//! law's columns and their derivatives, and factored once.
 
+use crate::diagnosis::candidates::trial::{Sparse, Trial, columns};
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rules::{HALVINGS, LEAST_FALL, LONGEST_STEP, MOST_STEPS};
+use crate::diagnosis::rules::{
+    HALVINGS, LEAST_FALL, LONGEST_STEP, MOST_STEPS, OWN_FRACTION_OF_DERIVATIVE, SHAPE_STEP,
+};
 use crate::diagnosis::search::extended_model::ExtendedModel;
-use crate::diagnosis::search::tangents::tangents;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{ShapeSearch, Step};
-use std::ops::Range;
+use std::borrow::Cow;
 
 /// A law with a shape, and what is left with it.
 pub(in crate::diagnosis) struct Tuning<'a> {
     model: &'a ExtendedModel<'a>,
-    sigma: &'a [f64],
     search: ShapeSearch,
     term: Accepted,
-    /// Its columns on the rows, and where the design has them: nowhere where its amplitude is fixed.
-    columns: Vec<Vec<f64>>,
-    places: Range<usize>,
-    design: Design,
-    fit: Fit,
-    /// What the fit leaves of all rows, in units of the joints' noise.
-    squares: f64,
+    /// Its columns on the rows.
+    columns: Vec<Sparse>,
+    /// The rows without the law, and the fit to them.
+    rest: Cow<'a, Design>,
+    fit: Cow<'a, Fit>,
+    /// Squares that the law takes from what that fit leaves, in units of the joints' noise.
+    gain: f64,
 }
 
 impl<'a> Tuning<'a> {
     /// Law k of the model, as it is there.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where the model has no fit without it.
     pub fn within(model: &'a ExtendedModel<'a>, k: usize) -> Result<Self, SingularDesign> {
         let term = &model.terms[k];
         let side = model.regression(term.effect.properties().window);
-        let columns = model.columns_of(&side.design, term);
-        Self::new(model, term, columns, side.design.clone(), side.term_columns[k].clone())
+        let mut rest = side.design.clone();
+        let places = side.term_columns[k].clone();
+        if let Some(a) = term.fixed {
+            for column in model.columns_of(&rest, term) {
+                rest.y.iter_mut().zip(&column).for_each(|(y, c)| *y += a * c);
+            }
+        }
+        places.clone().for_each(|place| rest.columns[place].fill(0.0));
+        // Nothing but y changes where no column is the law's.
+        rest.refresh_from(if places.is_empty() { rest.columns.len() } else { places.start });
+        let fit = Fit::whole(&rest, &side.sigma)?;
+        Ok(Self::new(model, term, Cow::Owned(rest), Cow::Owned(fit)))
     }
 
     /// A law that is not in the model, beside those that are.
-    pub fn beside(model: &'a ExtendedModel<'a>, term: &Accepted) -> Result<Self, SingularDesign> {
-        let mut design = model.regression(term.effect.properties().window).design.clone();
-        let first = design.columns.len();
-        let columns = model.columns_of(&design, term);
-        for column in &columns {
-            match term.fixed {
-                Some(a) => design.y.iter_mut().zip(column).for_each(|(y, c)| *y -= a * c),
-                None => design.push(column.clone()),
-            }
-        }
-        design.refresh_from(first);
-        let places = first..design.columns.len();
-        Self::new(model, term, columns, design, places)
+    pub fn beside(model: &'a ExtendedModel<'a>, term: &Accepted) -> Self {
+        let side = model.regression(term.effect.properties().window);
+        Self::new(model, term, Cow::Borrowed(&side.design), Cow::Borrowed(&side.fit))
     }
 
-    fn new(
-        model: &'a ExtendedModel<'a>,
-        term: &Accepted,
-        columns: Vec<Vec<f64>>,
-        design: Design,
-        places: Range<usize>,
-    ) -> Result<Self, SingularDesign> {
-        let sigma = &model.regression(term.effect.properties().window).sigma;
+    fn new(model: &'a ExtendedModel<'a>, term: &Accepted, rest: Cow<'a, Design>, fit: Cow<'a, Fit>) -> Self {
         let (form, scales) = (term.effect.form(), &model.context.scales);
         let grid = form.shapes(term.place, scales);
         let grid: Vec<&[f64]> = grid.iter().map(Vec::as_slice).collect();
         let search = form.shape_search(term.place, scales, &grid);
-        let fit = Fit::whole(&design, sigma)?;
-        let squares = fit.weighted_squares(&design);
-        Ok(Self { model, sigma, search, term: term.clone(), columns, places, design, fit, squares })
+        let mut tuning =
+            Self { model, search, term: term.clone(), columns: Vec::new(), rest, fit, gain: 0.0 };
+        tuning.columns = tuning.columns_of(&term.shape);
+        tuning.gain = tuning.solved(&[]).map_or(0.0, |(_, gain)| gain);
+        tuning
     }
 
     /// Moves the shape to where least is left, or to where a step has no fit.
     pub fn run(&mut self) {
         for _ in 0..MOST_STEPS {
-            let before = self.squares;
+            let before = self.squares();
             let went = self.step().unwrap_or(false);
-            if !went || before - self.squares < LEAST_FALL * before {
+            if !went || before - self.squares() < LEAST_FALL * before {
                 break;
             }
         }
@@ -89,53 +89,89 @@ impl<'a> Tuning<'a> {
 
     /// Squares that are left, in units of the joints' noise.
     pub fn squares(&self) -> f64 {
-        self.squares
+        self.fit.weighted_squares(&self.rest) - self.gain
     }
 
-    /// Goes as far along the direction of Gauss and Newton as less is left; says whether it went.
-    fn step(&mut self) -> Result<bool, SingularDesign> {
+    /// Goes as far along the direction of Gauss and Newton as less is left; says whether it went, `None` where there is none.
+    fn step(&mut self) -> Option<bool> {
         let direction = self.direction()?;
         for halvings in 0..HALVINGS {
             let part = 0.5_f64.powi(halvings);
             let shape = self.moved(direction.iter().map(|(i, change)| (*i, part * change)));
             if shape == self.term.shape {
-                return Ok(false);
+                return Some(false);
             }
-            let (columns, design) = self.with(&shape);
-            let fit = Fit::whole(&design, self.sigma)?;
-            let left = fit.weighted_squares(&design);
-            if left < self.squares {
-                (self.term.shape, self.columns) = (shape, columns);
-                (self.design, self.fit, self.squares) = (design, fit, left);
-                return Ok(true);
+            let there = self.columns_of(&shape);
+            let here = std::mem::replace(&mut self.columns, there);
+            match self.solved(&[]) {
+                Some((_, gain)) if gain > self.gain => {
+                    (self.term.shape, self.gain) = (shape, gain);
+                    return Some(true);
+                }
+                _ => self.columns = here,
             }
         }
-        Ok(false)
+        Some(false)
     }
 
     /// How each number of the shape changes to where the derivatives of the torques have nothing left; numbers that would
     /// leave their bounds stay there.
-    fn direction(&mut self) -> Result<Vec<(usize, f64)>, SingularDesign> {
-        let amplitude: Vec<f64> = self.places.clone().map(|c| self.fit.chi[c]).collect();
-        let mut free = tangents(self.model, &self.design, &self.term, &amplitude);
-        let start = self.design.columns.len();
+    fn direction(&self) -> Option<Vec<(usize, f64)>> {
+        let amplitude = if self.term.fixed.is_some() { Vec::new() } else { self.solved(&[])?.0 };
+        let mut free = self.slopes(&amplitude);
         loop {
-            self.design.columns.extend(free.iter().map(|(_, slope)| slope.clone()));
-            self.design.refresh_from(start);
-            let fit = Fit::whole(&self.design, self.sigma);
-            self.design.columns.truncate(start);
-            self.design.refresh_from(start);
-            let chi = fit?.chi;
-            let direction: Vec<(usize, f64)> =
-                free.iter().enumerate().map(|(n, (i, _))| (*i, chi[start + n])).collect();
-            let inside =
-                |i: usize, change: f64| self.moved(std::iter::once((i, change)))[i] != self.term.shape[i];
-            let leaving: Vec<usize> = direction.iter().filter(|d| !inside(d.0, d.1)).map(|d| d.0).collect();
+            let slopes: Vec<&Sparse> = free.iter().map(|(_, slope)| slope).collect();
+            let changes = self.solved(&slopes)?.0.split_off(amplitude.len());
+            let direction: Vec<(usize, f64)> = free.iter().map(|(i, _)| *i).zip(changes).collect();
+            let leaving: Vec<usize> =
+                direction.iter().filter(|d| !self.moves(d.0, d.1)).map(|d| d.0).collect();
             if leaving.is_empty() {
-                return Ok(direction);
+                return Some(direction);
             }
             free.retain(|(i, _)| !leaving.contains(i));
         }
+    }
+
+    /// Derivatives of the law's torque by the numbers of its shape that can change, by differences, each with its place in the
+    /// shape. `amplitude` is that of each column, where they are not fixed.
+    fn slopes(&self, amplitude: &[f64]) -> Vec<(usize, Sparse)> {
+        let is_searched = |i: usize| !matches!(self.search.steps.get(i), None | Some(Step::Keep));
+        let can_change = |i: usize, by: f64| is_searched(i) && (self.moves(i, by) || self.moves(i, -by));
+        let steps = self.term.shape.iter().map(|x| SHAPE_STEP * x.abs().max(1e-6)).enumerate();
+        let of_number = |(i, step): (usize, f64)| {
+            let mut shape = self.term.shape.clone();
+            shape[i] += step;
+            let there = self.columns_of(&shape);
+            let mut slope: Sparse = Vec::new();
+            for (k, (there, here)) in there.iter().zip(&self.columns).enumerate() {
+                let weight = self.term.fixed.or_else(|| amplitude.get(k).copied()).unwrap_or(0.0) / step;
+                for (n, ((joint, there), (_, here))) in there.iter().zip(here).enumerate() {
+                    let change = there.iter().zip(here).map(|(there, here)| weight * (there - here));
+                    match slope.get_mut(n) {
+                        Some((_, sum)) => sum.iter_mut().zip(change).for_each(|(sum, c)| *sum += c),
+                        None => slope.push((*joint, change.collect())),
+                    }
+                }
+            }
+            (i, slope)
+        };
+        steps.filter(|(i, step)| can_change(*i, *step)).map(of_number).collect()
+    }
+
+    /// Amplitudes of the law's columns, where they are not fixed, and of columns beside them; and the squares that all take away.
+    fn solved(&self, beside: &[&Sparse]) -> Option<(Vec<f64>, f64)> {
+        let all = self.columns.iter().chain(beside.iter().copied()).cloned();
+        let mut trial = Trial::new(&self.rest, self.term.shape.clone(), all.collect());
+        (trial.needed, trial.own_fraction) = (0, OWN_FRACTION_OF_DERIVATIVE);
+        let part = self.fit.project_out(&trial)?;
+        let fixed = self.term.fixed.map_or_else(Vec::new, |a| vec![a; self.columns.len()]);
+        let (solution, gain) = part.solve_beside(&fixed)?;
+        Some((solution.as_slice().to_vec(), gain))
+    }
+
+    /// Whether a change of one number of the shape is one.
+    fn moves(&self, i: usize, change: f64) -> bool {
+        self.moved(std::iter::once((i, change)))[i] != self.term.shape[i]
     }
 
     /// The shape after a change of its numbers; one that is varied by factors is multiplied.
@@ -157,23 +193,9 @@ impl<'a> Tuning<'a> {
         shape
     }
 
-    /// The columns of another shape of the law, and the rows with them.
-    fn with(&self, shape: &[f64]) -> (Vec<Vec<f64>>, Design) {
-        let mut design = self.design.clone();
-        let moved = Accepted { shape: shape.to_vec(), ..self.term.clone() };
-        let columns = self.model.columns_of(&self.design, &moved);
-        if let Some(amplitude) = self.term.fixed {
-            for (old, new) in self.columns.iter().zip(&columns) {
-                let change = old.iter().zip(new).map(|(old, new)| amplitude * (old - new));
-                design.y.iter_mut().zip(change).for_each(|(y, change)| *y += change);
-            }
-        }
-        for (place, new) in self.places.clone().zip(&columns) {
-            design.columns[place].clone_from(new);
-        }
-        // Nothing but y changes where no column is the law's.
-        let first = if self.places.is_empty() { design.columns.len() } else { self.places.start };
-        design.refresh_from(first);
-        (columns, design)
+    /// The columns of a shape of the law.
+    fn columns_of(&self, shape: &[f64]) -> Vec<Sparse> {
+        let Accepted { effect, place, .. } = self.term;
+        columns(&self.model.context, &self.rest, effect, place, shape, self.model.change)
     }
 }
