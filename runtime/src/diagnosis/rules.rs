@@ -249,6 +249,9 @@ pub(super) const NOISE_MISSED: f64 = 0.25;
 
 /// Most candidates of a round whose evidence is worked out. Times only: those further down explain too little.
 pub(super) const MOST_CHECKED: usize = 30;
+/// Part of what is open from which on a law is judged by the best shape between those of the grid. Statistics: a grid leaves up
+/// to a twentieth of a law, which beside a law that explains less is less than a twentieth of the rest.
+pub(super) const EXPLAINS_MOST: f64 = 0.5;
 /// How many of them go through the gate at a time. Times: threads have work, and little of it is for nothing.
 pub(super) const GATES_AHEAD: usize = 4;
 /// Part of the error of all joints that must stay for the joint on which most is gained to be told too. Words only.

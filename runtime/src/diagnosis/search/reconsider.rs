@@ -94,11 +94,11 @@ impl Search<'_> {
         self.update(joint);
         // What was certain when it joined stays up to a higher level: its variation is estimated anew in each round.
         let lenient = Settings { least_confidence: settings.confidence_to_stay(), ..settings.clone() };
+        let winner = self.best(&lenient, joint, 1)?.winner;
         let same = |w: &Winner| {
             let candidate = &self.candidates(w.window)[w.index];
             candidate.effect == old.effect && candidate.place == old.place
         };
-        let winner = self.best(&lenient, joint, 1)?.winner;
         let holds = |w: &Winner| same(w) || w.confidence >= settings.least_confidence;
         let replacement = winner.filter(holds).map(|w| self.accept(&w));
         Ok(match replacement {

@@ -91,9 +91,9 @@ impl Search<'_> {
             };
             if !found.is_empty() {
                 let before = self.own_squares();
-                self.model.terms.extend(found);
-                self.refit_and_update()?;
-                self.reconsider(&before, settings)?;
+                if self.join(found)? {
+                    self.reconsider(&before, settings)?;
+                }
                 continue;
             }
             // What the catalogue has no law for.
@@ -103,6 +103,25 @@ impl Search<'_> {
             self.without_imitators(settings)?;
         }
         Ok(StopReason::EffectLimit(settings.most_effects))
+    }
+
+    /// Puts laws into the model, and says whether they stay: with columns that are made of parameters, as loads are, a model may
+    /// leave more than it did without a law which bends the parameters. That law is left out for good.
+    fn join(&mut self, laws: Vec<Accepted>) -> Result<bool, SingularDesign> {
+        let follows = |term: &Accepted| term.effect.properties().follows_parameters;
+        let without = self.model.terms.iter().any(follows).then(|| self.model.clone());
+        let count = self.model.terms.len();
+        self.model.terms.extend(laws);
+        self.refit_and_update()?;
+        let Some(without) = without else { return Ok(true) };
+        let window = self.model.terms[count].effect.properties().window;
+        if without.regression(window).gain_against(self.model.regression(window))? > 0.0 {
+            return Ok(true);
+        }
+        let laws = std::mem::replace(&mut self.model, without).terms.split_off(count);
+        self.rejected.extend(laws);
+        self.update(None);
+        Ok(false)
     }
 
     /// Takes the given effects as known, on a joint where one is given: only shapes and amplitudes are fitted.

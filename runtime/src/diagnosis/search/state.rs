@@ -155,6 +155,14 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// One of them.
+    pub fn candidate_mut(&mut self, window: SmoothingWindow, index: usize) -> &mut Candidate {
+        match window {
+            SmoothingWindow::Slow => &mut self.slow[index],
+            SmoothingWindow::Fast => &mut self.fast[index],
+        }
+    }
+
     /// Refits the model, and prepares the candidates for what it leaves.
     ///
     /// # Errors
