@@ -145,6 +145,18 @@ fn friction_that_falls_from_rest_is_named_stribeck() {
 }
 
 #[test]
+fn a_law_that_is_nearly_all_that_is_open_is_named_whatever_the_motions() {
+    // What a shape of the grid leaves of it is loudest near rest, where it acts: that is neither noise nor pushes.
+    let robot = &planar().robot;
+    let hidden = Hidden::effect(EffectKind::Stribeck, Place::Joint(1), &[0.3], &[3.0]);
+    for seed in [15, 16, 24, 31] {
+        let recorded = robot.record(&robot.motions(MOTIONS, 6.0, seed), &hidden, seed);
+        let diagnosis = diagnose(&robot.model, &recorded, &[], &Settings::default(), &Silent).unwrap();
+        assert_only(&diagnosis, EffectKind::Stribeck, &[2]);
+    }
+}
+
+#[test]
 fn friction_that_grows_with_the_load_is_named_with_its_coefficient() {
     let robot = planar();
     let hidden = Hidden::effect(EffectKind::LoadDependentFriction, Place::Joint(0), &[], &[0.1]);

@@ -31,9 +31,9 @@ impl CoupledRotor {
         places
     }
 
-    /// How the ratio is searched.
+    /// How the ratio is searched: beyond 1 it is the law of the two joints in the other order.
     pub fn shape_search() -> ShapeSearch {
-        ShapeSearch::unbounded(vec![Step::Times(1.4)])
+        ShapeSearch { steps: vec![Step::Times(1.4)], bounds: vec![[-1.0, 1.0]], together: Vec::new() }
     }
 
     /// Columns for viscous friction, Coulomb friction and inertia of the rotor: `[on a, on b]` each.

@@ -7,6 +7,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::effects::{EffectKind, Place};
+use approx::assert_relative_eq;
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -70,6 +71,28 @@ fn explicit(
     let x = w.clone().svd(true, true).solve(&b, 1e-14).expect("a small problem is regular");
     let left = (b - w * &x).norm_squared();
     (x, left)
+}
+
+#[test]
+fn columns_beside_one_that_is_known_take_away_what_a_regression_on_what_it_leaves_does() {
+    for seed in 1..5 {
+        let (regression, candidate) = random(seed);
+        let (design, trial) = (&regression.design, &candidate.trials[0]);
+        let own = trial.dense(design);
+        let known = 1.3;
+        let y: Vec<f64> = design.y.iter().zip(&own[0]).map(|(y, c)| y - known * c).collect();
+        let columns = [&design.columns[..], &own[1..]].concat();
+        let (solution, left) = explicit(&regression, &columns, &y, &[true; 3]);
+        let part = regression.fit.project_out(trial).expect("it has a part of its own");
+        let (amplitude, gain) = part.solve_beside(&[known]).expect("it is determined");
+        assert_relative_eq!(amplitude[0], solution[4], max_relative = 1e-5);
+        let before = regression.fit.weighted_squares(design);
+        assert_relative_eq!(before - gain, left, max_relative = 1e-5);
+        // With both known nothing is left to solve.
+        let (none, of_known) = part.solve_beside(&[known, amplitude[0]]).expect("nothing to solve");
+        assert!(none.is_empty());
+        assert_relative_eq!(of_known, gain, max_relative = 1e-12);
+    }
 }
 
 #[test]
