@@ -292,7 +292,7 @@ pub(super) const RATE_ROUNDS: usize = 3;
 pub(super) const LARGEST_ERROR: f64 = 0.7;
 /// Refits after which columns that follow the standard parameters have converged. Judgement; not measured.
 pub(super) const REFITS: usize = 2;
-/// The same where a term changes the number that its own column is the derivative by. Judgement; not measured.
+/// Most of them where a term changes the number that its own column is the derivative by. Judgement; not measured.
 pub(super) const REFITS_OF_BENT_COLUMNS: usize = 4;
 /// Errors that change by no more than this part of themselves have converged. Statistics: a tenth of a standard deviation of one
 /// that is known to a hundredth.

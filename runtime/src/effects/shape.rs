@@ -52,6 +52,11 @@ impl ShapeSearch {
         Self { bounds: bounds.collect(), steps, together: Vec::new() }
     }
 
+    /// Whether a number of the shape is varied.
+    pub fn varies(&self, number: usize) -> bool {
+        self.steps.get(number).is_some_and(|step| !matches!(step, Step::Keep))
+    }
+
     /// Moves that are tried for a shape of so many numbers: each number alone, both ways, then those together.
     pub fn moves(&self, numbers: usize) -> Vec<Move> {
         let mut moves: Vec<Move> = Vec::new();

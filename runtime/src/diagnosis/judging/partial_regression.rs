@@ -10,7 +10,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, KEPT_BESIDE};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector};
 
 /// A trial with the columns of a design projected out.
 pub(in crate::diagnosis) struct Residualised {
@@ -102,15 +102,10 @@ impl Residualised {
             let gain = self.gain(&a);
             return Some((a, gain));
         }
-        let k = b.len();
-        let scale = DVector::from_fn(k, |i, _| if s[(i, i)] > 0.0 { 1.0 / s[(i, i)].sqrt() } else { 0.0 });
         // As [`Design::ridge`].
-        let largest = (0..k).map(|i| s[(i, i)]).fold(0.0, f64::max);
+        let largest = s.diagonal().iter().copied().fold(0.0, f64::max);
         let curve = if candidate.effect.form().is_curve() { CURVE_RIDGE * largest } else { 0.0 };
-        let ridge = |i: usize| AMPLITUDE_RIDGE + curve * scale[i] * scale[i];
-        let m = DMatrix::from_fn(k, k, |i, j| {
-            s[(i, j)] * scale[i] * scale[j] + if i == j { ridge(i) } else { 0.0 }
-        });
+        let (m, scale) = scaled(s.as_view(), curve);
         let right = b.component_mul(&scale);
         let for_one_sign = candidate.only_positive.then(|| m.clone());
         let of_any_sign = m.cholesky()?.solve(&right);
@@ -131,11 +126,8 @@ impl Residualised {
         let given = DVector::from_column_slice(known);
         let b = self.with_residual.rows(first, k - first)
             - self.squares.view((first, 0), (k - first, first)) * &given;
-        let scale = s.diagonal().map(|x| if x > 0.0 { 1.0 / x.sqrt() } else { 0.0 });
-        let scaled = DMatrix::from_fn(k - first, k - first, |i, j| {
-            s[(i, j)] * scale[i] * scale[j] + if i == j { AMPLITUDE_RIDGE } else { 0.0 }
-        });
-        let x = scaled.cholesky()?.solve(&b.component_mul(&scale)).component_mul(&scale);
+        let (m, scale) = scaled(s.as_view(), 0.0);
+        let x = m.cholesky()?.solve(&b.component_mul(&scale)).component_mul(&scale);
         let all = DVector::from_iterator(k, given.iter().chain(&x).copied());
         let gain = self.gain(&all);
         Some((x, gain))
@@ -156,6 +148,17 @@ impl Residualised {
     fn gain(&self, a: &DVector<f64>) -> f64 {
         2.0 * a.dot(&self.with_residual) - a.dot(&(&self.squares * a))
     }
+}
+
+/// Normal equations with a unit diagonal and a ridge, to which `curve` adds in units of the squares; and the scale of each
+/// number, 0 where nothing is known of it.
+fn scaled(s: DMatrixView<'_, f64>, curve: f64) -> (DMatrix<f64>, DVector<f64>) {
+    let scale = s.diagonal().map(|x| if x > 0.0 { 1.0 / x.sqrt() } else { 0.0 });
+    let ridge = |i: usize| AMPLITUDE_RIDGE + curve * scale[i] * scale[i];
+    let m = DMatrix::from_fn(s.nrows(), s.ncols(), |i, j| {
+        s[(i, j)] * scale[i] * scale[j] + if i == j { ridge(i) } else { 0.0 }
+    });
+    (m, scale)
 }
 
 impl Regression {

@@ -86,8 +86,7 @@ impl<'a> ExtendedModel<'a> {
     /// [`SingularDesign`] where there is no fit.
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
         let mut deviation = GAIN_DEVIATION;
-        let bent = self.terms.iter().any(|t| t.effect.form().shape_is_amplitude());
-        for round in 1..=if bent { REFITS_OF_BENT_COLUMNS } else { REFITS } {
+        for round in 1..=REFITS_OF_BENT_COLUMNS {
             put_terms(&mut self.slow, (&self.context, self.change), &self.terms, deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();

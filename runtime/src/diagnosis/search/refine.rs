@@ -3,10 +3,12 @@
 use crate::diagnosis::candidates::candidate::{Candidate, make};
 use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::judging::regression::Regression;
-use crate::diagnosis::rules::{MOST_EVALUATIONS, MOST_STARTS, SMALLEST_STEP};
+use crate::diagnosis::rules::{EXPLAINS_MOST, GATES_AHEAD, MOST_EVALUATIONS, MOST_STARTS, SMALLEST_STEP};
+use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::state::{Law, Search};
 use crate::diagnosis::search::term::{Accepted, Mode};
 use crate::diagnosis::search::tuning::Tuning;
+use crate::diagnosis::settings::Settings;
 use crate::parallel;
 
 impl Search<'_> {
@@ -50,6 +52,38 @@ impl Search<'_> {
             candidate.trials.extend(trial);
         }
         any
+    }
+
+    /// Gives the laws that lead a round and explain most of what is open the best shape near that of the grid: what a shape
+    /// beside it leaves of a law is loud where the law is, and looks like noise that makes it.
+    pub(in crate::diagnosis) fn refine_leading(&mut self, ranked: &mut [Ranked], settings: &Settings) {
+        let explains_most = |&k: &usize| {
+            let law = &ranked[k];
+            self.of(law).1.fixed.is_none() && law.verdict.explained_fraction >= EXPLAINS_MOST
+        };
+        let holding = self.holding(ranked, settings).into_iter();
+        let leading: Vec<usize> = holding.filter(explains_most).take(GATES_AHEAD).collect();
+        let refined = parallel::map(self.threads(), leading.len(), |i| {
+            let law = &ranked[leading[i]];
+            let (regression, candidate) = self.of(law);
+            let start = &candidate.trials[law.verdict.trial].shape;
+            let shape = self.refined(regression, candidate, start);
+            if shape == *start {
+                return None;
+            }
+            let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);
+            make(&self.model.context, design, effect, place, &[shape], self.model.change).trials.pop()
+        });
+        for (k, trial) in leading.into_iter().zip(refined) {
+            let Some(trial) = trial else { continue };
+            let Ranked { window, index, .. } = ranked[k];
+            self.candidate_mut(window, index).trials.push(trial);
+            let (regression, candidate) = self.of(&ranked[k]);
+            if let Some(verdict) = regression.judge(candidate) {
+                ranked[k].verdict = verdict;
+            }
+        }
+        ranked.sort_by(Ranked::more_first);
     }
 
     /// The shape near `start` that explains most of all motion.

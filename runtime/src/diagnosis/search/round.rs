@@ -3,6 +3,7 @@
 use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::search::term::Rival;
 use crate::effects::{EffectKind, Place, SmoothingWindow};
+use std::cmp::Ordering;
 
 /// What passed a round: the window of its rows, the candidate's index there, and its verdict.
 pub(in crate::diagnosis) struct Winner {
@@ -35,4 +36,11 @@ pub(in crate::diagnosis) struct Ranked {
     pub window: SmoothingWindow,
     pub index: usize,
     pub verdict: Verdict,
+}
+
+impl Ranked {
+    /// The order of a round: what gains more on held-out motion comes first.
+    pub fn more_first(&self, other: &Self) -> Ordering {
+        other.verdict.total().total_cmp(&self.verdict.total())
+    }
 }

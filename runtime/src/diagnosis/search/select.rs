@@ -1,13 +1,12 @@
 //! Which candidate of a round holds.
 
-use crate::diagnosis::candidates::candidate::{Candidate, make};
+use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::gains::weighed_with_gains;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rules::{
-    EXPLAINS_MOST, FITTED_TO_HELD_OUT, GATES_AHEAD, MOST_CHECKED, MOTIONS_PER_LOSS, RIVALS,
-    STRETCHES_PER_LOSS,
+    FITTED_TO_HELD_OUT, GATES_AHEAD, MOST_CHECKED, MOTIONS_PER_LOSS, RIVALS, STRETCHES_PER_LOSS,
 };
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::gate::{Outcome, RoundEvidence};
@@ -16,7 +15,7 @@ use crate::diagnosis::search::standing::Standing;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Form, SmoothingWindow, Step, ToldBy};
+use crate::effects::{Form, SmoothingWindow, ToldBy};
 use crate::parallel;
 
 /// How a candidate comes out of the gate.
@@ -47,7 +46,8 @@ impl Search<'_> {
         rounds: usize,
     ) -> Result<Round, SingularDesign> {
         let mut ties = Vec::new();
-        let ranked = self.ranked_with_leading_refined(joint, settings);
+        let mut ranked = self.ranked(joint);
+        self.refine_leading(&mut ranked, settings);
         let evidence_of_round = RoundEvidence::new(ranked.len());
         let holding = self.in_order(&ranked, self.holding(&ranked, settings));
         for (at, &k) in holding.iter().enumerate() {
@@ -170,46 +170,7 @@ impl Search<'_> {
             let judged = verdicts.into_iter().enumerate();
             ranked.extend(judged.filter_map(|(index, v)| Some(Ranked { window, index, verdict: v? })));
         }
-        ranked.sort_by(|a, b| b.verdict.total().total_cmp(&a.verdict.total()));
-        ranked
-    }
-
-    /// The same, once those that lead and explain most of what is open have been given the best shape near that of the grid: what
-    /// a shape beside it leaves of a law is then loud where the law is, and looks like noise that makes it.
-    fn ranked_with_leading_refined(&mut self, joint: Option<usize>, settings: &Settings) -> Vec<Ranked> {
-        let mut ranked = self.ranked(joint);
-        let is_refined = |&k: &usize| {
-            let candidate = self.of(&ranked[k]).1;
-            let is_most = ranked[k].verdict.explained_fraction >= EXPLAINS_MOST;
-            let search =
-                candidate.effect.form().shape_search(candidate.place, &self.model.context.scales, &[]);
-            is_most
-                && candidate.fixed.is_none()
-                && search.steps.iter().any(|step| !matches!(step, Step::Keep))
-        };
-        let leading: Vec<usize> =
-            self.holding(&ranked, settings).into_iter().filter(is_refined).take(GATES_AHEAD).collect();
-        let refined = parallel::map(self.threads(), leading.len(), |i| {
-            let law = &ranked[leading[i]];
-            let (regression, candidate) = self.of(law);
-            let start = &candidate.trials[law.verdict.trial].shape;
-            let shape = self.refined(regression, candidate, start);
-            if shape == *start {
-                return None;
-            }
-            let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);
-            make(&self.model.context, design, effect, place, &[shape], self.model.change).trials.pop()
-        });
-        for (k, trial) in leading.into_iter().zip(refined) {
-            let Some(trial) = trial else { continue };
-            let Ranked { window, index, .. } = ranked[k];
-            self.candidate_mut(window, index).trials.push(trial);
-            let (regression, candidate) = self.of(&ranked[k]);
-            if let Some(verdict) = regression.judge(candidate) {
-                ranked[k].verdict = verdict;
-            }
-        }
-        ranked.sort_by(|a, b| b.verdict.total().total_cmp(&a.verdict.total()));
+        ranked.sort_by(Ranked::more_first);
         ranked
     }
 

@@ -7,7 +7,6 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::SHAPE_STEP;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::Step;
 use crate::parallel;
 
 /// Derivatives of a term's torque on the rows of a design by the numbers of its shape that are estimated, by central
@@ -19,11 +18,10 @@ pub(in crate::diagnosis) fn tangents(
     amplitude: &[f64],
 ) -> Vec<(usize, Vec<f64>)> {
     let form = term.effect.form();
-    let steps = form.shape_search(term.place, &model.context.scales, &[]).steps;
+    let search = form.shape_search(term.place, &model.context.scales, &[]);
     // What the search does not vary chooses between forms of the law, and is no estimate. The shape of a sensitivity is
     // its amplitude once more.
-    let estimated =
-        |i: usize| !form.shape_is_amplitude() && steps.get(i).is_some_and(|step| !matches!(step, Step::Keep));
+    let estimated = |i: usize| !form.shape_is_amplitude() && search.varies(i);
     let weights = weights(term, amplitude);
     let along = |i: usize| {
         let step = SHAPE_STEP * term.shape[i].abs().max(1e-6);
@@ -45,7 +43,7 @@ pub(in crate::diagnosis) fn tangents(
 }
 
 /// What the columns of a term are multiplied by.
-fn weights(term: &Accepted, amplitude: &[f64]) -> Vec<f64> {
+pub(super) fn weights(term: &Accepted, amplitude: &[f64]) -> Vec<f64> {
     term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed])
 }
 

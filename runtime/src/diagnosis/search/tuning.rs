@@ -13,6 +13,7 @@ use crate::diagnosis::rules::{
     HALVINGS, LEAST_FALL, LONGEST_STEP, MOST_STEPS, OWN_FRACTION_OF_DERIVATIVE, SHAPE_STEP,
 };
 use crate::diagnosis::search::extended_model::ExtendedModel;
+use crate::diagnosis::search::tangents::weights;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{ShapeSearch, Step};
 use std::borrow::Cow;
@@ -27,7 +28,9 @@ pub(in crate::diagnosis) struct Tuning<'a> {
     /// The rows without the law, and the fit to them.
     rest: Cow<'a, Design>,
     fit: Cow<'a, Fit>,
-    /// Squares that the law takes from what that fit leaves, in units of the joints' noise.
+    /// Amplitudes of the columns, where they are not fixed, and the squares that the law takes from what that fit leaves, in
+    /// units of the joints' noise.
+    amplitude: Vec<f64>,
     gain: f64,
 }
 
@@ -64,10 +67,10 @@ impl<'a> Tuning<'a> {
         let grid = form.shapes(term.place, scales);
         let grid: Vec<&[f64]> = grid.iter().map(Vec::as_slice).collect();
         let search = form.shape_search(term.place, scales, &grid);
-        let mut tuning =
-            Self { model, search, term: term.clone(), columns: Vec::new(), rest, fit, gain: 0.0 };
-        tuning.columns = tuning.columns_of(&term.shape);
-        tuning.gain = tuning.solved(&[]).map_or(0.0, |(_, gain)| gain);
+        let (term, columns, amplitude) = (term.clone(), Vec::new(), Vec::new());
+        let mut tuning = Self { model, search, term, columns, rest, fit, amplitude, gain: 0.0 };
+        tuning.columns = tuning.columns_of(&tuning.term.shape);
+        (tuning.amplitude, tuning.gain) = tuning.solved(&[]).unwrap_or_default();
         tuning
     }
 
@@ -104,8 +107,8 @@ impl<'a> Tuning<'a> {
             let there = self.columns_of(&shape);
             let here = std::mem::replace(&mut self.columns, there);
             match self.solved(&[]) {
-                Some((_, gain)) if gain > self.gain => {
-                    (self.term.shape, self.gain) = (shape, gain);
+                Some((amplitude, gain)) if gain > self.gain => {
+                    (self.term.shape, self.amplitude, self.gain) = (shape, amplitude, gain);
                     return Some(true);
                 }
                 _ => self.columns = here,
@@ -117,11 +120,10 @@ impl<'a> Tuning<'a> {
     /// How each number of the shape changes to where the derivatives of the torques have nothing left; numbers that would
     /// leave their bounds stay there.
     fn direction(&self) -> Option<Vec<(usize, f64)>> {
-        let amplitude = if self.term.fixed.is_some() { Vec::new() } else { self.solved(&[])?.0 };
-        let mut free = self.slopes(&amplitude);
+        let mut free = self.slopes();
         loop {
             let slopes: Vec<&Sparse> = free.iter().map(|(_, slope)| slope).collect();
-            let changes = self.solved(&slopes)?.0.split_off(amplitude.len());
+            let changes = self.solved(&slopes)?.0.split_off(self.amplitude.len());
             let direction: Vec<(usize, f64)> = free.iter().map(|(i, _)| *i).zip(changes).collect();
             let leaving: Vec<usize> =
                 direction.iter().filter(|d| !self.moves(d.0, d.1)).map(|d| d.0).collect();
@@ -133,18 +135,19 @@ impl<'a> Tuning<'a> {
     }
 
     /// Derivatives of the law's torque by the numbers of its shape that can change, by differences, each with its place in the
-    /// shape. `amplitude` is that of each column, where they are not fixed.
-    fn slopes(&self, amplitude: &[f64]) -> Vec<(usize, Sparse)> {
-        let is_searched = |i: usize| !matches!(self.search.steps.get(i), None | Some(Step::Keep));
-        let can_change = |i: usize, by: f64| is_searched(i) && (self.moves(i, by) || self.moves(i, -by));
+    /// shape.
+    fn slopes(&self) -> Vec<(usize, Sparse)> {
+        let can_change =
+            |i: usize, by: f64| self.search.varies(i) && (self.moves(i, by) || self.moves(i, -by));
+        let weights = weights(&self.term, &self.amplitude);
         let steps = self.term.shape.iter().map(|x| SHAPE_STEP * x.abs().max(1e-6)).enumerate();
         let of_number = |(i, step): (usize, f64)| {
             let mut shape = self.term.shape.clone();
             shape[i] += step;
             let there = self.columns_of(&shape);
             let mut slope: Sparse = Vec::new();
-            for (k, (there, here)) in there.iter().zip(&self.columns).enumerate() {
-                let weight = self.term.fixed.or_else(|| amplitude.get(k).copied()).unwrap_or(0.0) / step;
+            for ((there, here), weight) in there.iter().zip(&self.columns).zip(&weights) {
+                let weight = weight / step;
                 for (n, ((joint, there), (_, here))) in there.iter().zip(here).enumerate() {
                     let change = there.iter().zip(here).map(|(there, here)| weight * (there - here));
                     match slope.get_mut(n) {
