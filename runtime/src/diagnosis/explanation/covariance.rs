@@ -1,7 +1,8 @@
 //! How parameters and laws of a model vary together, in a residual that is made white.
 
 use crate::diagnosis::judging::projection::factored;
-use crate::diagnosis::judging::white_products::{Background, Regressors};
+use crate::diagnosis::judging::regressors::Regressors;
+use crate::diagnosis::judging::white_products::Background;
 use crate::diagnosis::rules::UNDETERMINED;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::effects::{EffectTerm, SmoothingWindow};

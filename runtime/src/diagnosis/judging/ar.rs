@@ -5,6 +5,7 @@
 //! stretch are predicted by the orders that they have predecessors for, which makes the product of the innovations the
 //! exact likelihood of a stationary series. Rows on both sides of a gap say nothing about each other.
 
+use crate::diagnosis::judging::lag_products::LagProducts;
 use crate::diagnosis::rules::LEAST_AR_PAIRS;
 use std::ops::Range;
 
@@ -19,41 +20,34 @@ pub(in crate::diagnosis) struct Autoregression {
 
 impl Autoregression {
     /// Fits to values on stretches of neighbouring rows, with an order up to `highest`.
+    #[cfg(test)]
     pub fn fit(stretches: &[Range<usize>], values: &[f64], highest: usize) -> Self {
-        let rows: usize = stretches.iter().map(Range::len).sum();
-        let squares: f64 = stretches.iter().flat_map(|s| &values[s.clone()]).map(|x| x * x).sum();
-        let variance = (squares / rows.max(1) as f64).max(f64::MIN_POSITIVE);
-        let mut forward: Vec<Vec<f64>> = stretches.iter().map(|s| values[s.clone()].to_vec()).collect();
-        let mut backward = forward.clone();
+        Self::of(&LagProducts::of(stretches, values, highest))
+    }
+
+    /// From the products of a series, with an order up to their highest.
+    pub fn of(products: &LagProducts) -> Self {
+        let rows = products.rows(0) as f64;
+        let variance = (products.between(0, &[1.0], &[1.0]) / rows.max(1.0)).max(f64::MIN_POSITIVE);
         let (mut coefficients, mut variances) = (vec![Vec::new()], vec![variance]);
-        let (mut best, mut chosen) = (rows as f64 * variance.ln(), 0);
-        for order in 1..=highest {
-            let (mut product, mut power, mut pairs) = (0.0, 0.0, 0);
-            for (f, b) in forward.iter().zip(&backward) {
-                for t in order..f.len() {
-                    product += f[t] * b[t - 1];
-                    power += f[t] * f[t] + b[t - 1] * b[t - 1];
-                    pairs += 1;
-                }
-            }
-            if pairs < LEAST_AR_PAIRS || power <= 0.0 {
+        let (mut best, mut chosen) = (rows * variance.ln(), 0);
+        for order in 1..=products.highest() {
+            let before: &Vec<f64> = &coefficients[order - 1];
+            // Errors of the prediction of a row from those before it, and of the row before them from those after it.
+            let ahead: Vec<f64> =
+                std::iter::once(1.0).chain(before.iter().map(|c| -c)).chain([0.0]).collect();
+            let behind: Vec<f64> = ahead.iter().rev().copied().collect();
+            let power = products.between(order, &ahead, &ahead) + products.between(order, &behind, &behind);
+            if products.rows(order) < LEAST_AR_PAIRS || power <= 0.0 {
                 break;
             }
-            let reflection = 2.0 * product / power;
-            let before: &Vec<f64> = &coefficients[order - 1];
+            let reflection = 2.0 * products.between(order, &ahead, &behind) / power;
             let mut now: Vec<f64> =
                 (0..order - 1).map(|i| before[i] - reflection * before[order - 2 - i]).collect();
             now.push(reflection);
             coefficients.push(now);
             variances.push((variances[order - 1] * (1.0 - reflection * reflection)).max(1e-12 * variance));
-            for (f, b) in forward.iter_mut().zip(&mut backward) {
-                for t in (order..f.len()).rev() {
-                    let (ahead, behind) = (f[t], b[t - 1]);
-                    f[t] = ahead - reflection * behind;
-                    b[t] = behind - reflection * ahead;
-                }
-            }
-            let criterion = rows as f64 * variances[order].ln() + order as f64 * (rows as f64).ln();
+            let criterion = rows * variances[order].ln() + order as f64 * rows.ln();
             if criterion < best {
                 (best, chosen) = (criterion, order);
             }
@@ -80,6 +74,29 @@ impl Autoregression {
                 let past = values[t - order..t].iter().rev();
                 let predicted: f64 = self.coefficients[order].iter().zip(past).map(|(a, x)| a * x).sum();
                 out[t] = (values[t] - predicted) / self.deviations[order];
+            }
+        }
+        out
+    }
+
+    /// The covariance of such a series times a column, each stretch for itself; 0 outside of them.
+    pub fn covariance_times(&self, stretches: &[Range<usize>], column: &[f64]) -> Vec<f64> {
+        let top = self.deviations.len() - 1;
+        let mut out = vec![0.0; column.len()];
+        for stretch in stretches {
+            // The covariance is B B' with B the map from innovations in units of their deviation to the series: its
+            // transpose from the last row on, then itself from the first.
+            let order = |t: usize| (t - stretch.start).min(top);
+            for t in stretch.clone().rev() {
+                let later = (t + 1..stretch.end.min(t + 1 + top)).filter(|&s| s - t <= order(s));
+                let of_later: f64 = later.map(|s| self.coefficients[order(s)][s - t - 1] * out[s]).sum();
+                out[t] = column[t] + of_later;
+            }
+            for t in stretch.clone() {
+                let (order, deviation) = (order(t), self.deviations[order(t)]);
+                let past = out[t - order..t].iter().rev();
+                let predicted: f64 = self.coefficients[order].iter().zip(past).map(|(a, x)| a * x).sum();
+                out[t] = deviation * deviation * out[t] + predicted;
             }
         }
         out
@@ -145,6 +162,23 @@ mod tests {
         assert_eq!(Autoregression::fit(&[], &[], HIGHEST_ORDER).order(), 0);
         let still = Autoregression::fit(std::slice::from_ref(&(0..50)), &[0.0; 50], HIGHEST_ORDER);
         assert!(still.whitened(std::slice::from_ref(&(0..50)), &[0.0; 50]).iter().all(|x| *x == 0.0));
+    }
+
+    #[test]
+    fn the_covariance_of_a_series_is_the_inverse_of_what_makes_it_white() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let stretches = [0..7, 8..30];
+        let values: Vec<f64> = second_order(&mut rng, 300);
+        let ar = Autoregression::fit(std::slice::from_ref(&(0..300)), &values, HIGHEST_ORDER);
+        assert!(ar.order() >= 2);
+        // u' v of white columns is x' Γ⁻¹ y: with y = Γ z it is x' z.
+        let [x, z]: [Vec<f64>; 2] = std::array::from_fn(|_| (0..30).map(|_| normal(&mut rng)).collect());
+        let y = ar.covariance_times(&stretches, &z);
+        let [u, v] = [&x, &y].map(|c| ar.whitened(&stretches, c));
+        let products = |a: &[f64], b: &[f64]| -> f64 {
+            stretches.iter().flat_map(|s| s.clone()).map(|t| a[t] * b[t]).sum()
+        };
+        approx::assert_relative_eq!(products(&u, &v), products(&x, &z), max_relative = 1e-9);
     }
 
     #[test]

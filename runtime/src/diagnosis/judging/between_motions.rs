@@ -4,8 +4,9 @@
 //! worked out while they are there, in the way of [`super::calibration`], and kept with the model.
 
 use crate::diagnosis::judging::calibration::{Compared, of_companions, prior, with_other_motions};
+use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::units::Units;
-use crate::diagnosis::judging::white_products::{Background, Regressors};
+use crate::diagnosis::judging::white_products::Background;
 use crate::diagnosis::outcome::BetweenMotions;
 use crate::parallel;
 

@@ -9,11 +9,12 @@
 //! moderated by those of other laws on the same joint.
 
 use crate::diagnosis::judging::projection::Projection;
+use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::uneven_noise::of_noise;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
-use crate::diagnosis::judging::white_products::{Background, Products, Regressors};
+use crate::diagnosis::judging::white_products::{Background, Products};
 use crate::diagnosis::rules::OWN_FRACTION;
 use crate::statistics::moderation::{Prior, Variance};
 use nalgebra::DMatrix;
@@ -133,7 +134,7 @@ pub(in crate::diagnosis) fn calibrate(
     };
     let between = Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, without_any };
     // Noise that is loud where the law is large leaves doubt that no other unit or law shows.
-    let uneven = of_noise(units, regressors, law, &found).map(|noise| Calibrated {
+    let uneven = of_noise(units, regressors, law, (&found, background)).map(|noise| Calibrated {
         lambda: noise.value.max(1.0),
         freedom: noise.freedom,
         ..between
@@ -205,8 +206,7 @@ fn sum(list: &[DMatrix<f64>], taken: impl Fn(usize) -> bool) -> DMatrix<f64> {
 /// Inner products of all motion, with what is known of its columns beforehand; `y` is the column of the torque. What is free
 /// in every motion is so in each whole one where there is a baseline.
 fn whole(units: &Units, products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
-    let parts = if units.change() { &products.files } else { &products.units };
-    let mut whole = sum(parts, |_| true);
+    let mut whole = sum(products.all(units), |_| true);
     if let Some(prior) = regressors.prior {
         prior.add_to_products(&mut whole, y);
     }

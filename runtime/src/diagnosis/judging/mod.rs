@@ -11,12 +11,15 @@ pub(in crate::diagnosis) mod hull;
 pub(in crate::diagnosis) mod judge;
 #[cfg(test)]
 mod judge_tests;
+mod lag_products;
 pub(in crate::diagnosis) mod partial_regression;
 pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod projection;
 pub(in crate::diagnosis) mod regression;
+pub(in crate::diagnosis) mod regressors;
 pub(in crate::diagnosis) mod significance;
 pub(in crate::diagnosis) mod skew;
+mod taken;
 #[cfg(test)]
 pub(in crate::diagnosis) mod testing;
 #[cfg(test)]
@@ -25,3 +28,4 @@ pub(in crate::diagnosis) mod uneven_noise;
 pub(in crate::diagnosis) mod units;
 mod wald;
 pub(in crate::diagnosis) mod white_products;
+mod whitening;

@@ -1,7 +1,9 @@
 //! What the columns of a model make of other columns, from inner products.
 
+use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rules::CALIBRATION_RIDGE;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::ops::Range;
 
 /// The first columns of a table of inner products, factored once for all that is compared beside them.
 pub(in crate::diagnosis) struct Projection {
@@ -50,6 +52,20 @@ pub(in crate::diagnosis) fn factored(g: &DMatrix<f64>) -> Option<(Cholesky<f64, 
         g[(i, k)] * scale[i] * scale[k] + diagonal
     });
     Some((scaled.cholesky()?, scale))
+}
+
+/// Inner products of columns over these rows.
+pub(in crate::diagnosis) fn inner_products(columns: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
+    let n = columns.len();
+    let mut g = DMatrix::zeros(n, n);
+    for i in 0..n {
+        for k in 0..=i {
+            let value = dot(&columns[i][rows.clone()], &columns[k][rows.clone()]);
+            g[(i, k)] = value;
+            g[(k, i)] = value;
+        }
+    }
+    g
 }
 
 #[cfg(test)]

@@ -8,9 +8,11 @@
 //! variance of equal mean and uncertainty (Satterthwaite 1946): few where few rows make the law.
 
 use crate::diagnosis::judging::calibration::Law;
+use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
-use crate::diagnosis::judging::white_products::{Regressors, white_with_residual};
+use crate::diagnosis::judging::white_products::Background;
+use crate::diagnosis::judging::whitening::white_with_residual;
 use crate::statistics::moderation::Variance;
 
 /// The mean statistic of a law for each of its numbers, were it only noise of the sizes that the rows show.
@@ -18,10 +20,13 @@ pub(super) fn of_noise(
     units: &Units,
     regressors: &Regressors<'_>,
     law: &Law<'_>,
-    found: &Wald,
+    (found, background): (&Wald, &Background),
 ) -> Option<Variance> {
     let torque = own_torque(units, regressors, law, found);
-    let of_joint = |j: usize| white_with_residual(units, regressors, j, &torque, law.residual);
+    let of_joint = |j: usize| {
+        let whitening = background.whitening(units, regressors, j, law.residual);
+        white_with_residual(units, regressors, j, &whitening, [&torque, law.residual])
+    };
     let joints: Vec<[Vec<f64>; 2]> = (0..regressors.of_joint.len())
         .filter(|&j| regressors.acts_on(law.columns, j))
         .map(of_joint)

@@ -3,51 +3,16 @@
 //! The residual of each joint is made white by an autoregression, its columns with it, and what is free in every motion
 //! (its friction level, where there is a baseline) is projected out.
 
-use crate::diagnosis::judging::ar::Autoregression;
-use crate::diagnosis::judging::projection::{Projection, factored};
+use crate::diagnosis::judging::lag_products::LagProducts;
+use crate::diagnosis::judging::projection::{Projection, inner_products};
+use crate::diagnosis::judging::regressors::Regressors;
+use crate::diagnosis::judging::taken;
 use crate::diagnosis::judging::units::Units;
-use crate::diagnosis::rows::gram::dot;
-use crate::diagnosis::rows::prior::Prior;
-use crate::diagnosis::rules::{FREED, HIGHEST_AR_ORDER};
+use crate::diagnosis::judging::whitening::{Whitening, local_or_empty};
+use crate::diagnosis::rules::FREED;
 use crate::parallel;
-use crate::statistics::moderation::Variance;
-use nalgebra::{DMatrix, DVector};
-use std::ops::Range;
+use nalgebra::DMatrix;
 use std::sync::OnceLock;
-
-/// What a law is judged against: everything by row, over all rows of all joints.
-pub(in crate::diagnosis) struct Regressors<'a> {
-    /// Columns of the model and its nuisances.
-    pub shared: &'a [Vec<f64>],
-    pub y: &'a [f64],
-    /// Columns of each joint that are free in every motion, values on the joint's rows.
-    pub free: &'a [Vec<Vec<f64>>],
-    /// Other laws of each joint, values on the joint's rows: how much they vary from unit to unit tells how much laws
-    /// of this joint do.
-    pub companions: &'a [Vec<Vec<f64>>],
-    /// What is known of the shared columns beforehand.
-    pub prior: Option<&'a Prior>,
-    /// Per joint the mean statistic of a law in a motion as long as the recording's, where nothing has changed, as a model of
-    /// the robot before knows it; empty where there is none.
-    pub between_motions: &'a [Option<Variance>],
-    /// Rows of each joint.
-    pub of_joint: &'a [Range<usize>],
-}
-
-impl Regressors<'_> {
-    /// Whether a law, given as columns over all rows, acts on a joint.
-    pub fn acts_on(&self, law: &[Vec<f64>], joint: usize) -> bool {
-        let range = self.of_joint[joint].clone();
-        law.iter().any(|c| c[range.clone()].iter().any(|x| *x != 0.0))
-    }
-
-    /// A column of a joint, given as values on its rows, over all rows.
-    pub fn on_all_rows(&self, joint: usize, on_joint: &[f64]) -> Vec<f64> {
-        let mut column = vec![0.0; self.y.len()];
-        column[self.of_joint[joint].clone()].copy_from_slice(on_joint);
-        column
-    }
-}
 
 /// Inner products of `[columns, law, y, companions]` in each unit and each motion.
 pub(in crate::diagnosis) struct Products {
@@ -61,6 +26,11 @@ impl Products {
     fn zero(units: &Units, width: usize, companions: usize) -> Self {
         let zero = DMatrix::zeros(width, width);
         Self { units: vec![zero.clone(); units.units.len()], files: vec![zero; units.files()], companions }
+    }
+
+    /// Those of all motion, in parts: what is free in every motion is so in each whole one where there is a baseline.
+    pub fn all(&self, units: &Units) -> &[DMatrix<f64>] {
+        if units.change() { &self.files } else { &self.units }
     }
 
     /// Adds those of one joint, whose columns stand at `places` here.
@@ -80,16 +50,26 @@ pub(in crate::diagnosis) struct Background {
     /// Of all joints but one, each when it is first asked for.
     of_others: Vec<OnceLock<Products>>,
     residual: Vec<f64>,
+    /// What the model took of the noise of each joint.
+    taken: Vec<LagProducts>,
 }
 
 impl Background {
     /// Of a model that leaves `residual`.
     pub fn new(units: &Units, regressors: &Regressors<'_>, residual: &[f64], threads: usize) -> Self {
-        let of_joint = |j| of_joint(units, regressors, j, &[], &[], residual);
+        let joints = regressors.of_joint.len();
+        let as_left =
+            parallel::map(threads, joints, |j| Whitening::of(units, regressors, j, (residual, None)));
+        let taken = taken::by_fit(units, regressors, (residual, &as_left), threads);
+        let of_joint = |j| {
+            let whitening = Whitening::of(units, regressors, j, (residual, Some((&taken[j], 1.0))));
+            of_joint(units, regressors, j, &[], &[], &whitening)
+        };
         Self {
-            of_joint: parallel::map(threads, regressors.of_joint.len(), of_joint),
+            of_joint: parallel::map(threads, joints, of_joint),
             of_others: regressors.of_joint.iter().map(|_| OnceLock::new()).collect(),
             residual: residual.to_vec(),
+            taken,
         }
     }
 
@@ -106,6 +86,26 @@ impl Background {
         })
     }
 
+    /// The squares that a law leaves on a joint, as a share of those without it.
+    fn share(&self, regressors: &Regressors<'_>, j: usize, residual: &[f64]) -> f64 {
+        let squares = |x: &[f64]| x[regressors.of_joint[j].clone()].iter().map(|x| x * x).sum::<f64>();
+        let before = squares(&self.residual);
+        if before > 0.0 { squares(residual) / before } else { 1.0 }
+    }
+
+    /// What makes a joint white on which a law leaves `residual`. Where that is less than without it, the noise was less too,
+    /// and so was what the model took of it.
+    pub(super) fn whitening(
+        &self,
+        units: &Units,
+        regressors: &Regressors<'_>,
+        j: usize,
+        residual: &[f64],
+    ) -> Whitening {
+        let share = self.share(regressors, j, residual);
+        Whitening::of(units, regressors, j, (residual, Some((&self.taken[j], share))))
+    }
+
     /// With a law, given as columns over all rows, that leaves `residual`, and the companions of its joints, all joints
     /// together. Those of joints whose residual the law leaves as it was are the background's.
     pub fn with(
@@ -117,12 +117,7 @@ impl Background {
     ) -> Products {
         let (p, k) = (regressors.shared.len(), law.len());
         // Through the parameters that joints share, a law on one joint frees others of what it had left there.
-        let frees = |j: usize| {
-            let range = regressors.of_joint[j].clone();
-            let squares = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-            let [before, after] = [&self.residual[..], residual].map(|r| squares(&r[range.clone()]));
-            after < (1.0 - FREED) * before
-        };
+        let frees = |j: usize| self.share(regressors, j, residual) < 1.0 - FREED;
         let own: Vec<bool> = (0..regressors.of_joint.len()).map(|j| regressors.acts_on(law, j)).collect();
         let companions = (0..own.len()).filter(|&j| own[j]).map(|j| regressors.companions[j].len()).sum();
         let mut out = Products::zero(units, p + k + 1 + companions, companions);
@@ -130,6 +125,7 @@ impl Background {
         // Without the law, y is the column after the p of the model.
         let without_law: Vec<usize> = (0..p).chain([p + k]).collect();
         let mut rest: Vec<usize> = (0..own.len()).collect();
+        let whitening = |j: usize| self.whitening(units, regressors, j, residual);
         if let [joint] = (0..own.len()).filter(|&j| own[j] || frees(j)).collect::<Vec<_>>()[..] {
             out.add(self.of_others(units, joint), &without_law);
             rest = vec![joint];
@@ -137,12 +133,12 @@ impl Background {
         for j in rest {
             if own[j] {
                 let companions = &regressors.companions[j];
-                let part = of_joint(units, regressors, j, law, companions, residual);
+                let part = of_joint(units, regressors, j, law, companions, &whitening(j));
                 let places: Vec<usize> = (0..p + k + 1).chain(first..first + companions.len()).collect();
                 first += companions.len();
                 out.add(&part, &places);
             } else if frees(j) {
-                let part = of_joint(units, regressors, j, &[], &[], residual);
+                let part = of_joint(units, regressors, j, &[], &[], &whitening(j));
                 out.add(&part, &without_law);
             } else {
                 out.add(&self.of_joint[j], &without_law);
@@ -162,7 +158,8 @@ impl Background {
         let width = regressors.shared.len() + 1;
         let mut out = Products::zero(units, width + companions.len(), companions.len());
         out.add(self.of_others(units, joint), &(0..width).collect::<Vec<usize>>());
-        let own = of_joint(units, regressors, joint, &[], companions, &self.residual);
+        let whitening = self.whitening(units, regressors, joint, &self.residual);
+        let own = of_joint(units, regressors, joint, &[], companions, &whitening);
         out.add(&own, &(0..width + companions.len()).collect::<Vec<usize>>());
         out
     }
@@ -175,7 +172,7 @@ fn of_joint(
     j: usize,
     law: &[Vec<f64>],
     companions: &[Vec<f64>],
-    residual: &[f64],
+    whitening: &Whitening,
 ) -> Products {
     let range = &regressors.of_joint[j];
     let width = regressors.shared.len() + law.len() + 1 + companions.len();
@@ -183,12 +180,12 @@ fn of_joint(
     if range.is_empty() {
         return out;
     }
-    let Whitening { stretches, ar, free } = Whitening::of(units, regressors, j, residual);
+    let Whitening { stretches, ar, free } = whitening;
     let on_joint = regressors.shared.iter().chain(law).map(|c| &c[range.clone()]);
     let all: Vec<Option<Vec<f64>>> = on_joint
         .chain([&regressors.y[range.clone()]])
         .chain(companions.iter().map(Vec::as_slice))
-        .map(|c| c.iter().any(|x| *x != 0.0).then(|| ar.whitened(&stretches, c)))
+        .map(|c| c.iter().any(|x| *x != 0.0).then(|| ar.whitened(stretches, c)))
         .collect();
     let live: Vec<usize> = (0..width).filter(|&i| all[i].is_some()).collect();
     let columns: Vec<&[f64]> =
@@ -199,7 +196,7 @@ fn of_joint(
         if rows.is_empty() {
             continue;
         }
-        let gram = gram(&columns, rows);
+        let gram = inner_products(&columns, rows);
         of_file[unit.file] += &gram;
         add(&mut out.units[u], &project(&gram, free.len()), &live);
     }
@@ -207,89 +204,6 @@ fn of_joint(
         add(&mut out.files[file], &project(gram, free.len()), &live);
     }
     out
-}
-
-/// What makes the rows of a joint white.
-struct Whitening {
-    /// Neighbouring rows, as places among the joint's.
-    stretches: Vec<Range<usize>>,
-    ar: Autoregression,
-    /// What is free in every motion, white.
-    free: Vec<Vec<f64>>,
-}
-
-impl Whitening {
-    /// Of a model that leaves `residual`, beside what is free in every motion.
-    fn of(units: &Units, regressors: &Regressors<'_>, j: usize, residual: &[f64]) -> Self {
-        let range = &regressors.of_joint[j];
-        let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
-        let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
-        let left = without_free(units, j, range, &residual[range.clone()], &regressors.free[j]);
-        let ar = Autoregression::fit(&stretches, &left, HIGHEST_AR_ORDER);
-        let free = regressors.free[j].iter().map(|c| ar.whitened(&stretches, c)).collect();
-        Self { stretches, ar, free }
-    }
-}
-
-/// A column over all rows and the residual of a model on one joint, both made white, without what is free in every motion.
-pub(super) fn white_with_residual(
-    units: &Units,
-    regressors: &Regressors<'_>,
-    j: usize,
-    column: &[f64],
-    residual: &[f64],
-) -> [Vec<f64>; 2] {
-    let range = &regressors.of_joint[j];
-    let Whitening { stretches, ar, free } = Whitening::of(units, regressors, j, residual);
-    let white = |c: &[f64]| without_free(units, j, range, &ar.whitened(&stretches, &c[range.clone()]), &free);
-    [white(column), white(residual)]
-}
-
-fn local_or_empty(rows: &Range<usize>, of: &Range<usize>) -> Range<usize> {
-    if rows.is_empty() { 0..0 } else { rows.start - of.start..rows.end - of.start }
-}
-
-/// The residual of a joint without what its free columns make of it in each motion.
-fn without_free(
-    units: &Units,
-    j: usize,
-    range: &Range<usize>,
-    residual: &[f64],
-    free: &[Vec<f64>],
-) -> Vec<f64> {
-    let mut left = residual.to_vec();
-    if free.is_empty() {
-        return left;
-    }
-    for file in 0..units.files() {
-        let rows: Vec<usize> = (0..units.units.len())
-            .filter(|&u| units.units[u].file == file)
-            .flat_map(|u| local_or_empty(&units.rows[j][u], range))
-            .collect();
-        let f = free.len();
-        let g = DMatrix::from_fn(f, f, |a, b| rows.iter().map(|&r| free[a][r] * free[b][r]).sum::<f64>());
-        let b = DVector::from_fn(f, |a, _| rows.iter().map(|&r| free[a][r] * residual[r]).sum::<f64>());
-        if let Some((factor, scale)) = factored(&g) {
-            let x = factor.solve(&b.component_mul(&scale)).component_mul(&scale);
-            for &r in &rows {
-                left[r] -= (0..f).map(|a| x[a] * free[a][r]).sum::<f64>();
-            }
-        }
-    }
-    left
-}
-
-fn gram(columns: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
-    let n = columns.len();
-    let mut g = DMatrix::zeros(n, n);
-    for i in 0..n {
-        for k in 0..=i {
-            let value = dot(&columns[i][rows.clone()], &columns[k][rows.clone()]);
-            g[(i, k)] = value;
-            g[(k, i)] = value;
-        }
-    }
-    g
 }
 
 /// Inner products of the columns after the first `f` without what those first make of them.

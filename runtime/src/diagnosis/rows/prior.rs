@@ -75,6 +75,16 @@ impl Prior {
         }
     }
 
+    /// What it says of the other columns where these are not there, and the others stand without a gap.
+    pub fn without(&self, columns: &Range<usize>) -> Self {
+        let zero: Vec<(usize, f64)> = columns.clone().map(|k| (k, 0.0)).collect();
+        let mut left = self.clone().given(&zero);
+        for k in left.columns.iter_mut().filter(|k| **k >= columns.end) {
+            *k -= columns.len();
+        }
+        left
+    }
+
     /// How many parameters it stands for in a fit with this covariance, all information together: the part of each unknown
     /// that it knows, summed. What is left of their number are the parameters that the rows have to tell (effective number
     /// of parameters; Bishop, Pattern Recognition and Machine Learning, 3.5.3).
@@ -150,5 +160,9 @@ mod tests {
         let mean = left.right[0] / left.information[(0, 0)];
         approx::assert_relative_eq!(mean, 4.0 / 3.0, max_relative = 1e-12);
         assert_eq!(prior.clone().given(&[(1, 7.0)]), prior);
+        // Of columns that close the gap of those that are not there, the same.
+        let without = Prior::with_zeros(Some(&prior), 6..7, 0.5).without(&(3..5));
+        assert_eq!(without, Prior::with_zeros(Some(&prior), 4..5, 0.5));
+        assert_eq!(prior.without(&(2..3)), prior.clone().given(&[(2, 0.0)]));
     }
 }

@@ -1,8 +1,8 @@
 //! What evidence on the rows of a window is compared with: units of motion, and what the joints' torques repeat to.
 
 use crate::diagnosis::candidates::nuisances::friction_columns;
+use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::units::Units;
-use crate::diagnosis::judging::white_products::Regressors;
 use crate::diagnosis::outcome::BetweenMotions;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;

@@ -10,11 +10,13 @@
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::calibration::{Calibrated, Law, beside, calibrate};
+use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::significance::Evidence;
-use crate::diagnosis::judging::white_products::{Background, Regressors};
+use crate::diagnosis::judging::white_products::Background;
 use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
-use crate::diagnosis::search::bench::Size;
+use crate::diagnosis::search::bench::{Bench, Size};
 use crate::diagnosis::search::certainty::of_amplitudes;
 use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
@@ -28,9 +30,24 @@ use std::ops::Range;
 /// The law that friction which has changed is told from.
 const DRIVE_GAIN: EffectKind = EffectKind::TorqueConstantError;
 
-/// Columns of a design but for these.
-fn columns_but(design: &Design, without: &Range<usize>) -> Vec<Vec<f64>> {
-    (0..design.columns.len()).filter(|k| !without.contains(k)).map(|k| design.columns[k].clone()).collect()
+/// Columns of a design but for some, and what is known of them.
+struct Others {
+    columns: Vec<Vec<f64>>,
+    prior: Option<Prior>,
+}
+
+impl Others {
+    fn of(design: &Design, without: &Range<usize>) -> Self {
+        let kept = (0..design.columns.len()).filter(|k| !without.contains(k));
+        Self {
+            columns: kept.map(|k| design.columns[k].clone()).collect(),
+            prior: design.prior.as_deref().map(|prior| prior.without(without)),
+        }
+    }
+
+    fn regressors<'b>(&'b self, bench: &'b Bench, design: &'b Design) -> Regressors<'b> {
+        Regressors { shared: &self.columns, prior: self.prior.as_ref(), ..bench.regressors(design) }
+    }
 }
 
 /// What has changed on a joint.
@@ -68,10 +85,10 @@ impl Search<'_> {
         let joints = design.joints;
         let residual = regression.residual();
         let background = |without: Range<usize>| {
-            let shared = columns_but(design, &without);
-            let regressors = Regressors { shared: &shared, ..bench.regressors(design) };
+            let beside = Others::of(design, &without);
+            let regressors = beside.regressors(bench, design);
             let background = Background::new(&bench.units, &regressors, &residual, self.threads());
-            (shared, background)
+            (beside, background)
         };
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
         let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
@@ -79,8 +96,8 @@ impl Search<'_> {
         let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
         let on_joint = |j: usize| {
             let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
-            let (shared, background) = own.as_ref().or(baseline.as_ref())?;
-            let (evidence, change) = self.friction_evidence(j, shared, background, &residual)?;
+            let (others, background) = own.as_ref().or(baseline.as_ref())?;
+            let (evidence, change) = self.friction_evidence(j, others, background, &residual)?;
             // Nor surer than the numbers allow that are shown.
             let confidence = evidence.confidence(joints).min(of_amplitudes(
                 &regression.fit,
@@ -180,7 +197,7 @@ impl Search<'_> {
     fn friction_evidence(
         &self,
         joint: usize,
-        shared: &[Vec<f64>],
+        others: &Others,
         background: &Background,
         residual: &[f64],
     ) -> Option<(Evidence, Change)> {
@@ -190,7 +207,7 @@ impl Search<'_> {
         let mut free = bench.free.clone();
         free[joint].drain(..2.min(bench.free[joint].len()));
         let between_motions = &bench.friction_between_motions;
-        let regressors = Regressors { shared, free: &free, between_motions, ..bench.regressors(design) };
+        let regressors = Regressors { free: &free, between_motions, ..others.regressors(bench, design) };
         let friction: Vec<Vec<f64>> =
             bench.friction[joint][..2].iter().map(|c| regressors.on_all_rows(joint, c)).collect();
         let judged = |columns| {
