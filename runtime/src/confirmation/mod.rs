@@ -5,14 +5,15 @@
 //! ([`OnTest`]) must be more than one half, or its joints are predicted worse with it; it must be told from nothing where
 //! the motion could have shown it; it must not certainly make the other joints worse; and a factor must be the same. That is
 //! asked with the parameters that were found beside it: those of a model without it imitate it on several joints. What fails
-//! is taken out, and the search goes on without it. The test recording then no longer is one for what was chosen by it: of a
+//! is taken out, and the search goes on without it; where all of it may be there and the motion does not tell, it stays a rival
+//! of what is looked for then. The test recording then no longer is one for what was chosen by it: of a
 //! finding that stays, only that it did not fail is known from it.
 
 mod intervals;
 mod slope;
 
 use crate::diagnosis::{
-    Diagnosis, DiagnosisError, Finding, OnTest, Progress, Refuted, Settings, diagnose_despite,
+    Diagnosis, DiagnosisError, Finding, Objection, OnTest, Progress, Refuted, Settings, diagnose_despite,
 };
 use crate::effects::{EffectKind, EffectTerm, SmoothingWindow};
 use crate::model::{JointNumber, Model};
@@ -53,10 +54,9 @@ pub fn diagnose_and_confirm(
             failed = Some(error);
             Vec::new()
         });
-        let object = |(k, reason): (usize, Refuted)| {
+        let object = |(k, reason, still_possible): (usize, Refuted, bool)| {
             refuted.push(reason);
-            let term = &diagnosis.findings[k].term;
-            (term.effect, term.place)
+            Objection::to(&diagnosis.findings[k], still_possible)
         };
         failing.into_iter().map(object).collect()
     };
@@ -90,12 +90,13 @@ fn words(refuted: &[Refuted]) -> Option<String> {
         .then(|| format!("Not reported, because the test recording does not show it: {}.", list.join("; ")))
 }
 
-/// Finds out how much of each finding the test recording shows, and returns those that it contradicts.
+/// Finds out how much of each finding the test recording shows, and returns those that it does not show, and whether they may be
+/// there all the same.
 fn held_against_test(
     model: &dyn Model,
     diagnosis: &mut Diagnosis,
     test: &Prepared,
-) -> Result<Vec<(usize, Refuted)>, PredictionError> {
+) -> Result<Vec<(usize, Refuted, bool)>, PredictionError> {
     let without: Vec<(usize, Vec<f64>, Vec<EffectTerm>)> = (0..diagnosis.findings.len())
         .filter_map(|k| without(diagnosis, k).map(|(chi, effects)| (k, chi, effects)))
         .collect();
@@ -149,7 +150,9 @@ fn held_against_test(
         if fails {
             let [test_before, test_after] = [which, 0].map(|m| error_on(model, finding, &evaluation, m));
             let (effect, joints) = (finding.effect.clone(), finding.joints.clone());
-            failing.push((*k, Refuted { effect, joints, test_before, test_after, on_test, harms_others }));
+            let still_possible = own != Judgement::Stands && slope.may_be_whole();
+            let reason = Refuted { effect, joints, test_before, test_after, on_test, harms_others };
+            failing.push((*k, reason, still_possible));
         }
     }
     for (k, on_test) in parts {

@@ -102,6 +102,11 @@ impl Slope {
         }
     }
 
+    /// Whether all of the law may be there.
+    pub(super) fn may_be_whole(&self) -> bool {
+        self.margin().is_none_or(|margin| (self.value - 1.0).abs() <= margin)
+    }
+
     /// Whether it is not by accident that the motion is predicted better without the law.
     pub(super) fn certainly_harms(&self) -> bool {
         self.margin().is_some_and(|margin| self.value < NEUTRAL - margin)

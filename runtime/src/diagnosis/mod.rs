@@ -87,6 +87,7 @@ mod experiment;
 mod explanation;
 mod judging;
 mod motions;
+mod objection;
 mod outcome;
 mod portrait;
 mod predict;
@@ -116,6 +117,7 @@ pub use settings::{Progress, Settings, Silent};
 use crate::effects::EffectKind;
 use crate::model::Model;
 use crate::recording::Trajectory;
+pub(crate) use objection::Objection;
 use stages::{Objections, Recordings};
 
 /// Diagnoses a recording; `baseline` are motions of the same robot before it changed, empty where there are none.

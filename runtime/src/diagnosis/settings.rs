@@ -50,6 +50,9 @@ pub struct Settings {
     pub single_joint_contacts: bool,
     /// Laws at places that are not tried, because other evidence speaks against them.
     pub excluded: Vec<(EffectKind, Place)>,
+    /// Laws at places that are not named and stay rivals of others: other evidence neither shows nor excludes them, and what
+    /// could be told from them only by their absence is not told from them.
+    pub only_rivals: Vec<(EffectKind, Place)>,
     /// Laws that the user wrote down: tried beside those of the catalogue.
     pub laws: Vec<UserLaw>,
     /// A model of the robot before it changed, in the place of a baseline: what it explains is not looked for.
@@ -113,6 +116,7 @@ impl Default for Settings {
             standstill_speeds: None,
             single_joint_contacts: true,
             excluded: Vec::new(),
+            only_rivals: Vec::new(),
             laws: Vec::new(),
             reference: None,
             threads: 2,
@@ -124,6 +128,11 @@ impl Settings {
     /// The same for what is looked for beside a law that is in the model: that something is missing is certain then.
     pub(super) fn beside_laws(&self) -> Self {
         Self { least_confidence: self.confidence_at(rules::LEVEL_BESIDE_LAWS), ..self.clone() }
+    }
+
+    /// Whether a law at a place may be named.
+    pub(super) fn may_name(&self, effect: EffectKind, place: Place) -> bool {
+        !self.excluded.contains(&(effect, place)) && !self.only_rivals.contains(&(effect, place))
     }
 
     /// The confidence that one law of a model needs, so that something is missing for certain.

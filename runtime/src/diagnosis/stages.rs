@@ -6,6 +6,7 @@ use super::error::DiagnosisError;
 use super::explanation::explain::{Ended, explain, small};
 use super::explanation::standard_model::StandardModelFit;
 use super::explanation::standstill;
+use super::objection::Objection;
 use super::outcome::{Diagnosis, Finding, Sampling};
 use super::preparation::{Prepared, nothing_moves};
 use super::pushes::Pushes;
@@ -27,9 +28,9 @@ pub(super) struct Recordings<'a> {
     pub baseline: &'a [Trajectory],
 }
 
-/// Laws at places that other evidence speaks against, given a diagnosis; it may write down what it saw. Nothing where it
-/// has no objection.
-pub(crate) type Objections<'o> = dyn FnMut(&mut Diagnosis) -> Vec<(EffectKind, Place)> + 'o;
+/// What is not to be named, given a diagnosis, because other evidence speaks against it; that may write down what it saw. Nothing
+/// where it has no objection.
+pub(crate) type Objections<'o> = dyn FnMut(&mut Diagnosis) -> Vec<Objection> + 'o;
 
 /// Prepares, sets pushes aside, searches, explains; where `known` effects are given, fits them and searches nothing.
 /// What there are `objections` to is searched for no more, until there are none.
@@ -148,7 +149,10 @@ impl<'a> Course<'a> {
                 }
                 _ => return Ok(Some(diagnosis)),
             }
-            settings.excluded.extend(objected);
+            for Objection { effect, place, still_possible } in objected {
+                let list = if still_possible { &mut settings.only_rivals } else { &mut settings.excluded };
+                list.push((effect, place));
+            }
         }
     }
 
@@ -234,9 +238,9 @@ impl<'a> Course<'a> {
 }
 
 /// Laws that make motion which was held out worse, once nothing is fitted beside them that is never named.
-fn harmful(diagnosis: &Diagnosis) -> Vec<(EffectKind, Place)> {
+fn harmful(diagnosis: &Diagnosis) -> Vec<Objection> {
     let harms = |f: &&Finding| f.without.is_some() && f.held_out_after > f.held_out_before;
-    diagnosis.findings.iter().filter(harms).map(|f| (f.term.effect, f.term.place)).collect()
+    diagnosis.findings.iter().filter(harms).map(|f| Objection::to(f, false)).collect()
 }
 
 /// What can be said of a robot that holds still, beside a baseline in which it moves.

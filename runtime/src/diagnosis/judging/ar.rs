@@ -78,29 +78,6 @@ impl Autoregression {
         }
         out
     }
-
-    /// The covariance of such a series times a column, each stretch for itself; 0 outside of them.
-    pub fn covariance_times(&self, stretches: &[Range<usize>], column: &[f64]) -> Vec<f64> {
-        let top = self.deviations.len() - 1;
-        let mut out = vec![0.0; column.len()];
-        for stretch in stretches {
-            // The covariance is B B' with B the map from innovations in units of their deviation to the series: its
-            // transpose from the last row on, then itself from the first.
-            let order = |t: usize| (t - stretch.start).min(top);
-            for t in stretch.clone().rev() {
-                let later = (t + 1..stretch.end.min(t + 1 + top)).filter(|&s| s - t <= order(s));
-                let of_later: f64 = later.map(|s| self.coefficients[order(s)][s - t - 1] * out[s]).sum();
-                out[t] = column[t] + of_later;
-            }
-            for t in stretch.clone() {
-                let (order, deviation) = (order(t), self.deviations[order(t)]);
-                let past = out[t - order..t].iter().rev();
-                let predicted: f64 = self.coefficients[order].iter().zip(past).map(|(a, x)| a * x).sum();
-                out[t] = deviation * deviation * out[t] + predicted;
-            }
-        }
-        out
-    }
 }
 
 #[cfg(test)]
@@ -162,23 +139,6 @@ mod tests {
         assert_eq!(Autoregression::fit(&[], &[], HIGHEST_ORDER).order(), 0);
         let still = Autoregression::fit(std::slice::from_ref(&(0..50)), &[0.0; 50], HIGHEST_ORDER);
         assert!(still.whitened(std::slice::from_ref(&(0..50)), &[0.0; 50]).iter().all(|x| *x == 0.0));
-    }
-
-    #[test]
-    fn the_covariance_of_a_series_is_the_inverse_of_what_makes_it_white() {
-        let mut rng = Pcg64::seed_from_u64(3);
-        let stretches = [0..7, 8..30];
-        let values: Vec<f64> = second_order(&mut rng, 300);
-        let ar = Autoregression::fit(std::slice::from_ref(&(0..300)), &values, HIGHEST_ORDER);
-        assert!(ar.order() >= 2);
-        // u' v of white columns is x' Γ⁻¹ y: with y = Γ z it is x' z.
-        let [x, z]: [Vec<f64>; 2] = std::array::from_fn(|_| (0..30).map(|_| normal(&mut rng)).collect());
-        let y = ar.covariance_times(&stretches, &z);
-        let [u, v] = [&x, &y].map(|c| ar.whitened(&stretches, c));
-        let products = |a: &[f64], b: &[f64]| -> f64 {
-            stretches.iter().flat_map(|s| s.clone()).map(|t| a[t] * b[t]).sum()
-        };
-        approx::assert_relative_eq!(products(&u, &v), products(&x, &z), max_relative = 1e-9);
     }
 
     #[test]

@@ -28,12 +28,12 @@ impl LagProducts {
                 *rows += stretch.len().saturating_sub(m);
             }
         }
-        out.add(stretches, values, 1.0);
+        out.add(stretches, values);
         out
     }
 
-    /// Adds so many times the products of another series on the same rows.
-    pub fn add(&mut self, stretches: &[Range<usize>], values: &[f64], times: f64) {
+    /// Adds the products of another series on the same rows.
+    pub fn add(&mut self, stretches: &[Range<usize>], values: &[f64]) {
         let mut running = vec![Vec::new(); self.of_order.len()];
         for stretch in stretches {
             let x = &values[stretch.clone()];
@@ -54,17 +54,17 @@ impl LagProducts {
                 for a in 0..=m {
                     for b in 0..=a {
                         let running = &running[a - b];
-                        of_order[(a, b)] += times * (running[x.len() - a] - running[m - a]);
+                        of_order[(a, b)] += running[x.len() - a] - running[m - a];
                     }
                 }
             }
         }
     }
 
-    /// Adds so many times those of other series, which are no rows of their own.
-    pub fn add_products(&mut self, other: &Self, times: f64) {
+    /// Adds those of other series, which are no rows of their own.
+    pub fn add_products(&mut self, other: &Self) {
         for (sum, part) in self.of_order.iter_mut().zip(&other.of_order) {
-            *sum += times * part;
+            *sum += part;
         }
     }
 
@@ -104,7 +104,7 @@ mod tests {
         let values: Vec<Vec<f64>> = (0..2).map(|_| (0..60).map(|_| normal(&mut rng)).collect()).collect();
         let stretches = [0..3, 5..6, 9..40, 40..44, 50..60];
         let mut products = LagProducts::of(&stretches, &values[0], 4);
-        products.add(&stretches, &values[1], -2.0);
+        products.add(&stretches, &values[1]);
         let filters = [[1.0, -0.5, 0.2, 0.1], [0.0, 0.3, -0.7, 1.0]];
         for order in 3..=4 {
             let rows = || stretches.iter().flat_map(move |s| s.clone().skip(order));
@@ -114,7 +114,7 @@ mod tests {
             let of = |x: &[f64]| -> f64 {
                 rows().map(|t| filtered(x, &filters[0], t) * filtered(x, &filters[1], t)).sum()
             };
-            let sum = of(&values[0]) - 2.0 * of(&values[1]);
+            let sum = of(&values[0]) + of(&values[1]);
             let found = products.between(order, &filters[0], &filters[1]);
             assert_relative_eq!(found, sum, max_relative = 1e-10);
             assert_eq!(products.rows(order), rows().count());

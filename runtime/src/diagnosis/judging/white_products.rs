@@ -51,18 +51,23 @@ pub(in crate::diagnosis) struct Background {
     of_others: Vec<OnceLock<Products>>,
     residual: Vec<f64>,
     /// What the model took of the noise of each joint.
-    taken: Vec<LagProducts>,
+    pub(super) taken: Vec<LagProducts>,
 }
 
 impl Background {
     /// Of a model that leaves `residual`.
     pub fn new(units: &Units, regressors: &Regressors<'_>, residual: &[f64], threads: usize) -> Self {
-        let joints = regressors.of_joint.len();
-        let as_left =
-            parallel::map(threads, joints, |j| Whitening::of(units, regressors, j, (residual, None)));
-        let taken = taken::by_fit(units, regressors, (residual, &as_left), threads);
+        let (joints, p) = (regressors.of_joint.len(), regressors.shared.len());
+        let as_left = parallel::map(threads, joints, |j| {
+            let whitening = Whitening::of(units, regressors, j, (residual, None));
+            (of_joint(units, regressors, j, &[], &[], &whitening), whitening)
+        });
+        let parts = as_left.iter().flat_map(|(products, _)| products.all(units));
+        let whole = parts.fold(DMatrix::zeros(p + 1, p + 1), |sum, part| sum + part);
+        let whitening: Vec<Whitening> = as_left.into_iter().map(|(_, whitening)| whitening).collect();
+        let taken = taken::by_fit(units, regressors, (whole, &whitening), threads);
         let of_joint = |j| {
-            let whitening = Whitening::of(units, regressors, j, (residual, Some((&taken[j], 1.0))));
+            let whitening = Whitening::of(units, regressors, j, (residual, Some(&taken[j])));
             of_joint(units, regressors, j, &[], &[], &whitening)
         };
         Self {
@@ -93,8 +98,7 @@ impl Background {
         if before > 0.0 { squares(residual) / before } else { 1.0 }
     }
 
-    /// What makes a joint white on which a law leaves `residual`. Where that is less than without it, the noise was less too,
-    /// and so was what the model took of it.
+    /// What makes a joint white on which a law leaves `residual`.
     pub(super) fn whitening(
         &self,
         units: &Units,
@@ -102,8 +106,7 @@ impl Background {
         j: usize,
         residual: &[f64],
     ) -> Whitening {
-        let share = self.share(regressors, j, residual);
-        Whitening::of(units, regressors, j, (residual, Some((&self.taken[j], share))))
+        Whitening::of(units, regressors, j, (residual, Some(&self.taken[j])))
     }
 
     /// With a law, given as columns over all rows, that leaves `residual`, and the companions of its joints, all joints

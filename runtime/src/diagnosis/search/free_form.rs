@@ -32,7 +32,7 @@ impl Search<'_> {
         let residual = regression.residual();
         let wanted = |j: usize| {
             let place = Place::Joint(j);
-            !settings.excluded.contains(&(EffectKind::FreeForm, place))
+            settings.may_name(EffectKind::FreeForm, place)
                 && !self.rejected.iter().any(|t| t.effect == EffectKind::FreeForm && t.place == place)
                 && slow_part(regression, &residual, j) >= SLOW_PART_OF_REMAINS
         };

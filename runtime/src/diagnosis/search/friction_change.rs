@@ -93,7 +93,7 @@ impl Search<'_> {
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
         let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
         let beside_laws = settings.beside_laws().least_confidence;
-        let is_excluded = |effect, j| settings.excluded.contains(&(effect, Place::Joint(j)));
+        let is_excluded = |effect, j| !settings.may_name(effect, Place::Joint(j));
         let on_joint = |j: usize| {
             let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
             let (others, background) = own.as_ref().or(baseline.as_ref())?;

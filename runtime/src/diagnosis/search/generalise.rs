@@ -84,6 +84,9 @@ impl Search<'_> {
 
     /// The law of a place beside the model as it is, if it passes the gate.
     pub(super) fn one_law(&self, law: (EffectKind, Place), settings: &Settings) -> Option<Accepted> {
+        if !settings.may_name(law.0, law.1) {
+            return None;
+        }
         let ranked = self.ranked(None);
         let k = ranked.iter().position(|r| {
             let candidate = self.of(r).1;

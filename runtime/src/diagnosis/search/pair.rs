@@ -73,8 +73,12 @@ impl Search<'_> {
     /// Laws of one joint that are no likely accident, as first laws of a pair.
     fn first_laws(&self, settings: &Settings) -> Vec<Accepted> {
         let mut ranked = self.ranked(None);
-        ranked
-            .retain(|r| self.of(r).1.own.len() == 1 && r.verdict.explained_fraction >= settings.least_share);
+        ranked.retain(|r| {
+            let candidate = self.of(r).1;
+            candidate.own.len() == 1
+                && r.verdict.explained_fraction >= settings.least_share
+                && settings.may_name(candidate.effect, candidate.place)
+        });
         ranked.truncate(MOST_FIRSTS);
         let round = RoundEvidence::new(ranked.len());
         let evidence = parallel::map(self.threads(), ranked.len(), |k| match self.gate(&round, &ranked, k) {

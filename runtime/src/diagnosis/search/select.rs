@@ -59,6 +59,9 @@ impl Search<'_> {
                 });
             }
             let (regression, candidate) = self.of(&ranked[k]);
+            if !settings.may_name(candidate.effect, candidate.place) {
+                continue;
+            }
             let verdict = &ranked[k].verdict;
             let Some(most) = self.waveform_confidence(&ranked[k], rounds, settings) else { continue };
             if regression.design.is_single_motion()

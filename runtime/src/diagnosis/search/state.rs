@@ -4,6 +4,7 @@ use crate::diagnosis::candidates::candidate::{Candidate, build, proposals};
 use crate::diagnosis::candidates::spectrum::{order_spectrum, peaks};
 use crate::diagnosis::candidates::trial::columns;
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::objection::Objection;
 use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{PEAKS, SPECTRUM_STANDSTILL_FACTOR};
@@ -63,7 +64,7 @@ impl<'a> Search<'a> {
         let spectra = order_spectra(&model, slowest, threads);
         let mut lines = all_lines(&model.context, &spectra, slowest, threads);
         for (j, lines) in lines.iter_mut().enumerate() {
-            if settings.excluded.contains(&(EffectKind::TorqueRipple, Place::Joint(j))) {
+            if !settings.may_name(EffectKind::TorqueRipple, Place::Joint(j)) {
                 lines.lines.clear();
             }
         }
@@ -106,31 +107,32 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Goes on from a model without effects with what was found, but without these laws at their places. Changes of friction
-    /// and transients come last, and so once more.
+    /// Goes on from a model without effects with what was found, but for what there are objections to: where that is still
+    /// possible it stays a rival of others. Changes of friction and transients come last, and so once more.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
     pub fn go_on_without(
         &mut self,
-        excluded: &[(EffectKind, Place)],
+        objections: &[Objection],
         without_effects: ExtendedModel<'a>,
     ) -> Result<(), SingularDesign> {
+        let against = |law: (EffectKind, Place)| objections.iter().find(|o| (o.effect, o.place) == law);
         let mut found = std::mem::replace(&mut self.model, without_effects).terms;
         found.retain(|t| {
             t.effect != EffectKind::FrictionLevelChange
                 && !t.is_transient
-                && !excluded.contains(&(t.effect, t.place))
+                && against((t.effect, t.place)).is_none()
         });
         self.model.terms = found;
         self.rejected.clear();
         self.ties.clear();
         self.small.clear();
         for candidates in [&mut self.slow, &mut self.fast] {
-            candidates.retain(|c| !excluded.contains(&(c.effect, c.place)));
+            candidates.retain(|c| against((c.effect, c.place)).is_none_or(|o| o.still_possible));
         }
         for (j, lines) in self.lines.iter_mut().enumerate() {
-            if excluded.contains(&(EffectKind::TorqueRipple, Place::Joint(j))) {
+            if against((EffectKind::TorqueRipple, Place::Joint(j))).is_some() {
                 lines.lines.clear();
             }
         }

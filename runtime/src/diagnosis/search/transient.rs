@@ -72,6 +72,10 @@ impl Search<'_> {
         k: usize,
         settings: &Settings,
     ) -> Option<Winner> {
+        let candidate = self.of(&ranked[k]).1;
+        if !settings.may_name(candidate.effect, candidate.place) {
+            return None;
+        }
         let gate = self.gate_of_any(round, ranked, k).filter(|gate| gate.is_event)?;
         let evidence = gate.calibrated.evidence();
         let confidence = evidence.confidence(self.tries());
