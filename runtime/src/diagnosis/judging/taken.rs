@@ -136,7 +136,7 @@ mod tests {
             let background = Background::new(&units, &regressors, &left, 1);
             let as_left = LagProducts::of(&units.stretches[0], &left, HIGHEST_AR_ORDER);
             let mut given_back = as_left.clone();
-            given_back.add_products(&background.taken[0]);
+            given_back.add_products(&background.taken[0], 1.0);
             for (sum, products) in sums.iter_mut().zip([as_left, given_back]) {
                 let squares = products.between(0, &[1.0], &[1.0]);
                 sum[0] += products.between(1, &[1.0, 0.0], &[0.0, 1.0]) / squares;

@@ -67,7 +67,7 @@ impl Background {
         let whitening: Vec<Whitening> = as_left.into_iter().map(|(_, whitening)| whitening).collect();
         let taken = taken::by_fit(units, regressors, (whole, &whitening), threads);
         let of_joint = |j| {
-            let whitening = Whitening::of(units, regressors, j, (residual, Some(&taken[j])));
+            let whitening = Whitening::of(units, regressors, j, (residual, Some((&taken[j], 1.0))));
             of_joint(units, regressors, j, &[], &[], &whitening)
         };
         Self {
@@ -98,7 +98,8 @@ impl Background {
         if before > 0.0 { squares(residual) / before } else { 1.0 }
     }
 
-    /// What makes a joint white on which a law leaves `residual`.
+    /// What makes a joint white on which a law leaves `residual`. Where that is less than without it, the noise was less too,
+    /// and so was what the model took of it.
     pub(super) fn whitening(
         &self,
         units: &Units,
@@ -106,7 +107,8 @@ impl Background {
         j: usize,
         residual: &[f64],
     ) -> Whitening {
-        Whitening::of(units, regressors, j, (residual, Some(&self.taken[j])))
+        let share = self.share(regressors, j, residual);
+        Whitening::of(units, regressors, j, (residual, Some((&self.taken[j], share))))
     }
 
     /// With a law, given as columns over all rows, that leaves `residual`, and the companions of its joints, all joints

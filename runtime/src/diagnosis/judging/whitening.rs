@@ -19,20 +19,21 @@ pub(super) struct Whitening {
 }
 
 impl Whitening {
-    /// Of a model that leaves a residual and took these products of the noise, beside what is free in every motion.
+    /// Of a model that leaves a residual and took so many times these products of the noise, beside what is free in every
+    /// motion.
     pub fn of(
         units: &Units,
         regressors: &Regressors<'_>,
         j: usize,
-        (residual, taken): (&[f64], Option<&LagProducts>),
+        (residual, taken): (&[f64], Option<(&LagProducts, f64)>),
     ) -> Self {
         let range = &regressors.of_joint[j];
         let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
         let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
         let left = without_free(units, j, range, &residual[range.clone()], &regressors.free[j]);
         let mut noise = LagProducts::of(&stretches, &left, HIGHEST_AR_ORDER);
-        if let Some(taken) = taken {
-            noise.add_products(taken);
+        if let Some((taken, times)) = taken {
+            noise.add_products(taken, times);
         }
         let ar = Autoregression::of(&noise);
         let free = regressors.free[j].iter().map(|c| ar.whitened(&stretches, c)).collect();
