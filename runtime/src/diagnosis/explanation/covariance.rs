@@ -6,7 +6,6 @@ use crate::diagnosis::judging::white_products::Background;
 use crate::diagnosis::rules::UNDETERMINED;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::effects::{EffectTerm, SmoothingWindow};
-use nalgebra::DMatrix;
 
 /// Upper triangle, row by row, of the covariance of the base parameters and of the amplitudes of `terms`, of which the
 /// first `columns.len()` have the given columns of the slow rows; those that have none vary by themselves with their
@@ -28,12 +27,8 @@ pub(in crate::diagnosis) fn upper(
     let background = Background::new(&bench.units, &regressors, &residual, threads);
     let products = background.with(&bench.units, &regressors, &[], &residual);
     let p = design.columns.len();
-    let mut information = DMatrix::zeros(p + 1, p + 1);
-    products.files.iter().for_each(|file| information += file);
-    if let Some(prior) = regressors.prior {
-        prior.add_to_products(&mut information, p);
-    }
-    let information = information.view((0, 0), (p, p)).into_owned();
+    let whole = products.whole(&bench.units, &regressors, p);
+    let information = whole.view((0, 0), (p, p)).into_owned();
     let (factor, scale) = factored(&information)?;
     let inverse = factor.inverse();
     // Place and standard deviation that is at least there.

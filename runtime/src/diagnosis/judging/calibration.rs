@@ -14,7 +14,7 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::uneven_noise::of_noise;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
-use crate::diagnosis::judging::white_products::{Background, Products};
+use crate::diagnosis::judging::white_products::{Background, Products, sum};
 use crate::diagnosis::rules::OWN_FRACTION;
 use crate::statistics::moderation::{Prior, Variance};
 use nalgebra::DMatrix;
@@ -93,7 +93,7 @@ pub(in crate::diagnosis) fn calibrate(
     let products = background.with(units, regressors, law.columns, law.residual);
     let (p, k, common) = (regressors.shared.len(), law.columns.len(), law.common);
     let change = units.change();
-    let whole = whole(units, &products, regressors, p + k);
+    let whole = products.whole(units, regressors, p + k);
     let found = if change {
         Wald::of(&whole, &sum(&products.files, |f| units.is_target(f)), (p, k), common)?
     } else {
@@ -163,7 +163,7 @@ pub(in crate::diagnosis) fn beside(
     let (p, k, o) = (regressors.shared.len(), law.columns.len(), other.len());
     let both: Vec<Vec<f64>> = other.iter().chain(law.columns).cloned().collect();
     let products = background.with(units, regressors, &both, law.residual);
-    let mut whole = whole(units, &products, regressors, p + o + k);
+    let mut whole = products.whole(units, regressors, p + o + k);
     let part = if units.change() {
         sum(&products.files, |f| units.is_target(f))
     } else {
@@ -195,22 +195,6 @@ pub(in crate::diagnosis) fn rival_p_value(law: &Calibrated, rival: &Calibrated, 
     let lambda = law.lambda.max(rival.lambda);
     let deviation = 2.0 * (lambda * law.squares).max(f64::MIN_POSITIVE).sqrt();
     Normal::standard().sf(ahead / deviation)
-}
-
-fn sum(list: &[DMatrix<f64>], taken: impl Fn(usize) -> bool) -> DMatrix<f64> {
-    let width = list.first().map_or(0, DMatrix::nrows);
-    let taken = list.iter().enumerate().filter(|(i, _)| taken(*i)).map(|(_, m)| m);
-    taken.fold(DMatrix::zeros(width, width), |sum, m| sum + m)
-}
-
-/// Inner products of all motion, with what is known of its columns beforehand; `y` is the column of the torque. What is free
-/// in every motion is so in each whole one where there is a baseline.
-fn whole(units: &Units, products: &Products, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
-    let mut whole = sum(products.all(units), |_| true);
-    if let Some(prior) = regressors.prior {
-        prior.add_to_products(&mut whole, y);
-    }
-    whole
 }
 
 /// How much a model of the robot before knows a law to differ between motions: on the joint of it where that is most.

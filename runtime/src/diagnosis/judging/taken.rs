@@ -10,24 +10,21 @@ use crate::diagnosis::judging::lag_products::LagProducts;
 use crate::diagnosis::judging::projection::{Projection, inner_products};
 use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::units::Units;
-use crate::diagnosis::judging::whitening::{Whitening, local_or_empty};
+use crate::diagnosis::judging::whitening::{Whitening, rows_of_motion};
 use crate::diagnosis::rules::HIGHEST_AR_ORDER;
 use crate::parallel;
 use nalgebra::DMatrix;
 
-/// The products X C X' on the rows of each joint, given the inner products of the white columns and torque of all motion, and
-/// what made those of each joint white; nothing where they are not finite.
+/// The products X C X' on the rows of each joint, given the inner products of the white columns of all motion and what is
+/// known of them beforehand, and what made those of each joint white; nothing where they are not finite.
 pub(super) fn by_fit(
     units: &Units,
     regressors: &Regressors<'_>,
-    (mut whole, whitening): (DMatrix<f64>, &[Whitening]),
+    (whole, whitening): (&DMatrix<f64>, &[Whitening]),
     threads: usize,
 ) -> Vec<LagProducts> {
     let p = regressors.shared.len();
-    if let Some(prior) = regressors.prior {
-        prior.add_to_products(&mut whole, p);
-    }
-    let model = Projection::of(&whole, p);
+    let model = Projection::of(whole, p);
     parallel::map(threads, whitening.len(), |j| {
         let mut taken = LagProducts::zero(HIGHEST_AR_ORDER);
         let Some(model) = &model else { return taken };
@@ -60,8 +57,7 @@ fn add_free(
     let both: Vec<&[f64]> = white_free.iter().chain(&white).map(Vec::as_slice).collect();
     let mut of_free = vec![vec![0.0; range.len()]; f];
     for file in 0..units.files() {
-        let of_file = (0..units.units.len()).filter(|&u| units.units[u].file == file);
-        let rows: Vec<_> = of_file.map(|u| local_or_empty(&units.rows[j][u], range)).collect();
+        let rows: Vec<_> = rows_of_motion(units, j, file, range).collect();
         let zero = DMatrix::zeros(both.len(), both.len());
         let products = rows.iter().fold(zero, |sum, rows| sum + inner_products(&both, rows.clone()));
         let Some(model) = Projection::of(&products, f) else { continue };

@@ -28,9 +28,23 @@ impl Products {
         Self { units: vec![zero.clone(); units.units.len()], files: vec![zero; units.files()], companions }
     }
 
-    /// Those of all motion, in parts: what is free in every motion is so in each whole one where there is a baseline.
-    pub fn all(&self, units: &Units) -> &[DMatrix<f64>] {
-        if units.change() { &self.files } else { &self.units }
+    /// Those of all motion, with what is known of the columns beforehand; `y` is the column of the torque. What is free in every
+    /// motion is so in each whole one where there is a baseline.
+    pub fn whole(&self, units: &Units, regressors: &Regressors<'_>, y: usize) -> DMatrix<f64> {
+        let mut whole = sum(if units.change() { &self.files } else { &self.units }, |_| true);
+        if let Some(prior) = regressors.prior {
+            prior.add_to_products(&mut whole, y);
+        }
+        whole
+    }
+
+    /// Those of several joints together, which have the same columns.
+    fn of_all<'p>(units: &Units, width: usize, parts: impl Iterator<Item = &'p Self>) -> Self {
+        let places: Vec<usize> = (0..width).collect();
+        parts.fold(Self::zero(units, width, 0), |mut sum, part| {
+            sum.add(part, &places);
+            sum
+        })
     }
 
     /// Adds those of one joint, whose columns stand at `places` here.
@@ -58,14 +72,14 @@ impl Background {
     /// Of a model that leaves `residual`.
     pub fn new(units: &Units, regressors: &Regressors<'_>, residual: &[f64], threads: usize) -> Self {
         let (joints, p) = (regressors.of_joint.len(), regressors.shared.len());
-        let as_left = parallel::map(threads, joints, |j| {
+        let (as_left, whitening): (Vec<Products>, Vec<Whitening>) = parallel::map(threads, joints, |j| {
             let whitening = Whitening::of(units, regressors, j, (residual, None));
             (of_joint(units, regressors, j, &[], &[], &whitening), whitening)
-        });
-        let parts = as_left.iter().flat_map(|(products, _)| products.all(units));
-        let whole = parts.fold(DMatrix::zeros(p + 1, p + 1), |sum, part| sum + part);
-        let whitening: Vec<Whitening> = as_left.into_iter().map(|(_, whitening)| whitening).collect();
-        let taken = taken::by_fit(units, regressors, (whole, &whitening), threads);
+        })
+        .into_iter()
+        .unzip();
+        let whole = Products::of_all(units, p + 1, as_left.iter()).whole(units, regressors, p);
+        let taken = taken::by_fit(units, regressors, (&whole, &whitening), threads);
         let of_joint = |j| {
             let whitening = Whitening::of(units, regressors, j, (residual, Some((&taken[j], 1.0))));
             of_joint(units, regressors, j, &[], &[], &whitening)
@@ -82,12 +96,8 @@ impl Background {
     fn of_others(&self, units: &Units, joint: usize) -> &Products {
         self.of_others[joint].get_or_init(|| {
             let width = self.of_joint[joint].units.first().map_or(0, DMatrix::nrows);
-            let mut sum = Products::zero(units, width, 0);
-            let places: Vec<usize> = (0..width).collect();
-            for (_, part) in self.of_joint.iter().enumerate().filter(|(j, _)| *j != joint) {
-                sum.add(part, &places);
-            }
-            sum
+            let others = self.of_joint.iter().enumerate().filter(|(j, _)| *j != joint);
+            Products::of_all(units, width, others.map(|(_, part)| part))
         })
     }
 
@@ -221,6 +231,13 @@ fn project(g: &DMatrix<f64>, f: usize) -> DMatrix<f64> {
     let Some(free) = Projection::of(g, f) else { return rest };
     let white = free.white(g, f, n);
     rest - white.tr_mul(&white)
+}
+
+/// The sum of those matrices of a list that are taken.
+pub(super) fn sum(list: &[DMatrix<f64>], taken: impl Fn(usize) -> bool) -> DMatrix<f64> {
+    let width = list.first().map_or(0, DMatrix::nrows);
+    let taken = list.iter().enumerate().filter(|(i, _)| taken(*i)).map(|(_, m)| m);
+    taken.fold(DMatrix::zeros(width, width), |sum, m| sum + m)
 }
 
 fn add(sum: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {

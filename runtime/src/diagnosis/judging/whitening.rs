@@ -68,10 +68,7 @@ fn without_free(
         return left;
     }
     for file in 0..units.files() {
-        let rows: Vec<usize> = (0..units.units.len())
-            .filter(|&u| units.units[u].file == file)
-            .flat_map(|u| local_or_empty(&units.rows[j][u], range))
-            .collect();
+        let rows: Vec<usize> = rows_of_motion(units, j, file, range).flatten().collect();
         let f = free.len();
         let g = DMatrix::from_fn(f, f, |a, b| rows.iter().map(|&r| free[a][r] * free[b][r]).sum::<f64>());
         let b = DVector::from_fn(f, |a, _| rows.iter().map(|&r| free[a][r] * residual[r]).sum::<f64>());
@@ -83,6 +80,17 @@ fn without_free(
         }
     }
     left
+}
+
+/// The rows of each unit of a motion as places among those of a joint.
+pub(super) fn rows_of_motion(
+    units: &Units,
+    j: usize,
+    file: usize,
+    of: &Range<usize>,
+) -> impl Iterator<Item = Range<usize>> {
+    let of_motion = units.units.iter().zip(&units.rows[j]).filter(move |(unit, _)| unit.file == file);
+    of_motion.map(|(_, rows)| local_or_empty(rows, of))
 }
 
 /// The rows of a unit as places among those of a joint.

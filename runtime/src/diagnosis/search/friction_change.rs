@@ -93,7 +93,6 @@ impl Search<'_> {
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
         let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
         let beside_laws = settings.beside_laws().least_confidence;
-        let is_excluded = |effect, j| !settings.may_name(effect, Place::Joint(j));
         let on_joint = |j: usize| {
             let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
             let (others, background) = own.as_ref().or(baseline.as_ref())?;
@@ -106,12 +105,17 @@ impl Search<'_> {
                 1.0,
             ));
             let sure = confidence >= beside_laws;
-            let excluded = match change {
-                Change::Friction | Change::Either => is_excluded(EffectKind::FrictionLevelChange, j),
-                Change::DriveGain => is_excluded(DRIVE_GAIN, j),
+            let effect = match change {
+                Change::Friction | Change::Either => EffectKind::FrictionLevelChange,
+                Change::DriveGain => DRIVE_GAIN,
             };
             let significance = evidence.significance;
-            (sure && !excluded).then_some(Changed { joint: j, change, significance, confidence })
+            (sure && settings.may_name(effect, Place::Joint(j))).then_some(Changed {
+                joint: j,
+                change,
+                significance,
+                confidence,
+            })
         };
         let mut changed: Vec<Changed> =
             parallel::map(self.threads(), joints, on_joint).into_iter().flatten().collect();
