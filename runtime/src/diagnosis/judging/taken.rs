@@ -15,6 +15,26 @@ use crate::diagnosis::rules::HIGHEST_AR_ORDER;
 use crate::parallel;
 use nalgebra::DMatrix;
 
+/// What a model takes of the noise of a joint.
+pub(super) struct Taken {
+    /// Of what it takes, with itself.
+    pub products: LagProducts,
+    /// Variance of the innovations of what it leaves, which that of its parameters and so the products are in proportion to.
+    innovations: f64,
+}
+
+impl Taken {
+    /// Adds to noise, whose innovations have such a variance, what the model takes of it. Lasting noise has most of its squares
+    /// where the model has its columns, and a law that follows it takes most of those; of the innovations it takes no more than
+    /// its numbers' share, while a law that is there takes what it had driven.
+    pub fn add_to(&self, noise: &mut LagProducts, innovations: f64) {
+        let times = innovations / self.innovations;
+        if times.is_finite() {
+            noise.add_products(&self.products, times);
+        }
+    }
+}
+
 /// The products X C X' on the rows of each joint, given the inner products of the white columns of all motion and what is
 /// known of them beforehand, and what made those of each joint white; nothing where they are not finite.
 pub(super) fn by_fit(
@@ -22,22 +42,23 @@ pub(super) fn by_fit(
     regressors: &Regressors<'_>,
     (whole, whitening): (&DMatrix<f64>, &[Whitening]),
     threads: usize,
-) -> Vec<LagProducts> {
+) -> Vec<Taken> {
     let p = regressors.shared.len();
     let model = Projection::of(whole, p);
     parallel::map(threads, whitening.len(), |j| {
-        let mut taken = LagProducts::zero(HIGHEST_AR_ORDER);
-        let Some(model) = &model else { return taken };
         let (whitening, range) = (&whitening[j], &regressors.of_joint[j]);
+        let innovations = whitening.ar.innovations();
+        let mut products = LagProducts::zero(HIGHEST_AR_ORDER);
+        let Some(model) = &model else { return Taken { products, innovations } };
         let mut columns: Vec<Vec<f64>> =
             regressors.shared.iter().map(|c| c[range.clone()].to_vec()).collect();
-        add_free(&mut taken, &mut columns, (units, regressors, j), whitening);
+        add_free(&mut products, &mut columns, (units, regressors, j), whitening);
         let table = DMatrix::from_fn(p, range.len(), |i, t| columns[i][t]);
         let table = model.white(&table, 0, range.len()).transpose();
         for series in table.column_iter() {
-            taken.add(&whitening.stretches, series.as_slice());
+            products.add(&whitening.stretches, series.as_slice());
         }
-        taken
+        Taken { products, innovations }
     })
 }
 
@@ -132,7 +153,7 @@ mod tests {
             let background = Background::new(&units, &regressors, &left, 1);
             let as_left = LagProducts::of(&units.stretches[0], &left, HIGHEST_AR_ORDER);
             let mut given_back = as_left.clone();
-            given_back.add_products(&background.taken[0], 1.0);
+            given_back.add_products(&background.taken[0].products, 1.0);
             for (sum, products) in sums.iter_mut().zip([as_left, given_back]) {
                 let squares = products.between(0, &[1.0], &[1.0]);
                 sum[0] += products.between(1, &[1.0, 0.0], &[0.0, 1.0]) / squares;

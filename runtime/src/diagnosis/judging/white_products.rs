@@ -3,10 +3,9 @@
 //! The residual of each joint is made white by an autoregression, its columns with it, and what is free in every motion
 //! (its friction level, where there is a baseline) is projected out.
 
-use crate::diagnosis::judging::lag_products::LagProducts;
 use crate::diagnosis::judging::projection::{Projection, inner_products};
 use crate::diagnosis::judging::regressors::Regressors;
-use crate::diagnosis::judging::taken;
+use crate::diagnosis::judging::taken::{self, Taken};
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::whitening::{Whitening, local_or_empty};
 use crate::diagnosis::rules::FREED;
@@ -65,7 +64,7 @@ pub(in crate::diagnosis) struct Background {
     of_others: Vec<OnceLock<Products>>,
     residual: Vec<f64>,
     /// What the model took of the noise of each joint.
-    pub(super) taken: Vec<LagProducts>,
+    pub(super) taken: Vec<Taken>,
 }
 
 impl Background {
@@ -81,7 +80,7 @@ impl Background {
         let whole = Products::of_all(units, p + 1, as_left.iter()).whole(units, regressors, p);
         let taken = taken::by_fit(units, regressors, (&whole, &whitening), threads);
         let of_joint = |j| {
-            let whitening = Whitening::of(units, regressors, j, (residual, Some((&taken[j], 1.0))));
+            let whitening = Whitening::of(units, regressors, j, (residual, Some(&taken[j])));
             of_joint(units, regressors, j, &[], &[], &whitening)
         };
         Self {
@@ -108,8 +107,7 @@ impl Background {
         if before > 0.0 { squares(residual) / before } else { 1.0 }
     }
 
-    /// What makes a joint white on which a law leaves `residual`. Where that is less than without it, the noise was less too,
-    /// and so was what the model took of it.
+    /// What makes a joint white on which a law leaves `residual`.
     pub(super) fn whitening(
         &self,
         units: &Units,
@@ -117,8 +115,7 @@ impl Background {
         j: usize,
         residual: &[f64],
     ) -> Whitening {
-        let share = self.share(regressors, j, residual);
-        Whitening::of(units, regressors, j, (residual, Some((&self.taken[j], share))))
+        Whitening::of(units, regressors, j, (residual, Some(&self.taken[j])))
     }
 
     /// With a law, given as columns over all rows, that leaves `residual`, and the companions of its joints, all joints

@@ -4,6 +4,7 @@ use crate::diagnosis::judging::ar::Autoregression;
 use crate::diagnosis::judging::lag_products::LagProducts;
 use crate::diagnosis::judging::projection::factored;
 use crate::diagnosis::judging::regressors::Regressors;
+use crate::diagnosis::judging::taken::Taken;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rules::HIGHEST_AR_ORDER;
 use nalgebra::{DMatrix, DVector};
@@ -19,23 +20,23 @@ pub(super) struct Whitening {
 }
 
 impl Whitening {
-    /// Of a model that leaves a residual and took so many times these products of the noise, beside what is free in every
-    /// motion.
+    /// Of a model that leaves a residual and took a part of the noise, beside what is free in every motion.
     pub fn of(
         units: &Units,
         regressors: &Regressors<'_>,
         j: usize,
-        (residual, taken): (&[f64], Option<(&LagProducts, f64)>),
+        (residual, taken): (&[f64], Option<&Taken>),
     ) -> Self {
         let range = &regressors.of_joint[j];
         let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
         let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
         let left = without_free(units, j, range, &residual[range.clone()], &regressors.free[j]);
         let mut noise = LagProducts::of(&stretches, &left, HIGHEST_AR_ORDER);
-        if let Some((taken, times)) = taken {
-            noise.add_products(taken, times);
+        let mut ar = Autoregression::of(&noise);
+        if let Some(taken) = taken {
+            taken.add_to(&mut noise, ar.innovations());
+            ar = Autoregression::of(&noise);
         }
-        let ar = Autoregression::of(&noise);
         let free = regressors.free[j].iter().map(|c| ar.whitened(&stretches, c)).collect();
         Self { stretches, ar, free }
     }
