@@ -191,6 +191,10 @@ pub(super) const TOLD_APART: f64 = 0.05;
 // ---- Calibration --------------------------------------------------------------------------------------------------
 // What a law's statistic is where nothing has changed is measured: between units of the baseline, or of the recording.
 
+/// Share of the level of a law in noise of uneven sizes that goes to the test by signs: where it decides, it is certain by
+/// orders of magnitude, and the other one should hardly be the weaker for it.
+pub(super) const LEVEL_OF_SIGNS: f64 = 0.1;
+
 /// Highest order of the autoregression that makes a residual white. Statistics: half a second of slow rows; the order
 /// itself is chosen by the Bayesian information criterion.
 pub(super) const HIGHEST_AR_ORDER: usize = 12;

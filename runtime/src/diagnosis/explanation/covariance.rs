@@ -25,7 +25,7 @@ pub(in crate::diagnosis) fn upper(
     let nothing_free = vec![Vec::new(); design.joints];
     let regressors = Regressors { free: &nothing_free, ..bench.regressors(design) };
     let background = Background::new(&bench.units, &regressors, &residual, threads);
-    let products = background.with(&bench.units, &regressors, &[], &residual);
+    let products = background.with(&bench.units, &regressors, &[], &residual).products;
     let p = design.columns.len();
     let whole = products.whole(&bench.units, &regressors, p);
     let information = whole.view((0, 0), (p, p)).into_owned();

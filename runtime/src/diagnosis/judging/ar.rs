@@ -57,11 +57,6 @@ impl Autoregression {
         Self { coefficients, deviations: variances.into_iter().map(f64::sqrt).collect() }
     }
 
-    /// Variance of the error of the prediction of the order that was chosen.
-    pub fn innovations(&self) -> f64 {
-        self.deviations.last().map_or(0.0, |deviation| deviation * deviation)
-    }
-
     /// Order that was chosen.
     #[cfg(test)]
     pub fn order(&self) -> usize {

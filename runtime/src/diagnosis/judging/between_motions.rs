@@ -41,7 +41,7 @@ pub(in crate::diagnosis) fn between_motions(
         let mut free = friction.to_vec();
         free[j] = held.to_vec();
         let bound = Regressors { free: &free, ..*regressors };
-        let products = background.with(units, &bound, &level, residual);
+        let products = background.with(units, &bound, &level, residual).products;
         let of_unit = |c: &Compared| c.wald(&products.units[*c.units.first()?], (p, level.len()));
         let compared = with_other_motions(units, &products, p, taken)?;
         let own: Vec<f64> = compared.iter().filter_map(of_unit).map(|wald| wald.mean()).collect();

@@ -14,8 +14,8 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::uneven_noise::of_noise;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
-use crate::diagnosis::judging::white_products::{Background, Products, sum};
-use crate::diagnosis::rules::OWN_FRACTION;
+use crate::diagnosis::judging::white_products::{Background, Products, WithLaw, sum};
+use crate::diagnosis::rules::{LEVEL_OF_SIGNS, OWN_FRACTION};
 use crate::statistics::moderation::{Prior, Variance};
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -31,6 +31,8 @@ pub(in crate::diagnosis) struct Calibrated {
     pub lambda: f64,
     /// Degrees of freedom that this mean is known with.
     pub freedom: f64,
+    /// Where noise is not of one size: the share of the statistic that signs at random leave (`uneven_noise`).
+    pub of_signs: Option<f64>,
     /// Least Wald statistic where one unit of the recording is left out; 0 where the law then turns round.
     pub without_any: f64,
 }
@@ -38,12 +40,22 @@ pub(in crate::diagnosis) struct Calibrated {
 impl Calibrated {
     /// How sure it is that the law is there.
     pub fn evidence(&self) -> Evidence {
-        Evidence::fisher(self.squares / self.lambda, self.numbers, self.freedom)
+        self.of(self.squares)
     }
 
     /// How sure it is whichever unit of the recording is left out.
     pub fn evidence_without_any(&self) -> Evidence {
-        Evidence::fisher(self.without_any / self.lambda, self.numbers, self.freedom)
+        self.of(self.without_any)
+    }
+
+    fn of(&self, squares: f64) -> Evidence {
+        let by_variance = Evidence::fisher(squares / self.lambda, self.numbers, self.freedom);
+        let Some(share) = self.of_signs else { return by_variance };
+        let by_signs = Evidence::fisher(squares * share, self.numbers, f64::INFINITY);
+        // The better of two tests, which share the level (weighted Bonferroni; Genovese, Roeder and Wasserman 2006).
+        let p_value =
+            (by_variance.p_value / (1.0 - LEVEL_OF_SIGNS)).min(by_signs.p_value / LEVEL_OF_SIGNS).min(1.0);
+        Evidence { p_value, ..by_variance }
     }
 }
 
@@ -90,7 +102,7 @@ pub(in crate::diagnosis) fn calibrate(
     background: &Background,
     law: &Law<'_>,
 ) -> Option<Calibrated> {
-    let products = background.with(units, regressors, law.columns, law.residual);
+    let WithLaw { products, whitening } = background.with(units, regressors, law.columns, law.residual);
     let (p, k, common) = (regressors.shared.len(), law.columns.len(), law.common);
     let change = units.change();
     let whole = products.whole(units, regressors, p + k);
@@ -132,11 +144,13 @@ pub(in crate::diagnosis) fn calibrate(
     } else {
         found.squares
     };
-    let between = Calibrated { squares: found.squares, numbers: found.numbers, lambda, freedom, without_any };
+    let (squares, numbers) = (found.squares, found.numbers);
+    let between = Calibrated { squares, numbers, lambda, freedom, of_signs: None, without_any };
     // Noise that is loud where the law is large leaves doubt that no other unit or law shows.
-    let uneven = of_noise(units, regressors, law, (&found, background)).map(|noise| Calibrated {
-        lambda: noise.value.max(1.0),
-        freedom: noise.freedom,
+    let uneven = of_noise(units, regressors, law, (&found, &whitening)).map(|noise| Calibrated {
+        lambda: noise.variance.value.max(1.0),
+        freedom: noise.variance.freedom,
+        of_signs: Some(noise.of_signs),
         ..between
     });
     Some(uneven.filter(|uneven| uneven.evidence().p_value > between.evidence().p_value).unwrap_or(between))
@@ -162,7 +176,7 @@ pub(in crate::diagnosis) fn beside(
 ) -> Option<Beside> {
     let (p, k, o) = (regressors.shared.len(), law.columns.len(), other.len());
     let both: Vec<Vec<f64>> = other.iter().chain(law.columns).cloned().collect();
-    let products = background.with(units, regressors, &both, law.residual);
+    let products = background.with(units, regressors, &both, law.residual).products;
     let mut whole = products.whole(units, regressors, p + o + k);
     let part = if units.change() {
         sum(&products.files, |f| units.is_target(f))

@@ -95,7 +95,7 @@ fn judged(rng: &mut Pcg64, files: usize, baseline: bool, amplitude: f64, spread:
         of_joint: std::slice::from_ref(&all),
     };
     let found = alone(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
-    [found.evidence(), Calibrated { lambda: 1.0, freedom: f64::INFINITY, ..found }.evidence()]
+    [found.evidence(), Calibrated { lambda: 1.0, freedom: f64::INFINITY, of_signs: None, ..found }.evidence()]
 }
 
 fn rates(seed: u64, files: usize, baseline: bool, amplitude: f64, spread: f64, level: f64) -> [f64; 2] {
@@ -261,7 +261,7 @@ fn a_law_that_is_large_where_the_noise_is_has_the_variance_of_that_noise() {
     };
     let sure = |found: &Calibrated| found.evidence().p_value < level;
     let with_one_variance =
-        |found: &Calibrated| Calibrated { lambda: 1.0, ..*found }.evidence().p_value < level;
+        |found: &Calibrated| Calibrated { lambda: 1.0, of_signs: None, ..*found }.evidence().p_value < level;
     let naive = share_of(1.0, 0.0, &with_one_variance);
     assert!(naive > 0.04, "{naive}");
     let size = share_of(1.0, 0.0, &sure);

@@ -61,10 +61,10 @@ impl LagProducts {
         }
     }
 
-    /// Adds so many times those of other series, which are no rows of their own.
-    pub fn add_products(&mut self, other: &Self, times: f64) {
+    /// Adds those of other series, which are no rows of their own.
+    pub fn add_products(&mut self, other: &Self) {
         for (sum, part) in self.of_order.iter_mut().zip(&other.of_order) {
-            *sum += times * part;
+            *sum += part;
         }
     }
 

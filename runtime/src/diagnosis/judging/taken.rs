@@ -12,54 +12,27 @@ use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::whitening::{Whitening, rows_of_motion};
 use crate::diagnosis::rules::HIGHEST_AR_ORDER;
-use crate::parallel;
 use nalgebra::DMatrix;
 
-/// What a model takes of the noise of a joint.
-pub(super) struct Taken {
-    /// Of what it takes, with itself.
-    pub products: LagProducts,
-    /// Variance of the innovations of what it leaves, which that of its parameters and so the products are in proportion to.
-    innovations: f64,
-}
-
-impl Taken {
-    /// Adds to noise, whose innovations have such a variance, what the model takes of it. Lasting noise has most of its squares
-    /// where the model has its columns, and a law that follows it takes most of those; of the innovations it takes no more than
-    /// its numbers' share, while a law that is there takes what it had driven.
-    pub fn add_to(&self, noise: &mut LagProducts, innovations: f64) {
-        let times = innovations / self.innovations;
-        if times.is_finite() {
-            noise.add_products(&self.products, times);
-        }
-    }
-}
-
-/// The products X C X' on the rows of each joint, given the inner products of the white columns of all motion and what is
-/// known of them beforehand, and what made those of each joint white; nothing where they are not finite.
+/// The products X C X' on the rows of a joint, given the model that all motion and what is known beforehand make of the white
+/// columns, with those of a law after the model's own, and what made the joint white.
 pub(super) fn by_fit(
     units: &Units,
-    regressors: &Regressors<'_>,
-    (whole, whitening): (&DMatrix<f64>, &[Whitening]),
-    threads: usize,
-) -> Vec<Taken> {
-    let p = regressors.shared.len();
-    let model = Projection::of(whole, p);
-    parallel::map(threads, whitening.len(), |j| {
-        let (whitening, range) = (&whitening[j], &regressors.of_joint[j]);
-        let innovations = whitening.ar.innovations();
-        let mut products = LagProducts::zero(HIGHEST_AR_ORDER);
-        let Some(model) = &model else { return Taken { products, innovations } };
-        let mut columns: Vec<Vec<f64>> =
-            regressors.shared.iter().map(|c| c[range.clone()].to_vec()).collect();
-        add_free(&mut products, &mut columns, (units, regressors, j), whitening);
-        let table = DMatrix::from_fn(p, range.len(), |i, t| columns[i][t]);
-        let table = model.white(&table, 0, range.len()).transpose();
-        for series in table.column_iter() {
-            products.add(&whitening.stretches, series.as_slice());
-        }
-        Taken { products, innovations }
-    })
+    (regressors, law): (&Regressors<'_>, &[Vec<f64>]),
+    j: usize,
+    (model, whitening): (&Projection, &Whitening),
+) -> LagProducts {
+    let range = &regressors.of_joint[j];
+    let mut taken = LagProducts::zero(HIGHEST_AR_ORDER);
+    let mut columns: Vec<Vec<f64>> =
+        regressors.shared.iter().chain(law).map(|c| c[range.clone()].to_vec()).collect();
+    add_free(&mut taken, &mut columns, (units, regressors, j), whitening);
+    let table = DMatrix::from_fn(columns.len(), range.len(), |i, t| columns[i][t]);
+    let table = model.white(&table, 0, range.len()).transpose();
+    for series in table.column_iter() {
+        taken.add(&whitening.stretches, series.as_slice());
+    }
+    taken
 }
 
 /// Adds what columns that are free in each motion take there, and takes out of the others what those make of them.
@@ -103,7 +76,7 @@ mod tests {
     use super::*;
     use crate::diagnosis::judging::testing::correlated;
     use crate::diagnosis::judging::units::Unit;
-    use crate::diagnosis::judging::white_products::Background;
+    use crate::diagnosis::judging::white_products::of_joint;
     use nalgebra::DVector;
     use rand::SeedableRng;
     use rand_pcg::Pcg64;
@@ -114,7 +87,7 @@ mod tests {
     const SLOW: f64 = 0.98;
 
     /// Means of the products of noise with itself a row later, as shares of its squares, and of these squares, as shares of their
-    /// expectation: of what least squares leave, and of that with what they took. Columns of the model and of one that is free in
+    /// expectation: of what least squares leave, and of that with what they took. Columns of the model, of a law and of one that is free in
     /// each of two motions, of which the second is the recording, last longer than the noise.
     fn remembered(runs: usize) -> [[f64; 2]; 2] {
         let mut rng = Pcg64::seed_from_u64(6);
@@ -141,8 +114,10 @@ mod tests {
                 duration: 6.0,
                 target_duration: 6.0,
             };
+            // The last column is a law's.
+            let (model, law) = shared.split_at(shared.len() - 1);
             let regressors = Regressors {
-                shared: &shared,
+                shared: model,
                 y: &noise,
                 free: &free,
                 companions: &[vec![]],
@@ -150,10 +125,13 @@ mod tests {
                 between_motions: &[],
                 of_joint: std::slice::from_ref(&all),
             };
-            let background = Background::new(&units, &regressors, &left, 1);
             let as_left = LagProducts::of(&units.stretches[0], &left, HIGHEST_AR_ORDER);
             let mut given_back = as_left.clone();
-            given_back.add_products(&background.taken[0].products, 1.0);
+            let whitening = Whitening::of(&units, &regressors, 0, (&left, None));
+            let products = of_joint(&units, &regressors, 0, law, &[], &whitening);
+            let m = regressors.shared.len() + law.len();
+            let model = Projection::of(&products.whole(&units, &regressors, m), m).expect("finite");
+            given_back.add_products(&by_fit(&units, (&regressors, law), 0, (&model, &whitening)));
             for (sum, products) in sums.iter_mut().zip([as_left, given_back]) {
                 let squares = products.between(0, &[1.0], &[1.0]);
                 sum[0] += products.between(1, &[1.0, 0.0], &[0.0, 1.0]) / squares;

@@ -5,7 +5,7 @@
 
 use crate::diagnosis::judging::projection::{Projection, inner_products};
 use crate::diagnosis::judging::regressors::Regressors;
-use crate::diagnosis::judging::taken::{self, Taken};
+use crate::diagnosis::judging::taken;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::whitening::{Whitening, local_or_empty};
 use crate::diagnosis::rules::FREED;
@@ -63,31 +63,22 @@ pub(in crate::diagnosis) struct Background {
     /// Of all joints but one, each when it is first asked for.
     of_others: Vec<OnceLock<Products>>,
     residual: Vec<f64>,
-    /// What the model took of the noise of each joint.
-    pub(super) taken: Vec<Taken>,
+    /// What makes each joint white.
+    whitening: Vec<Whitening>,
 }
 
 impl Background {
     /// Of a model that leaves `residual`.
     pub fn new(units: &Units, regressors: &Regressors<'_>, residual: &[f64], threads: usize) -> Self {
-        let (joints, p) = (regressors.of_joint.len(), regressors.shared.len());
-        let (as_left, whitening): (Vec<Products>, Vec<Whitening>) = parallel::map(threads, joints, |j| {
-            let whitening = Whitening::of(units, regressors, j, (residual, None));
-            (of_joint(units, regressors, j, &[], &[], &whitening), whitening)
-        })
-        .into_iter()
-        .unzip();
-        let whole = Products::of_all(units, p + 1, as_left.iter()).whole(units, regressors, p);
-        let taken = taken::by_fit(units, regressors, (&whole, &whitening), threads);
-        let of_joint = |j| {
-            let whitening = Whitening::of(units, regressors, j, (residual, Some(&taken[j])));
-            of_joint(units, regressors, j, &[], &[], &whitening)
-        };
+        let joints: Vec<usize> = (0..regressors.of_joint.len()).collect();
+        let nothing = Products::zero(units, regressors.shared.len() + 1, 0);
+        let whitening = whitening(units, (regressors, &[]), residual, (&joints, nothing), threads);
+        let of_joint = |j: usize| of_joint(units, regressors, j, &[], &[], &whitening[j]);
         Self {
-            of_joint: parallel::map(threads, joints, of_joint),
-            of_others: regressors.of_joint.iter().map(|_| OnceLock::new()).collect(),
+            of_joint: parallel::map(threads, joints.len(), of_joint),
+            of_others: joints.iter().map(|_| OnceLock::new()).collect(),
             residual: residual.to_vec(),
-            taken,
+            whitening,
         }
     }
 
@@ -100,24 +91,6 @@ impl Background {
         })
     }
 
-    /// The squares that a law leaves on a joint, as a share of those without it.
-    fn share(&self, regressors: &Regressors<'_>, j: usize, residual: &[f64]) -> f64 {
-        let squares = |x: &[f64]| x[regressors.of_joint[j].clone()].iter().map(|x| x * x).sum::<f64>();
-        let before = squares(&self.residual);
-        if before > 0.0 { squares(residual) / before } else { 1.0 }
-    }
-
-    /// What makes a joint white on which a law leaves `residual`.
-    pub(super) fn whitening(
-        &self,
-        units: &Units,
-        regressors: &Regressors<'_>,
-        j: usize,
-        residual: &[f64],
-    ) -> Whitening {
-        Whitening::of(units, regressors, j, (residual, Some(&self.taken[j])))
-    }
-
     /// With a law, given as columns over all rows, that leaves `residual`, and the companions of its joints, all joints
     /// together. Those of joints whose residual the law leaves as it was are the background's.
     pub fn with(
@@ -126,37 +99,37 @@ impl Background {
         regressors: &Regressors<'_>,
         law: &[Vec<f64>],
         residual: &[f64],
-    ) -> Products {
-        let (p, k) = (regressors.shared.len(), law.len());
+    ) -> WithLaw {
+        let (p, k, joints) = (regressors.shared.len(), law.len(), regressors.of_joint.len());
+        let acts_on: Vec<bool> = (0..joints).map(|j| regressors.acts_on(law, j)).collect();
         // Through the parameters that joints share, a law on one joint frees others of what it had left there.
-        let frees = |j: usize| self.share(regressors, j, residual) < 1.0 - FREED;
-        let own: Vec<bool> = (0..regressors.of_joint.len()).map(|j| regressors.acts_on(law, j)).collect();
-        let companions = (0..own.len()).filter(|&j| own[j]).map(|j| regressors.companions[j].len()).sum();
-        let mut out = Products::zero(units, p + k + 1 + companions, companions);
-        let mut first = p + k + 1;
+        let is_freed = |j: usize| {
+            let squares = |x: &[f64]| x[regressors.of_joint[j].clone()].iter().map(|x| x * x).sum::<f64>();
+            squares(residual) < (1.0 - FREED) * squares(&self.residual)
+        };
+        let (of_law, rest): (Vec<usize>, Vec<usize>) = (0..joints).partition(|&j| acts_on[j] || is_freed(j));
         // Without the law, y is the column after the p of the model.
         let without_law: Vec<usize> = (0..p).chain([p + k]).collect();
-        let mut rest: Vec<usize> = (0..own.len()).collect();
-        let whitening = |j: usize| self.whitening(units, regressors, j, residual);
-        if let [joint] = (0..own.len()).filter(|&j| own[j] || frees(j)).collect::<Vec<_>>()[..] {
-            out.add(self.of_others(units, joint), &without_law);
-            rest = vec![joint];
+        let mut others = Products::zero(units, p + k + 1, 0);
+        if let [joint] = of_law[..] {
+            others.add(self.of_others(units, joint), &without_law);
+        } else {
+            rest.iter().for_each(|&j| others.add(&self.of_joint[j], &without_law));
         }
-        for j in rest {
-            if own[j] {
-                let companions = &regressors.companions[j];
-                let part = of_joint(units, regressors, j, law, companions, &whitening(j));
-                let places: Vec<usize> = (0..p + k + 1).chain(first..first + companions.len()).collect();
-                first += companions.len();
-                out.add(&part, &places);
-            } else if frees(j) {
-                let part = of_joint(units, regressors, j, &[], &[], &whitening(j));
-                out.add(&part, &without_law);
-            } else {
-                out.add(&self.of_joint[j], &without_law);
-            }
+        let companions =
+            |j: usize| if acts_on[j] { regressors.companions[j].as_slice() } else { Default::default() };
+        let number = of_law.iter().map(|&j| companions(j).len()).sum();
+        let mut products = Products::zero(units, p + k + 1 + number, number);
+        products.add(&others, &(0..p + k + 1).collect::<Vec<usize>>());
+        let whitening = whitening(units, (regressors, law), residual, (&of_law, others), 1);
+        let mut first = p + k + 1;
+        for (&j, whitening) in of_law.iter().zip(&whitening) {
+            let part = of_joint(units, regressors, j, law, companions(j), whitening);
+            let places: Vec<usize> = (0..p + k + 1).chain(first..first + companions(j).len()).collect();
+            first += companions(j).len();
+            products.add(&part, &places);
         }
-        out
+        WithLaw { products, whitening: of_law.into_iter().zip(whitening).collect() }
     }
 
     /// Without a law, and with companions of one joint.
@@ -170,15 +143,46 @@ impl Background {
         let width = regressors.shared.len() + 1;
         let mut out = Products::zero(units, width + companions.len(), companions.len());
         out.add(self.of_others(units, joint), &(0..width).collect::<Vec<usize>>());
-        let whitening = self.whitening(units, regressors, joint, &self.residual);
-        let own = of_joint(units, regressors, joint, &[], companions, &whitening);
+        let own = of_joint(units, regressors, joint, &[], companions, &self.whitening[joint]);
         out.add(&own, &(0..width + companions.len()).collect::<Vec<usize>>());
         out
     }
 }
 
+/// Inner products with a law.
+pub(in crate::diagnosis) struct WithLaw {
+    pub products: Products,
+    /// What makes each joint white that the law acts on or frees.
+    pub(super) whitening: Vec<(usize, Whitening)>,
+}
+
+/// What makes joints white on which a model with a law leaves `residual`: an autoregression of that and of what the model took of
+/// the noise, given the inner products `[columns, law, y]` of all other joints. What was taken is that of generalised least
+/// squares with an autoregression of the residual alone.
+fn whitening(
+    units: &Units,
+    (regressors, law): (&Regressors<'_>, &[Vec<f64>]),
+    residual: &[f64],
+    (joints, others): (&[usize], Products),
+    threads: usize,
+) -> Vec<Whitening> {
+    let (mut all, m) = (others, regressors.shared.len() + law.len());
+    let as_left = parallel::map(threads, joints.len(), |i| {
+        let whitening = Whitening::of(units, regressors, joints[i], (residual, None));
+        (of_joint(units, regressors, joints[i], law, &[], &whitening), whitening)
+    });
+    let places: Vec<usize> = (0..=m).collect();
+    as_left.iter().for_each(|(part, _)| all.add(part, &places));
+    let model = Projection::of(&all.whole(units, regressors, m), m);
+    parallel::map(threads, joints.len(), |i| {
+        let of_model = |model| taken::by_fit(units, (regressors, law), joints[i], (model, &as_left[i].1));
+        let taken = model.as_ref().map(of_model);
+        Whitening::of(units, regressors, joints[i], (residual, taken.as_ref()))
+    })
+}
+
 /// Inner products of `[columns, law, y, companions]` on one joint, made white, without what the free columns make.
-fn of_joint(
+pub(super) fn of_joint(
     units: &Units,
     regressors: &Regressors<'_>,
     j: usize,

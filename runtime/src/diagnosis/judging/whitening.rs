@@ -4,7 +4,6 @@ use crate::diagnosis::judging::ar::Autoregression;
 use crate::diagnosis::judging::lag_products::LagProducts;
 use crate::diagnosis::judging::projection::factored;
 use crate::diagnosis::judging::regressors::Regressors;
-use crate::diagnosis::judging::taken::Taken;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::rules::HIGHEST_AR_ORDER;
 use nalgebra::{DMatrix, DVector};
@@ -25,18 +24,17 @@ impl Whitening {
         units: &Units,
         regressors: &Regressors<'_>,
         j: usize,
-        (residual, taken): (&[f64], Option<&Taken>),
+        (residual, taken): (&[f64], Option<&LagProducts>),
     ) -> Self {
         let range = &regressors.of_joint[j];
         let local = |r: &Range<usize>| r.start - range.start..r.end - range.start;
         let stretches: Vec<Range<usize>> = units.stretches[j].iter().map(local).collect();
         let left = without_free(units, j, range, &residual[range.clone()], &regressors.free[j]);
         let mut noise = LagProducts::of(&stretches, &left, HIGHEST_AR_ORDER);
-        let mut ar = Autoregression::of(&noise);
         if let Some(taken) = taken {
-            taken.add_to(&mut noise, ar.innovations());
-            ar = Autoregression::of(&noise);
+            noise.add_products(taken);
         }
+        let ar = Autoregression::of(&noise);
         let free = regressors.free[j].iter().map(|c| ar.whitened(&stretches, c)).collect();
         Self { stretches, ar, free }
     }
