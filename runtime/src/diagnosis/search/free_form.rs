@@ -7,6 +7,7 @@
 
 use crate::diagnosis::candidates::free_form::{Judged, Screened, screen};
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rules::{FREE_FORM_SHARE, NEARLY_AS_MUCH, RIVALS, SLOW_PART_OF_REMAINS, TOLD_APART};
 use crate::diagnosis::search::round::Winner;
@@ -41,17 +42,24 @@ impl Search<'_> {
         for j in joints {
             let screened = screen(&model.context, regression, j, model.change, self.threads());
             tried += screened.tried;
-            let best = |list: &[Judged]| list.first().map_or(0.0, |j| j.verdict.total());
-            let most_gained = best(&screened.single).max(best(&screened.pairs));
+            let firsts = [&screened.single, &screened.pairs].into_iter().filter_map(|list| list.first());
+            let most = |(gain, share): (f64, f64), law: &Judged| {
+                (gain.max(law.verdict.total()), share.max(law.verdict.explained_fraction))
+            };
+            let (most_gained, largest_share) = firsts.fold((0.0, 0.0), most);
             let mut laws = fewest_variables(regression, screened);
             let least = settings.least_share.max(FREE_FORM_SHARE * slow_part(regression, &residual, j));
             if laws.first().is_none_or(|law| law.verdict.explained_fraction < least) {
                 continue;
             }
-            let nearly = NEARLY_AS_MUCH * most_gained;
+            // On rows of another width gains have other units.
+            let is_nearly_as_much = |window: SmoothingWindow, verdict: &Verdict| match window {
+                SmoothingWindow::Slow => verdict.total() >= NEARLY_AS_MUCH * most_gained,
+                SmoothingWindow::Fast => verdict.explained_fraction >= NEARLY_AS_MUCH * largest_share,
+            };
             // What the catalogue says with fewer numbers is no new law, even where it is not certain or was told as small.
-            if !self.ranked(Some(j)).iter().any(|r| r.verdict.total() >= nearly)
-                && self.most_of_small(j) < nearly
+            if !self.ranked(Some(j)).iter().any(|r| is_nearly_as_much(r.window, &r.verdict))
+                && !self.small_on(j).any(|(window, verdict)| is_nearly_as_much(window, &verdict))
             {
                 let rivals = not_told_from_first(regression, &laws, self.threads());
                 chosen.push((laws.swap_remove(0), rivals));
@@ -80,14 +88,13 @@ impl Search<'_> {
         found
     }
 
-    /// The most that a law which was told as small on a joint, or one of its rivals, gains beside the model as it is.
-    fn most_of_small(&self, joint: usize) -> f64 {
-        let gains = [SmoothingWindow::Slow, SmoothingWindow::Fast].into_iter().flat_map(|window| {
+    /// How laws which were told as small on a joint, and their rivals, do beside the model as it is.
+    fn small_on(&self, joint: usize) -> impl Iterator<Item = (SmoothingWindow, Verdict)> + '_ {
+        [SmoothingWindow::Slow, SmoothingWindow::Fast].into_iter().flat_map(move |window| {
             let candidates = self.candidates(window).iter();
-            let small = candidates.filter(|c| c.own.contains(&joint) && self.rival_of_small(c));
-            small.filter_map(move |c| Some(self.model.regression(window).judge(c)?.total()))
-        });
-        gains.fold(0.0, f64::max)
+            let small = candidates.filter(move |c| c.own.contains(&joint) && self.rival_of_small(c));
+            small.filter_map(move |c| Some((window, self.model.regression(window).judge(c)?)))
+        })
     }
 
     /// Takes out what the last term of the model, a law over any variables, shows to have been its imitators: laws of
