@@ -30,6 +30,11 @@ impl Regressors<'_> {
         law.iter().any(|c| c[range.clone()].iter().any(|x| *x != 0.0))
     }
 
+    /// Sum of the squares of a column over all rows on those of a joint.
+    pub fn squares_on(&self, joint: usize, column: &[f64]) -> f64 {
+        column[self.of_joint[joint].clone()].iter().map(|x| x * x).sum()
+    }
+
     /// A column of a joint, given as values on its rows, over all rows.
     pub fn on_all_rows(&self, joint: usize, on_joint: &[f64]) -> Vec<f64> {
         let mut column = vec![0.0; self.y.len()];

@@ -87,8 +87,8 @@ mod tests {
     const SLOW: f64 = 0.98;
 
     /// Means of the products of noise with itself a row later, as shares of its squares, and of these squares, as shares of their
-    /// expectation: of what least squares leave, and of that with what they took. Columns of the model, of a law and of one that is free in
-    /// each of two motions, of which the second is the recording, last longer than the noise.
+    /// expectation: of what least squares leave, and of that with what they took. Columns of the model, of a law and of one that
+    /// is free in each of two motions, of which the second is the recording, last longer than the noise.
     fn remembered(runs: usize) -> [[f64; 2]; 2] {
         let mut rng = Pcg64::seed_from_u64(6);
         let mut sums = [[0.0; 2]; 2];

@@ -10,8 +10,8 @@
 //!
 //! A law of many rows does not need to know it. Without the law the residual is as likely to have one sign as the other on
 //! every row, so that its score Σ d e₀, e₀ = d + e, in units of the root of Σ d² e₀², has at most the tail of a normal number
-//! whatever the sizes of the noise (Efron 1969; Pinelis 1994). It is never more certain than its rows are many, and only then
-//! less certain than the former where these are few.
+//! whatever the sizes of the noise (Efron 1969; Pinelis 1994). That is never more certain than the rows are many: where they
+//! are few, their variance tells more.
 
 use crate::diagnosis::judging::calibration::Law;
 use crate::diagnosis::judging::regressors::Regressors;

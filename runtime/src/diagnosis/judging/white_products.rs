@@ -62,7 +62,8 @@ pub(in crate::diagnosis) struct Background {
     of_joint: Vec<Products>,
     /// Of all joints but one, each when it is first asked for.
     of_others: Vec<OnceLock<Products>>,
-    residual: Vec<f64>,
+    /// Squares of the residual of each joint.
+    squares: Vec<f64>,
     /// What makes each joint white.
     whitening: Vec<Whitening>,
 }
@@ -77,7 +78,7 @@ impl Background {
         Self {
             of_joint: parallel::map(threads, joints.len(), of_joint),
             of_others: joints.iter().map(|_| OnceLock::new()).collect(),
-            residual: residual.to_vec(),
+            squares: joints.iter().map(|&j| regressors.squares_on(j, residual)).collect(),
             whitening,
         }
     }
@@ -103,10 +104,7 @@ impl Background {
         let (p, k, joints) = (regressors.shared.len(), law.len(), regressors.of_joint.len());
         let acts_on: Vec<bool> = (0..joints).map(|j| regressors.acts_on(law, j)).collect();
         // Through the parameters that joints share, a law on one joint frees others of what it had left there.
-        let is_freed = |j: usize| {
-            let squares = |x: &[f64]| x[regressors.of_joint[j].clone()].iter().map(|x| x * x).sum::<f64>();
-            squares(residual) < (1.0 - FREED) * squares(&self.residual)
-        };
+        let is_freed = |j: usize| regressors.squares_on(j, residual) < (1.0 - FREED) * self.squares[j];
         let (of_law, rest): (Vec<usize>, Vec<usize>) = (0..joints).partition(|&j| acts_on[j] || is_freed(j));
         // Without the law, y is the column after the p of the model.
         let without_law: Vec<usize> = (0..p).chain([p + k]).collect();
