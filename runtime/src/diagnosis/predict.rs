@@ -2,7 +2,8 @@
 
 use super::error::DiagnosisError;
 use super::reference::Reference;
-use super::rows::context::{Carried, Context};
+use super::rows::additions::Additions;
+use super::rows::context::Context;
 use super::rows::scales::scales;
 use super::rows::signals::Signals;
 use crate::effects::{EffectTerm, Scale};
@@ -22,7 +23,7 @@ pub fn joint_scales(model: &dyn Model, motions: &[Motion], chi: &[f64]) -> Vec<S
 /// evaluated on, see [`crate::prediction::Predictor`].
 ///
 /// `chi` are the base parameters that were identified together with the terms; laws that follow the load feel the bodies
-/// among these, too. Contacts belong to the recording they
+/// among these, and those that follow or hear the torque of a drive the other laws of that drive, too. Contacts belong to the recording they
 /// were seen in and add nothing.
 ///
 /// # Errors
@@ -51,10 +52,7 @@ pub(super) fn torques_on(
         return Ok(out);
     }
     let mut context = Context::new(model, signals, scales(model, signals, chi), chi.to_vec())?;
-    let carried = Carried::among(model.robot(), terms);
-    if !carried.is_empty() {
-        context.update(chi.to_vec(), carried);
-    }
+    context.take(Additions::among(model.robot(), terms));
     for term in terms.iter().filter(|t| t.distortion().is_none()) {
         if let (Some(j), Some(scale)) = (term.place.law_of(), term.scale)
             && j < n

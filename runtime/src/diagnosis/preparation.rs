@@ -132,7 +132,7 @@ impl Prepared {
                 rows.prior = Some(Arc::new(prior.loosened(rules::LOOSE_REFERENCE)));
                 let fit = Fit::weighted(&rows, &self.sigma)?;
                 let chi = fit.chi.iter().take(rows.parameters).copied().collect();
-                context.update(chi, context.carried().to_vec());
+                context.update(chi);
             }
             let found =
                 Skew::of(&context, rows)?.expected(self.delay - of_reference, usual_deviation(&context));

@@ -223,7 +223,7 @@ impl<'a> Course<'a> {
         if contacts.is_some() {
             let fit = Fit::weighted(&rows.slow, &prepared.sigma)?;
             let chi = fit.chi.iter().take(rows.slow.parameters).copied().collect();
-            context.update(chi, context.carried().to_vec());
+            context.update(chi);
         }
         let extended = ExtendedModel::new(context, rows.slow, rows.fast, self.change)?;
         let mut search = Search::new(extended, &motions.slowest, settings, self.progress);

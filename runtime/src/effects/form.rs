@@ -2,6 +2,7 @@
 
 use super::compliance::{self, Compliance};
 use super::coupled::CoupledRotor;
+use super::free_law::FreeLaw;
 use super::joint_law::{JointLaw, Scale};
 use super::place::Place;
 use super::rigid_body::BodyOnLink;
@@ -113,6 +114,21 @@ impl Form {
             Self::Coupled => CoupledRotor::shape_search(),
             Self::User => place.law().map_or_else(ShapeSearch::none, UserLaw::shape_search),
             Self::Sensitivity(_) | Self::Body(_) | Self::Window | Self::Free => ShapeSearch::none(),
+        }
+    }
+
+    /// Whether a law of a shape, in a robot of so many joints, looks at the torque of a drive: it follows what the other laws
+    /// of that drive are.
+    pub fn looks_at_torque(self, shape: &[f64], joints: usize) -> bool {
+        match self {
+            Self::Joint(law) | Self::Heard(law) => law.looks_at_torque(),
+            Self::Free => FreeLaw::from_shape(shape, joints).is_some_and(|law| law.looks_at_torque()),
+            Self::Sensitivity(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::User => false,
         }
     }
 

@@ -114,6 +114,11 @@ impl FreeLaw {
         std::iter::once(self.together.code()).chain(self.axes.iter().flat_map(axis)).collect()
     }
 
+    /// Whether one of its variables is the torque of a drive.
+    pub fn looks_at_torque(&self) -> bool {
+        self.axes.iter().any(|axis| matches!(axis.variable, Variable::Torque(_)))
+    }
+
     /// The law that a shape means in a robot of so many joints; `None` where it means none.
     pub fn from_shape(shape: &[f64], joints: usize) -> Option<Self> {
         let (code, rest) = shape.split_first()?;

@@ -66,7 +66,7 @@ pub struct At {
     pub link: f64,
     /// What of it gravity asks for: the load of a motion that is infinitely slow.
     pub gravity: f64,
-    /// Torque of the standard model.
+    /// Torque of the joint's drive: that of the standard model, and of the laws beside it that do not look at it.
     pub torque: f64,
     /// Viscous and Coulomb friction of the standard model.
     pub friction: f64,
@@ -111,6 +111,11 @@ pub trait JointLaw: Sync {
 
     /// Whether a law of this shape looks at [`At::gravity`], which a simulation works out only where it is needed.
     fn needs_gravity(&self, _shape: &[f64]) -> bool {
+        false
+    }
+
+    /// Whether it looks at [`At::torque`], and so follows what the other laws of the joint are.
+    fn looks_at_torque(&self) -> bool {
         false
     }
 

@@ -66,6 +66,11 @@ impl EffectTerm {
         named(self.effect, self.place, &self.shape).id_at(self.place)
     }
 
+    /// Whether it looks at the torque of a drive; `joints`: how many the robot has.
+    pub fn looks_at_torque(&self, joints: usize) -> bool {
+        self.effect.form().looks_at_torque(&self.shape, joints)
+    }
+
     /// What is wrong with a recording, where the term is that and nothing of the robot.
     pub fn distortion(&self) -> Option<Distortion> {
         match self.effect.form() {

@@ -13,7 +13,7 @@ pub enum Variable {
     Acceleration(usize),
     /// Torque that the joint transmits to the links: inertia and gravity.
     Load(usize),
-    /// Torque of the joint's drive, by the standard model.
+    /// Torque of the joint's drive: by the standard model, and by the laws that it has beside it.
     Torque(usize),
     /// Time in the motion.
     Time,

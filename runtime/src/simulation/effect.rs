@@ -76,7 +76,7 @@ impl EffectTorque {
             load,
             link: at.link[self.of],
             gravity: at.gravity[self.of],
-            torque: load + friction + off,
+            torque: load + friction + off + at.effects[self.of],
             friction,
         };
         let mut columns = [0.0; MOST_COLUMNS];
@@ -107,6 +107,10 @@ impl ExtraTorque for EffectTorque {
 
     fn has_dry_friction(&self) -> bool {
         self.at_rest() != AtRest::Smooth
+    }
+
+    fn looks_at_effects(&self) -> bool {
+        self.law.looks_at_torque()
     }
 
     fn needs_gravity(&self) -> bool {

@@ -17,6 +17,8 @@ pub struct Instant<'a> {
     pub link: &'a [f64],
     /// What of it gravity asks for; zero where no effect says that it needs it.
     pub gravity: &'a [f64],
+    /// Torque, dry friction included, of the effects that do not look at it themselves, N.m or N; zero for those.
+    pub effects: &'a [f64],
 }
 
 /// An effect in a simulated robot. Every method has a default that does nothing.
@@ -38,6 +40,11 @@ pub trait ExtraTorque: Send {
 
     /// Whether [`ExtraTorque::dry_friction`] is used.
     fn has_dry_friction(&self) -> bool {
+        false
+    }
+
+    /// Whether [`Instant::effects`] is used: such an effect comes after all others.
+    fn looks_at_effects(&self) -> bool {
         false
     }
 

@@ -2,6 +2,7 @@
 
 use super::SimulationError;
 use super::driven::Driven;
+use super::extra::ExtraTorque;
 use super::plant::Plant;
 use super::state::{Hold, State};
 use super::stiction::{self, Decision};
@@ -79,17 +80,40 @@ impl Plant<'_> {
 
     /// Torques of the effects, and the levels of dry friction with theirs.
     fn add_effects(&mut self, at: &Driven<'_>, right: &mut [f64]) {
-        let &Driven { time, q, dq, hold, .. } = at;
         let n = self.joints;
+        self.work.extra.fill(0.0);
+        self.work.joint_levels.fill([0.0; 2]);
+        self.work.seen.effects.fill(0.0);
+        self.sum_effects(at, |effect| !effect.looks_at_effects());
+        if self.effects.iter().any(|effect| effect.looks_at_effects()) {
+            let Work { seen, extra, joint_levels, .. } = &mut self.work;
+            for (j, sum) in seen.effects.iter_mut().enumerate() {
+                let [backward, forward] = joint_levels[j];
+                *sum = extra[j] + if seen.dq[j] < 0.0 { -backward } else { forward };
+            }
+            self.sum_effects(at, |effect| effect.looks_at_effects());
+        }
         let work = &mut self.work;
         for j in 0..n {
+            right[self.motor[j]] -= work.extra[j];
+        }
+        for (level, element) in work.levels.iter_mut().zip(&self.friction.elements) {
+            let more = element.joint.map_or([0.0; 2], |j| work.joint_levels[j]);
+            *level = more.map(|x| (element.level + x).max(0.0));
+        }
+    }
+
+    /// Adds what some of the effects make to the sums of all.
+    fn sum_effects(&mut self, at: &Driven<'_>, of: impl Fn(&dyn ExtraTorque) -> bool) {
+        let &Driven { time, q, dq, hold, .. } = at;
+        let work = &mut self.work;
+        for j in 0..self.joints {
             work.seen.q[j] = q[self.motor[j]];
             work.seen.dq[j] = dq[self.motor[j]];
         }
-        work.extra.fill(0.0);
-        work.joint_levels.fill([0.0; 2]);
+        let these = || self.effects.iter().filter(|effect| of(effect.as_ref()));
         let seen = work.seen.at(time);
-        self.effects.iter().for_each(|effect| effect.torque(&seen, &mut work.extra));
+        these().for_each(|effect| effect.torque(&seen, &mut work.extra));
         // Where a step passes a reversal before it is cut there, friction of a direction is that of rest: a level that
         // grows with the speed would push on, the further the more.
         for (element, hold) in self.friction.elements.iter().zip(hold) {
@@ -103,14 +127,7 @@ impl Plant<'_> {
             }
         }
         let seen = work.seen.at(time);
-        self.effects.iter().for_each(|effect| effect.dry_friction(&seen, &mut work.joint_levels));
-        for j in 0..n {
-            right[self.motor[j]] -= work.extra[j];
-        }
-        for (level, element) in work.levels.iter_mut().zip(&self.friction.elements) {
-            let more = element.joint.map_or([0.0; 2], |j| work.joint_levels[j]);
-            *level = more.map(|x| (element.level + x).max(0.0));
-        }
+        these().for_each(|effect| effect.dry_friction(&seen, &mut work.joint_levels));
     }
 
     /// Fills `response` = M⁻¹·Gᵀ, A and b for the elements in `chosen`, for accelerations `free` without them.

@@ -45,7 +45,7 @@ impl FreeTorque {
             Variable::Torque(j) => {
                 let [fv, fc, off] = self.friction[j];
                 let sign = if at.dq[j] == 0.0 { 0.0 } else { at.dq[j].signum() };
-                at.load[j] + fv * at.dq[j] + fc * sign + off
+                at.load[j] + fv * at.dq[j] + fc * sign + off + at.effects[j]
             }
             Variable::Time => at.time,
             Variable::TimeSinceReversal(j) => self.since[j].time,
@@ -75,6 +75,10 @@ impl ExtraTorque for FreeTorque {
         let smooth = self.toward(at, 0.0);
         levels[self.joint][0] -= self.toward(at, -1.0) - smooth;
         levels[self.joint][1] += self.toward(at, 1.0) - smooth;
+    }
+
+    fn looks_at_effects(&self) -> bool {
+        self.law.looks_at_torque()
     }
 
     fn has_dry_friction(&self) -> bool {

@@ -37,6 +37,7 @@ pub(super) struct Seen {
     pub(super) load: Vec<f64>,
     pub(super) link: Vec<f64>,
     pub(super) gravity: Vec<f64>,
+    pub(super) effects: Vec<f64>,
 }
 
 impl Work {
@@ -63,6 +64,7 @@ impl Work {
                 load: vec![0.0; n],
                 link: vec![0.0; n],
                 gravity: vec![0.0; n],
+                effects: vec![0.0; n],
             },
             stages: Stages::new(freedom),
             stiff: Stiff::new(freedom),
@@ -75,7 +77,8 @@ impl Work {
 impl Seen {
     /// At a time.
     pub(super) fn at(&self, time: f64) -> Instant<'_> {
-        Instant { time, q: &self.q, dq: &self.dq, load: &self.load, link: &self.link, gravity: &self.gravity }
+        let Self { q, dq, load, link, gravity, effects } = self;
+        Instant { time, q, dq, load, link, gravity, effects }
     }
 }
 

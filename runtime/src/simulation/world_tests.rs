@@ -27,7 +27,15 @@ fn stribeck_friction_raises_the_level_of_both_directions_and_fades_with_speed() 
     let world = World::from_base(&model, &chi).with(&terms);
     let torques = world.torques(&chi, "");
     let level = |dq: f64| {
-        let at = Instant { time: 0.0, q: &[0.3], dq: &[dq], load: &[0.0], link: &[0.0], gravity: &[0.0] };
+        let at = Instant {
+            time: 0.0,
+            q: &[0.3],
+            dq: &[dq],
+            load: &[0.0],
+            link: &[0.0],
+            gravity: &[0.0],
+            effects: &[0.0],
+        };
         let mut levels = [[0.0; 2]];
         torques[0].dry_friction(&at, &mut levels);
         levels[0]
@@ -44,7 +52,15 @@ fn friction_that_bends_upwards_or_takes_off_does_not_hold_a_joint_at_rest() {
         let terms = [term(EffectKind::NonlinearViscous, Place::Joint(0), &[power], &[f])];
         let world = World::from_base(&model, &chi).with(&terms);
         let torques = world.torques(&chi, "");
-        let at = Instant { time: 0.0, q: &[0.3], dq: &[-0.5], load: &[0.0], link: &[0.0], gravity: &[0.0] };
+        let at = Instant {
+            time: 0.0,
+            q: &[0.3],
+            dq: &[-0.5],
+            load: &[0.0],
+            link: &[0.0],
+            gravity: &[0.0],
+            effects: &[0.0],
+        };
         let (mut torque, mut levels) = ([0.0], [[0.0; 2]]);
         torques[0].torque(&at, &mut torque);
         torques[0].dry_friction(&at, &mut levels);
@@ -79,7 +95,15 @@ fn a_joint_that_hears_another_has_a_part_of_its_torque() {
     let (still, mut load) = (vec![0.0; n], vec![0.0; n]);
     let mut torque = |of_second: f64| {
         load[1] = of_second;
-        let at = Instant { time: 0.0, q: &still, dq: &still, load: &load, link: &load, gravity: &still };
+        let at = Instant {
+            time: 0.0,
+            q: &still,
+            dq: &still,
+            load: &load,
+            link: &load,
+            gravity: &still,
+            effects: &still,
+        };
         let mut out = vec![0.0; n];
         torques[0].torque(&at, &mut out);
         out

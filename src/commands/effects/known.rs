@@ -169,7 +169,11 @@ const OF_THE_MOTION: [(&str, &str, &str); 4] = [
     ("q", "rad or m", "position of the joint"),
     ("dq", "rad/s or m/s", "speed of the joint"),
     ("ddq", "rad/s2 or m/s2", "acceleration of the joint"),
-    ("model torque", "N.m or N", "torque of the standard model"),
+    (
+        "model torque",
+        "N.m or N",
+        "torque of the drive: of the standard model and of the other laws of the joint",
+    ),
 ];
 
 /// Whether a name stands in a formula, not as a part of another one.

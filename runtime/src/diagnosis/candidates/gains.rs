@@ -14,7 +14,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// A column per joint, over all rows; none where nothing is carried that was not carried before.
 pub(in crate::diagnosis) fn gain_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
-    if context.carried().iter().all(|body| body.in_baseline) {
+    if context.additions().bodies.iter().all(|body| body.in_baseline) {
         return Vec::new();
     }
     let of_motion = |k: usize| {

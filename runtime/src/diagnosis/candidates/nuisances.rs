@@ -55,19 +55,24 @@ pub(in crate::diagnosis) fn standing_curves(context: &Context<'_>, design: &Desi
 }
 
 /// Torque that the laws of a reference have beyond the one that was taken out of the recorded torques, on all rows: joints that
-/// carry more than the reference knows of have more friction that follows the load. `None` where there is no such body.
+/// carry more than the reference knows of have more friction that follows the load, and a channel hears the laws that are new
+/// on the joint that it hears. `None` where there is nothing of this kind.
 pub(in crate::diagnosis) fn more_of_standing_laws(
     context: &Context<'_>,
     design: &Design,
 ) -> Option<Vec<f64>> {
-    let (reference, before) = (context.reference.as_ref()?, context.carried_before());
-    if context.carried() == before {
+    let (reference, before) = (context.reference.as_ref()?, context.additions_before());
+    let (joints, now) = (context.model.robot().joints(), context.additions());
+    let more_is_heard =
+        now.laws != before.laws && reference.standing().any(|term| term.looks_at_torque(joints));
+    if now.bodies == before.bodies && !more_is_heard {
         return None;
     }
-    let without = context.carrying(before);
-    // In motions of a baseline that the body is not in there is nothing more.
-    let differs: Vec<bool> =
-        (0..context.signals.len()).map(|k| context.chi_in(k) != without.chi_in(k)).collect();
+    let without = context.with(before);
+    // In motions of a baseline that the body or the law is not in there is nothing more.
+    let has_more =
+        |k: usize| context.chi_in(k) != without.chi_in(k) || more_is_heard && context.signals[k].is_target;
+    let differs: Vec<bool> = (0..context.signals.len()).map(has_more).collect();
     let mut more = vec![0.0; design.rows.len()];
     for term in reference.standing() {
         let columns = |context| term_columns_in(context, design, term, |k| differs[k]);

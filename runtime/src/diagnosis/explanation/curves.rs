@@ -24,14 +24,13 @@ pub(in crate::diagnosis) fn abscissa(
     (signal, t): (usize, usize),
 ) -> f64 {
     let s = &context.signals[signal];
-    let torques = context.torques(signal);
     match effect.properties().abscissa {
         Abscissa::Speed => s.dq[joint][t],
         Abscissa::Position => s.q[joint][t],
         Abscissa::Acceleration => s.ddq[joint][t],
-        Abscissa::Load => torques.rigid[joint][t],
-        Abscissa::ModelTorque => torques.total[joint][t],
-        Abscissa::HeardTorque => torques.total[place.law_of().unwrap_or(joint)][t],
+        Abscissa::Load => context.torques(signal).rigid[joint][t],
+        Abscissa::ModelTorque => context.drives(signal)[joint][t],
+        Abscissa::HeardTorque => context.drives(signal)[place.law_of().unwrap_or(joint)][t],
         Abscissa::Time => s.time(t),
         Abscissa::SinceReversal => since_reversal(s, joint, t),
         Abscissa::WaveAngle => {

@@ -8,7 +8,7 @@ use crate::diagnosis::rows::signals::ModelTorques;
 use crate::diagnosis::rows::user::user_columns;
 use crate::effects::{
     At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
-    Transmission, body_columns, derivative,
+    TermScale, Transmission, body_columns, derivative,
 };
 
 impl Context<'_> {
@@ -35,14 +35,23 @@ impl Context<'_> {
 
     /// The same of a law that is part of a model, with the scales that it was made with.
     pub fn series_of_term(&self, signal: usize, term: &EffectTerm) -> Vec<Series> {
-        match (term.effect.form(), term.place, term.scale) {
+        self.series_made_with(signal, (term.effect, term.place, &term.shape, term.scale))
+    }
+
+    /// The same of a law with a shape and the scales that it was made with, where they are not those of the motions.
+    pub(super) fn series_made_with(
+        &self,
+        signal: usize,
+        (effect, place, shape, scale): (EffectKind, Place, &[f64], Option<TermScale>),
+    ) -> Vec<Series> {
+        match (effect.form(), place, scale) {
             (Form::Joint(law), Place::Joint(j), Some(scale)) => {
-                self.of_joint(signal, law, ([j, j], &scale.into()), &term.shape)
+                self.of_joint(signal, law, ([j, j], &scale.into()), shape)
             }
-            (Form::Heard(law), place, Some(scale)) => place.hears().map_or_else(Vec::new, |joints| {
-                self.of_joint(signal, law, (joints, &scale.into()), &term.shape)
-            }),
-            _ => self.series(signal, term.effect, term.place, &term.shape),
+            (Form::Heard(law), place, Some(scale)) => place
+                .hears()
+                .map_or_else(Vec::new, |joints| self.of_joint(signal, law, (joints, &scale.into()), shape)),
+            _ => self.series(signal, effect, place, shape),
         }
     }
 
@@ -76,6 +85,7 @@ impl Context<'_> {
         let s = &self.signals[signal];
         let torques = self.torques(signal);
         let gravity = law.needs_gravity(shape).then(|| &self.gravity(signal)[j]);
+        let drive = law.looks_at_torque().then(|| &self.drives(signal)[j]);
         let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
         let mut out = vec![0.0; columns.len()];
         let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));
@@ -91,7 +101,7 @@ impl Context<'_> {
                 load: torques.rigid[j][t],
                 link: torques.link[j][t],
                 gravity: gravity.map_or(0.0, |g| g[t]),
-                torque: torques.total[j][t],
+                torque: drive.map_or(0.0, |d| d[t]),
                 friction: torques.friction[j][t],
             };
             law.law(scale, shape, &at, memory, &mut out);

@@ -2,45 +2,19 @@
 
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::reference::Reference;
+use crate::diagnosis::rows::additions::{Additions, Carried, DriveLaw};
 use crate::diagnosis::rows::links::Links;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
-use crate::effects::{EffectKind, EffectTerm, Form, Place, Scale, Transmission, derivable};
-use crate::model::{Link, Model, RecursiveModel, Robot};
+use crate::effects::{Scale, Transmission, derivable};
+use crate::model::{Link, Model, RecursiveModel};
 use std::sync::{Arc, OnceLock};
 
-/// A body that was found on the robot. It is not among the parameters `chi`, but the joints carry it: laws that follow the
-/// load feel it.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::diagnosis) struct Carried {
-    /// What it adds to each base parameter.
-    pub chi: Vec<f64>,
-    /// Whether the robot carried it in the baseline too.
-    pub in_baseline: bool,
-}
-
-impl Carried {
-    /// The bodies among terms, by their amplitudes; a body on a link of which the table says that it is none adds nothing.
-    pub fn among<'t>(robot: &Robot, terms: impl IntoIterator<Item = &'t EffectTerm>) -> Vec<Self> {
-        let of = |term: &EffectTerm| Self::of(robot, (term.effect, term.place), &term.amplitude, true);
-        terms.into_iter().filter_map(of).collect()
-    }
-
-    /// The body that a law at a place is; `None` for a law that is none.
-    pub fn of(
-        robot: &Robot,
-        (effect, place): (EffectKind, Place),
-        amplitude: &[f64],
-        in_baseline: bool,
-    ) -> Option<Self> {
-        let Form::Body(_) = effect.form() else { return None };
-        Some(Self { chi: robot.base_of_body(place.link()?, amplitude)?, in_baseline })
-    }
-}
-
-/// What is made of the motions with the base parameters and bodies as they are, each when it is first asked for.
+/// What is made of the motions with the base parameters and additions as they are, each when it is first asked for.
 pub(super) struct Made {
     /// Of each motion.
     torques: Vec<OnceLock<ModelTorques>>,
+    /// Torques of the drives, `[j][t]` of each motion.
+    drives: Vec<OnceLock<Vec<Vec<f64>>>>,
     pub(super) links: Vec<OnceLock<Links>>,
     /// Torques of gravity, `[j][t]` of each motion.
     pub(super) gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
@@ -56,6 +30,7 @@ impl Made {
         }
         Self {
             torques: unasked(motions),
+            drives: unasked(motions),
             links: unasked(motions),
             gravity: unasked(motions),
             inertias: unasked(joints),
@@ -72,7 +47,7 @@ pub(in crate::diagnosis) struct Context<'a> {
     pub scales: Vec<Scale>,
     /// Base parameters, without the bodies that were found.
     pub chi: Vec<f64>,
-    pub(super) carried: Vec<Carried>,
+    pub(super) additions: Additions,
     /// What follows from these; copies share it until they take others.
     pub(super) made: Arc<Made>,
     /// Transmissions that are known in physical units, per joint.
@@ -98,7 +73,7 @@ impl<'a> Context<'a> {
             signals,
             scales,
             chi,
-            carried: Vec::new(),
+            additions: Additions::default(),
             made: Arc::new(Made::nothing(signals.len(), robot.joints())),
             transmissions: Vec::new(),
             reference: None,
@@ -111,19 +86,28 @@ impl<'a> Context<'a> {
         Self { threads, ..self }
     }
 
-    /// The same beside a model of the robot before it changed, and with the bodies that it has.
+    /// The same beside a model of the robot before it changed, and with the bodies and laws that it has.
     pub fn beside(self, reference: Option<Arc<Reference>>) -> Self {
         let mut context = Self { reference, ..self };
-        let carried = context.carried_before();
-        if !carried.is_empty() {
-            context.update(context.chi.clone(), carried);
-        }
+        context.additions = context.additions_before();
+        context.forget();
         context
     }
 
-    /// Takes other base parameters and bodies: loads and model torques follow.
-    pub fn update(&mut self, chi: Vec<f64>, carried: Vec<Carried>) {
-        (self.chi, self.carried) = (chi, carried);
+    /// Takes other base parameters: loads and model torques follow.
+    pub fn update(&mut self, chi: Vec<f64>) {
+        self.chi = chi;
+        self.forget();
+    }
+
+    /// Takes other bodies and laws beside these.
+    pub fn take(&mut self, additions: Additions) {
+        self.additions = additions;
+        self.forget();
+    }
+
+    /// What was made with other parameters or additions is made anew where it is asked for.
+    fn forget(&mut self) {
         self.made = Arc::new(Made::nothing(self.signals.len(), self.model.robot().joints()));
     }
 
@@ -133,11 +117,29 @@ impl<'a> Context<'a> {
             .get_or_init(|| ModelTorques::new(self.model, &self.chi_in(signal), &self.signals[signal]))
     }
 
-    /// A copy that carries these bodies.
-    pub fn carrying(&self, carried: Vec<Carried>) -> Self {
+    /// The torque of each drive, `[j][t]`, which channels hear: that of the standard model and of the laws that the joints
+    /// have beside it and that do not look at it themselves.
+    pub fn drives(&self, signal: usize) -> &[Vec<f64>] {
+        self.made.drives[signal].get_or_init(|| {
+            let mut drives = self.torques(signal).total.clone();
+            let is_there = |law: &&DriveLaw| law.in_baseline || self.signals[signal].is_target;
+            for law in self.additions.laws.iter().filter(is_there) {
+                let made_with = (law.effect, law.place, &law.shape[..], law.scale);
+                for (column, a) in self.series_made_with(signal, made_with).iter().zip(&law.amplitude) {
+                    for (j, values) in column {
+                        drives[*j].iter_mut().zip(values).for_each(|(t, v)| *t += a * v);
+                    }
+                }
+            }
+            drives
+        })
+    }
+
+    /// A copy with these bodies and laws.
+    pub fn with(&self, additions: Additions) -> Self {
         let mut copy = self.clone();
-        if copy.carried != carried {
-            copy.update(self.chi.clone(), carried);
+        if copy.additions != additions {
+            copy.take(additions);
         }
         copy
     }
@@ -147,10 +149,10 @@ impl<'a> Context<'a> {
         self.signals.iter().map(|s| s.rate).fold(f64::INFINITY, f64::min)
     }
 
-    /// Bodies that the reference has.
-    pub fn carried_before(&self) -> Vec<Carried> {
+    /// Bodies and laws that the reference has.
+    pub fn additions_before(&self) -> Additions {
         let effects = self.reference.iter().flat_map(|reference| reference.effects());
-        Carried::among(self.model.robot(), effects)
+        Additions::among(self.model.robot(), effects)
     }
 
     /// Whether there are no motions of a baseline.
@@ -158,16 +160,16 @@ impl<'a> Context<'a> {
         self.signals.iter().all(|s| s.is_target)
     }
 
-    /// Bodies that were found.
-    pub fn carried(&self) -> &[Carried] {
-        &self.carried
+    /// Bodies and laws that the robot has beside its parameters.
+    pub fn additions(&self) -> &Additions {
+        &self.additions
     }
 
     /// Base parameters of the robot in a motion with what it carries there.
     pub fn chi_in(&self, signal: usize) -> Vec<f64> {
         let mut chi = self.chi.clone();
         let is_there = |body: &&Carried| body.in_baseline || self.signals[signal].is_target;
-        for body in self.carried.iter().filter(is_there) {
+        for body in self.additions.bodies.iter().filter(is_there) {
             chi.iter_mut().zip(&body.chi).for_each(|(x, more)| *x += more);
         }
         chi
@@ -176,7 +178,7 @@ impl<'a> Context<'a> {
     /// Torques, `[j][t]`, of the bodies that were not there in the baseline.
     pub fn of_new_bodies(&self, signal: usize) -> Vec<Vec<f64>> {
         let mut chi = vec![0.0; self.chi.len()];
-        for body in self.carried.iter().filter(|body| !body.in_baseline) {
+        for body in self.additions.bodies.iter().filter(|body| !body.in_baseline) {
             chi.iter_mut().zip(&body.chi).for_each(|(x, more)| *x += more);
         }
         ModelTorques::new(self.model, &chi, &self.signals[signal]).rigid

@@ -33,7 +33,6 @@ pub(in crate::diagnosis) fn free_columns(
 /// A variable at every sample of a motion.
 pub(in crate::diagnosis) fn values(context: &Context<'_>, signal: usize, variable: Variable) -> Vec<f64> {
     let s = &context.signals[signal];
-    let torques = context.torques(signal);
     let since = |j: usize, of: fn(&SinceReversal) -> f64| {
         let mut since = SinceReversal::default();
         (0..s.len())
@@ -48,8 +47,8 @@ pub(in crate::diagnosis) fn values(context: &Context<'_>, signal: usize, variabl
         Variable::Position(j) => s.q[j].clone(),
         Variable::Speed(j) => s.dq[j].clone(),
         Variable::Acceleration(j) => s.ddq[j].clone(),
-        Variable::Load(j) => torques.rigid[j].clone(),
-        Variable::Torque(j) => torques.total[j].clone(),
+        Variable::Load(j) => context.torques(signal).rigid[j].clone(),
+        Variable::Torque(j) => context.drives(signal)[j].clone(),
         Variable::Time => (0..s.len()).map(|t| s.time(t)).collect(),
         Variable::TimeSinceReversal(j) => since(j, |s| s.time),
         Variable::TravelSinceReversal(j) => since(j, |s| s.travel),

@@ -9,7 +9,8 @@ use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::judging::skew::usual_deviation;
-use crate::diagnosis::rows::context::{Carried, Context};
+use crate::diagnosis::rows::additions::Additions;
+use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{GAIN_DEVIATION, LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR};
@@ -17,7 +18,6 @@ use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
 use crate::parallel;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The standard model, the effects that were accepted, and both regressions with them.
@@ -90,7 +90,8 @@ impl<'a> ExtendedModel<'a> {
             put_terms(&mut self.slow, (&self.context, self.change), &self.terms, deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
-            self.context.update(chi, self.carried());
+            self.context.update(chi);
+            self.context.take(self.additions());
             if self.follow_errors() && round >= REFITS {
                 break;
             }
@@ -131,16 +132,16 @@ impl<'a> ExtendedModel<'a> {
         deviation_of_gains(&of, before)
     }
 
-    /// Bodies that the robot carries: those of a reference, and those among the terms, with what the slow rows say of them. A
-    /// body that is a change was not there in the baseline.
-    fn carried(&self) -> Vec<Carried> {
-        let robot = self.context.model.robot();
-        let of = |(term, columns): (&Accepted, &Range<usize>)| {
+    /// Bodies and laws that the robot has beside its parameters: those of a reference, and those among the terms, with what the
+    /// slow rows say of them. What is a change was not there in the baseline.
+    fn additions(&self) -> Additions {
+        let mut additions = self.context.additions_before();
+        for (term, columns) in self.terms.iter().zip(&self.slow.term_columns) {
             let amplitude: Vec<f64> = columns.clone().map(|c| self.slow.fit.chi[c]).collect();
-            Carried::of(robot, (term.effect, term.place), &amplitude, !self.change)
-        };
-        let found = self.terms.iter().zip(&self.slow.term_columns).filter_map(of);
-        self.context.carried_before().into_iter().chain(found).collect()
+            let (law, shape) = ((term.effect, term.place), (&term.shape[..], None));
+            additions.add(self.context.model.robot(), law, shape, &amplitude, !self.change);
+        }
+        additions
     }
 
     /// A copy without any term: the standard model.

@@ -74,7 +74,7 @@ pub(in crate::diagnosis) fn along_parameters(
     let along = |i: usize| {
         let (mut chi, mut moved) = (model.context.chi.clone(), model.context.clone());
         chi[i] += deviations[i];
-        moved.update(chi, model.context.carried().to_vec());
+        moved.update(chi);
         let mut slope = torque(&moved);
         slope.iter_mut().zip(&here).for_each(|(there, here)| *there = (*there - here) / deviations[i]);
         (i, slope)

@@ -122,6 +122,10 @@ impl JointLaw for TorqueConstantDrift {
         false
     }
 
+    fn looks_at_torque(&self) -> bool {
+        true
+    }
+
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = at.torque * way(shape, scale.age(at.time));
     }

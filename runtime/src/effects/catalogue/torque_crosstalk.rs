@@ -75,6 +75,10 @@ impl JointLaw for TorqueCrosstalk {
         false
     }
 
+    fn looks_at_torque(&self) -> bool {
+        true
+    }
+
     fn law(&self, _: &Scale, _: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = at.torque;
     }

@@ -20,7 +20,7 @@ const WORDS: Words = Words {
         ("most_torque", "largest torque of the recording"),
         ("exponent", "power of the torque with which it droops"),
         ("knee", "part of the largest torque from which it droops"),
-        ("torque", "torque of the standard model"),
+        ("torque", "torque of the drive: of the standard model and of the other laws of the joint"),
     ],
     put_in: "the law as a torque of the joint",
 };
@@ -104,6 +104,10 @@ impl JointLaw for TorqueSaturation {
     }
 
     fn only_positive(&self) -> bool {
+        true
+    }
+
+    fn looks_at_torque(&self) -> bool {
         true
     }
 
