@@ -3,10 +3,10 @@
 //! It is an additive model of cubic splines (Hastie and Tibshirani 1986; Eilers and Marx 1996), for two variables with
 //! the products of a few bends of each. A speed comes with its direction, at whose change a torque may jump.
 
-use super::spline::{BENDS, SPLINES, bends, steps};
+use super::spline::{BENDS, FINE_SPLINES, SPLINES, bends, steps};
 use super::variable::Variable;
 
-/// How two variables come together.
+/// How the variables come together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Together {
     /// One variable alone.
@@ -17,13 +17,20 @@ pub enum Together {
     Multiplied,
     /// Both.
     Full,
+    /// One variable alone, by a curve with narrow bends.
+    Fine,
 }
 
 impl Together {
-    const ALL: [Self; 4] = [Self::One, Self::Added, Self::Multiplied, Self::Full];
+    const ALL: [Self; 5] = [Self::One, Self::Added, Self::Multiplied, Self::Full, Self::Fine];
 
     fn code(self) -> f64 {
         Self::ALL.iter().position(|t| *t == self).unwrap_or(0) as f64
+    }
+
+    /// Whether there is one variable, and no other that comes to it.
+    fn is_alone(self) -> bool {
+        matches!(self, Self::One | Self::Fine)
     }
 
     fn has_curves(self) -> bool {
@@ -72,12 +79,17 @@ impl Axis {
     }
 
     /// Number of functions of a curve over it.
-    fn curve(&self) -> usize {
-        SPLINES + usize::from(self.variable.has_direction())
+    fn curve(&self, together: Together) -> usize {
+        let steps = if together == Together::Fine { FINE_SPLINES } else { SPLINES };
+        steps + usize::from(self.variable.has_direction())
     }
 
-    fn fill(&self, at: Seen, out: &mut Vec<f64>) {
-        out.extend(steps(self.place(at.value)));
+    fn fill(&self, together: Together, at: Seen, out: &mut Vec<f64>) {
+        let place = self.place(at.value);
+        match together {
+            Together::Fine => out.extend(steps::<FINE_SPLINES>(place)),
+            _ => out.extend(steps::<SPLINES>(place)),
+        }
         if self.variable.has_direction() {
             out.push(at.direction);
         }
@@ -97,6 +109,11 @@ impl FreeLaw {
     /// Over one variable.
     pub fn one(axis: Axis) -> Self {
         Self { together: Together::One, axes: vec![axis] }
+    }
+
+    /// Over one variable, with narrow bends.
+    pub fn fine(axis: Axis) -> Self {
+        Self { together: Together::Fine, axes: vec![axis] }
     }
 
     /// Over two, in each way.
@@ -123,7 +140,7 @@ impl FreeLaw {
     pub fn from_shape(shape: &[f64], joints: usize) -> Option<Self> {
         let (code, rest) = shape.split_first()?;
         let together = Together::ALL.into_iter().find(|t| t.code() == *code)?;
-        let wanted = if together == Together::One { 4 } else { 8 };
+        let wanted = if together.is_alone() { 4 } else { 8 };
         let axis = |a: &[f64]| {
             let variable = Variable::from_code([a[0], a[1]], joints)?;
             let sound = a[2].is_finite() && a[3].is_finite() && a[3] > 0.0;
@@ -144,7 +161,7 @@ impl FreeLaw {
 
     /// Amplitudes, that is columns.
     pub fn amplitudes(&self) -> usize {
-        let curves: usize = self.axes.iter().map(Axis::curve).sum();
+        let curves: usize = self.axes.iter().map(|axis| axis.curve(self.together)).sum();
         let products = match self.axes.as_slice() {
             [a, b] => match (a.variable.has_direction(), b.variable.has_direction()) {
                 (false, false) => BENDS * BENDS,
@@ -162,7 +179,7 @@ impl FreeLaw {
         out.clear();
         if self.together.has_curves() {
             for (axis, at) in self.axes.iter().zip(at) {
-                axis.fill(*at, out);
+                axis.fill(self.together, *at, out);
             }
         }
         if let ([a, b], [at_a, at_b], true) = (self.axes.as_slice(), at, self.together.has_products()) {
@@ -191,7 +208,7 @@ fn products(axes: [&Axis; 2], at: [Seen; 2], out: &mut Vec<f64>) {
             let (speed, other) = if first { (0, 1) } else { (1, 0) };
             let direction = at[speed].direction;
             out.push(direction);
-            out.extend(steps(place(other)).map(|x| direction * x));
+            out.extend(steps::<SPLINES>(place(other)).map(|x| direction * x));
             out.extend(bends(place(other)).map(|x| place(speed) * x));
         }
     }
@@ -208,7 +225,10 @@ mod tests {
     #[test]
     fn a_law_is_the_same_after_it_was_saved() {
         let [q, dq, time] = [Variable::Position(1), Variable::Speed(0), Variable::Time].map(axis);
-        let laws = [FreeLaw::one(q)].into_iter().chain(FreeLaw::two(q, dq)).chain(FreeLaw::two(dq, time));
+        let laws = [FreeLaw::one(q), FreeLaw::fine(q), FreeLaw::fine(dq)]
+            .into_iter()
+            .chain(FreeLaw::two(q, dq))
+            .chain(FreeLaw::two(dq, time));
         for law in laws {
             assert_eq!(FreeLaw::from_shape(&law.shape(), 2), Some(law.clone()));
             let mut out = Vec::new();

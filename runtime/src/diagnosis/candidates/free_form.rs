@@ -44,9 +44,17 @@ pub(in crate::diagnosis) fn screen(
         Some(Judged { law, candidate, verdict })
     };
     let glance = Glance::new(context, regression, joint, &axes);
-    let gains = parallel::map(threads, axes.len(), |k| glance.gain(&FreeLaw::one(axes[k]), &[k]));
+    let gains = parallel::map(threads, axes.len(), |k| {
+        let curves = [FreeLaw::one, FreeLaw::fine].map(|curve| glance.gain(&curve(axes[k]), &[k]));
+        curves[0].max(curves[1])
+    });
     let most = most_gained(&gains, FREE_FORM_SINGLES);
-    let single = sorted(parallel::map(threads, most.len(), |k| judged(&[FreeLaw::one(axes[most[k]])])));
+    // Narrow bends must show on held-out motion: noise that lasts has some of its own.
+    let single = sorted(parallel::map(threads, most.len(), |k| {
+        let curves =
+            [FreeLaw::one, FreeLaw::fine].into_iter().filter_map(|curve| judged(&[curve(axes[most[k]])]));
+        curves.max_by(|a, b| a.verdict.total().total_cmp(&b.verdict.total()))
+    }));
     let pairs: Vec<[usize; 2]> =
         (0..axes.len()).flat_map(|a| (a + 1..axes.len()).map(move |b| [a, b])).collect();
     // Products, and sums with the best variable: it may be half of one.
@@ -65,7 +73,7 @@ pub(in crate::diagnosis) fn screen(
     }
     let judge_pair = |k: usize| judged(&FreeLaw::two(axes[pairs[order[k]][0]], axes[pairs[order[k]][1]]));
     let judged_pairs = sorted(parallel::map(threads, order.len(), judge_pair));
-    Screened { single, pairs: judged_pairs, tried: axes.len() + pairs.len() }
+    Screened { single, pairs: judged_pairs, tried: 2 * axes.len() + pairs.len() }
 }
 
 /// The law over two of these variables that gains most on held-out motion, as a candidate.

@@ -138,7 +138,7 @@ pub(in crate::diagnosis) fn proposal(model: &ExtendedModel<'_>, k: usize) -> Opt
     let robot = model.context.model.robot();
     let own_speed = |a: &&Axis| a.variable == Variable::Speed(joint);
     let (axis, direction) = match (law.axes.as_slice(), law.together) {
-        ([axis], Together::One) => (axis, None),
+        ([axis], Together::One | Together::Fine) => (axis, None),
         (axes, Together::Multiplied) => {
             (axes.iter().find(|a| !own_speed(a))?, Some(axes.iter().find(own_speed)?))
         }
