@@ -63,10 +63,13 @@ impl Track {
         let of_joint = |column: &Vec<f64>| {
             if kept.iter().any(|&r| column[r] != 0.0) { on_kept(column) } else { Vec::new() }
         };
-        let torque = at.iter().map(|&(k, t)| context.torques(k).total[joint][t]).collect();
-        let speed = at.iter().map(|&(k, t)| signals[k].dq[joint][t]).collect();
+        let over = |value: &dyn Fn(usize, usize) -> f64| at.iter().map(|&(k, t)| value(k, t)).collect();
+        let mut sizes: Vec<Vec<f64>> =
+            vec![over(&|k, t| context.torques(k).total[joint][t]), over(&|k, t| signals[k].dq[joint][t])];
+        // Noise of a position, and of a controller that sees it, is felt by every joint that its acceleration turns.
+        sizes.extend((0..design.joints).map(|of| over(&|k, t| context.coupling(k, joint, of)[t])));
         let columns = left.fitted.iter().map(of_joint).collect();
-        Self { joint, motions, beside, sizes: vec![torque, speed], columns }
+        Self { joint, motions, beside, sizes, columns }
     }
 
     /// Number of rows.

@@ -1,7 +1,8 @@
 //! Noise whose size follows the motion.
 //!
-//! The noise of a torque that is a motor's current grows with the torque, that of a gear with its speed. Where one size is
-//! taken for all, the noise of the larger ones passes for pushes. The variance is taken for a constant and parts that are
+//! The noise of a torque that is a motor's current grows with the torque, that of a gear with its speed, and that of a position,
+//! or of a controller that sees it, with the inertia that its acceleration turns. Where one size is taken for all, the noise of
+//! the larger ones passes for pushes. The variance is taken for a constant and parts that are
 //! proportional to squares of such sizes (a variance function, Davidian and Carroll 1987).
 
 use crate::diagnosis::contact::spread::spread;

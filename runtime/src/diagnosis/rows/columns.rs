@@ -210,6 +210,11 @@ impl Context<'_> {
         self.links(signal).inertial(j, acceleration)
     }
 
+    /// The torque on joint `on` for one unit of acceleration of joint `of`, in a motion.
+    pub fn coupling(&self, signal: usize, on: usize, of: usize) -> &[f64] {
+        self.links(signal).coupling(on, of)
+    }
+
     fn links(&self, signal: usize) -> &Links {
         self.made.links[signal]
             .get_or_init(|| Links::new(self.model, &self.chi_in(signal), &self.signals[signal]))

@@ -47,13 +47,18 @@ impl Links {
 
     /// Inertia about a joint, rotor included.
     pub fn inertia(&self, j: usize) -> &[f64] {
-        &self.mass[j * self.joints + j]
+        self.coupling(j, j)
+    }
+
+    /// The torque on joint `on` for one unit of acceleration of joint `of`.
+    pub fn coupling(&self, on: usize, of: usize) -> &[f64] {
+        &self.mass[on * self.joints + of]
     }
 
     /// The torques on all joints that an acceleration of joint j asks for.
     pub fn inertial(&self, j: usize, acceleration: &[f64]) -> Series {
         let n = self.joints;
-        let on = |i: usize| acceleration.iter().zip(&self.mass[i * n + j]).map(|(a, m)| m * a).collect();
+        let on = |i: usize| acceleration.iter().zip(self.coupling(i, j)).map(|(a, m)| m * a).collect();
         (0..n).map(|i| (i, on(i))).collect()
     }
 
