@@ -520,6 +520,9 @@ pub(super) const FORCE_LEAVES: f64 = 9.0;
 pub(super) const UNDETERMINED_FORCE: f64 = 10.0;
 /// Joints whose windows are this close together see the same push, s. Mechanics.
 pub(super) const SCAN_TOGETHER: f64 = 0.2;
+/// Windows of all lengths count as so many of one length for how the noise of two joints goes together there. Statistics: the
+/// correlation of so many is known to a quarter.
+pub(super) const SCAN_COMMON_WINDOWS: f64 = 30.0;
 /// Values beyond so many standard deviations count as no more for the memory of a residual. Statistics.
 pub(super) const SCAN_CLIPPED: f64 = 2.5;
 /// Least variance of the noise of a row, as a part of the mean. Judgement: no sensor is free of noise where a joint bears nothing.

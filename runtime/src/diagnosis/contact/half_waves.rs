@@ -35,12 +35,19 @@ pub(super) struct HalfWaves {
 /// A window of the grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
-    /// Squared deviation of its half wave's amplitude from zero.
-    pub square: f64,
+    /// Amplitude of its half wave in standard deviations.
+    deviation: f64,
     /// First place.
     from: usize,
     /// Number of its length.
     pub length: usize,
+}
+
+impl Window {
+    /// Squared deviation of its half wave's amplitude from zero.
+    pub fn square(&self) -> f64 {
+        self.deviation * self.deviation
+    }
 }
 
 /// The window whose half wave fits best.
@@ -97,14 +104,14 @@ impl HalfWaves {
                 let last = (white.motions[m].length() + 1).saturating_sub(length);
                 for from in (0..last).step_by((length / SCAN_STEPS).max(1)) {
                     if let Some([wave, sigma]) = white.half_wave(m, from..from + length, &mut scratch) {
-                        windows.push(Window { square: (wave / sigma).powi(2), from, length: k });
+                        windows.push(Window { deviation: wave / sigma, from, length: k });
                         deviations.push(wave / sigma);
                     }
                 }
             }
             let factor = widening(&mut deviations, 1.0, rows as f64 / length as f64);
             for (windows, from) in windows.iter_mut().zip(from) {
-                windows[from..].iter_mut().for_each(|w| w.square /= factor * factor);
+                windows[from..].iter_mut().for_each(|w| w.deviation /= factor);
             }
             wider.push(factor);
         }
@@ -127,6 +134,21 @@ impl HalfWaves {
         motions.flat_map(|(m, windows)| windows.iter().map(|window| (m.motion, *window)))
     }
 
+    /// Windows of one of the lengths, `(motion, places)`, that are free: motion and first place, increasing, and deviation.
+    pub fn of_length(
+        &self,
+        length: usize,
+        is_free: impl Fn((usize, [usize; 2])) -> bool,
+    ) -> Vec<([usize; 2], f64)> {
+        let motions = self.white.motions.iter().zip(&self.windows);
+        let of_motion = |(motion, windows): (&Motion, &Vec<Window>)| {
+            let these = windows.iter().filter(|w| w.length == length);
+            let free = these.filter(|w| is_free((motion.motion, self.places(**w))));
+            free.map(|w| ([motion.motion, w.from], w.deviation)).collect::<Vec<_>>()
+        };
+        motions.flat_map(of_motion).collect()
+    }
+
     /// The largest squared deviation of a window in each stretch of the recording, or of its baseline, that has enough rows;
     /// of windows, `(motion, places)`, that are free.
     pub fn largest(&self, target: bool, is_free: impl Fn((usize, [usize; 2])) -> bool) -> Vec<f64> {
@@ -136,7 +158,7 @@ impl HalfWaves {
             let mut out = vec![None::<f64>; motion.length() / stretch];
             for w in windows.iter().filter(|w| is_free((motion.motion, self.places(**w)))) {
                 if let Some(slot) = out.get_mut((w.from + self.widths.lengths[w.length] / 2) / stretch) {
-                    *slot = Some(slot.map_or(w.square, |x| x.max(w.square)));
+                    *slot = Some(slot.map_or(w.square(), |x| x.max(w.square())));
                 }
             }
             let is_filled = |k: &usize| motion.is_filled(k * stretch..(k + 1) * stretch);

@@ -2,10 +2,11 @@
 //!
 //! Half waves of many lengths are fitted to the white residual of every joint (`half_waves`), and how far the largest of their
 //! amplitudes, in standard deviations, goes in a few seconds is read off the recording's own stretches, as an extreme value law
-//! (Gumbel) of their squares (`largest`). A push is felt by all joints at the same time while their noise is their own: what
-//! joints feel in one window adds up. What may be a push on any joint tells nothing of these laws.
+//! (Gumbel) of their squares (`largest`). A push is felt by all joints at the same time: what each of them feels in one
+//! window beyond what their noise has in common (`common`) adds up. What may be a push on any joint tells nothing of these laws.
 
 use crate::diagnosis::contact::absorbed::{Amplitude, put_beside};
+use crate::diagnosis::contact::common::Common;
 use crate::diagnosis::contact::half_waves::{HalfWaves, Refined, Window, lengths, stretches};
 use crate::diagnosis::contact::largest::{Chances, Law};
 use crate::diagnosis::contact::memory::Spread;
@@ -199,7 +200,7 @@ impl<'a> Scan<'a> {
         let mut beyond: Vec<(f64, usize, usize, Window)> = Vec::new();
         for (k, joint) in self.joints.iter().enumerate() {
             let Some(law) = joint.law else { continue };
-            let surprise = |(motion, w): (usize, Window)| (law.surprise(w.square), k, motion, w);
+            let surprise = |(motion, w): (usize, Window)| (law.surprise(w.square()), k, motion, w);
             let windows = joint.waves.of_targets().map(surprise);
             beyond.extend(windows.filter(|(surprise, ..)| self.chances.of_one(*surprise) <= SCAN_SUSPECT));
         }
@@ -231,10 +232,13 @@ impl<'a> Scan<'a> {
         for (joint, mut others) in self.joints.iter_mut().zip(others) {
             joint.law = joint.law.map(|law| law.with_tail(&mut others));
         }
+        let waves: Vec<&HalfWaves> = self.joints.iter().map(|joint| &joint.waves).collect();
+        let common = Common::of(&waves, &self.lengths, |(motion, places)| !self.is_near(motion, places));
         for candidate in &mut self.candidates {
             let of_joint =
-                |(joint, felt): (&Joint<'_>, &Option<f64>)| Some(joint.law?.surprise((*felt)?.powi(2)));
-            let surprise = self.joints.iter().zip(&candidate.felt).filter_map(of_joint).sum();
+                |(joint, felt): (&Joint<'_>, Option<f64>)| Some(joint.law?.surprise(felt?.powi(2)));
+            let alone = common.alone(candidate.places().len(), &candidate.felt);
+            let surprise = self.joints.iter().zip(alone).filter_map(of_joint).sum();
             candidate.pushed.doubt = self.chances.of_all(surprise);
         }
         let before = self.candidates.len();

@@ -184,6 +184,23 @@ fn noise_that_is_large_where_the_torque_is_makes_no_pushes() {
 }
 
 #[test]
+fn noise_that_joints_share_makes_no_pushes() {
+    let mut rng = Pcg64::seed_from_u64(21);
+    let (runs, level) = (600, 1e-3);
+    let once = |_| {
+        let mut tracks = noise(&mut rng);
+        let shared: Vec<f64> = (0..ROWS).map(|_| normal(&mut rng)).collect();
+        for track in &mut tracks {
+            track.motions[0].1.iter_mut().for_each(|(place, x)| *x = 0.3 * *x + 0.95 * shared[*place]);
+        }
+        usize::from(!scan(&tracks, STEP, level).0.is_empty())
+    };
+    let false_alarms = (0..runs).map(once).sum::<usize>();
+    println!("{false_alarms} of {runs}");
+    assert!(false_alarms <= 6, "{false_alarms} of {runs}");
+}
+
+#[test]
 fn edges_are_as_uncertain_as_they_say() {
     let mut rng = Pcg64::seed_from_u64(17);
     let mut outside = 0;
