@@ -10,6 +10,7 @@
 //! finding that stays, only that it did not fail is known from it.
 
 mod intervals;
+mod late;
 mod slope;
 
 use crate::diagnosis::{
@@ -114,7 +115,8 @@ fn held_against_test(
         .collect();
     let first_factor = predictors.len();
     predictors.extend(factors.iter().map(|(_, effects)| Predictor { effects, ..whole }));
-    let evaluation = evaluate(model, &predictors, &test.motions, &test.settings, &[])?;
+    let mut evaluation = evaluate(model, &predictors, &test.motions, &test.settings, &[])?;
+    late::leave_out_rest(&mut evaluation.rows, delay);
     let mut failing = Vec::new();
     let mut parts = Vec::new();
     for (which, (k, ..)) in without.iter().enumerate().map(|(i, w)| (i + 1, w)) {

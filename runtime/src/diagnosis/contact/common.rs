@@ -16,6 +16,9 @@ pub(super) struct Common {
     of_length: Vec<DMatrix<f64>>,
 }
 
+/// Motion and first place of windows, increasing, and the deviation of each.
+type Deviations = Vec<([usize; 2], f64)>;
+
 /// Sum of the products of signs of two joints, and number of windows that both have.
 type Signs = (f64, f64);
 
@@ -27,7 +30,7 @@ impl Common {
         is_free: impl Fn((usize, [usize; 2])) -> bool,
     ) -> Self {
         let n = joints.len();
-        let free: Vec<Vec<Vec<([usize; 2], f64)>>> = (0..lengths.len())
+        let free: Vec<Vec<Deviations>> = (0..lengths.len())
             .map(|length| joints.iter().map(|joint| joint.of_length(length, &is_free)).collect())
             .collect();
         let of_pair = |length: usize, [a, b]: [usize; 2]| signs(&free[length][a], &free[length][b]);
