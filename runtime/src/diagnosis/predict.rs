@@ -5,6 +5,7 @@ use super::reference::Reference;
 use super::rows::additions::Additions;
 use super::rows::context::Context;
 use super::rows::scales::scales;
+use super::rows::series::add_to;
 use super::rows::signals::Signals;
 use crate::effects::{EffectTerm, Scale};
 use crate::model::Model;
@@ -65,12 +66,7 @@ pub(super) fn torques_on(
             amplitude = vec![1.0];
         }
         for (k, torque) in out.iter_mut().enumerate() {
-            for (column, a) in context.series(k, term.effect, term.place, &term.shape).iter().zip(&amplitude)
-            {
-                for (j, values) in column {
-                    torque[*j].iter_mut().zip(values).for_each(|(t, v)| *t += a * v);
-                }
-            }
+            add_to(torque, &context.series(k, term.effect, term.place, &term.shape), &amplitude);
         }
     }
     Ok(out)

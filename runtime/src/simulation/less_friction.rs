@@ -40,6 +40,11 @@ impl ExtraTorque for LessFriction {
         }
     }
 
+    /// Laws know the friction of the standard model with this part of it: it is not among the effects that they look at.
+    fn looks_at_effects(&self) -> bool {
+        true
+    }
+
     fn has_dry_friction(&self) -> bool {
         self.dry.iter().any(|x| *x != 0.0)
     }

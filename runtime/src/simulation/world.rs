@@ -247,10 +247,9 @@ impl<'m> World<'m> {
         let model = self.model();
         let robot = model.robot();
         let mut chi = self.chi();
-        let less = self.less_friction.then(|| LessFriction::taken_from(robot, &mut chi));
         let mut torques = self.torques(&chi, motion);
-        if let Some(less) = less {
-            torques.push(Box::new(less));
+        if self.less_friction {
+            torques.push(Box::new(LessFriction::taken_from(robot, &mut chi)));
         }
         if self.elastic.is_empty() {
             return Plant::with_torques(model, &chi, torques);

@@ -69,7 +69,7 @@ impl Common {
             let known = DVector::from_iterator(k, before.iter().map(|&i| felt[i].unwrap_or(0.0)));
             let with = DVector::from_iterator(k, before.iter().map(|&i| common[(i, j)]));
             let among = DMatrix::from_fn(k, k, |a, b| common[(before[a], before[b])]);
-            out[j] = Some(felt[j].map_or(0.0, |own| beyond(own, &among, &with, &known)));
+            out[j] = Some(felt[j].map_or(0.0, |own| beyond(own, among, &with, &known)));
         }
         out
     }
@@ -77,9 +77,9 @@ impl Common {
 
 /// What a joint does beyond what others that are known make expect. Never more than it does: correlations change with the posture,
 /// and where two joints go against what they mostly do together that is no push.
-fn beyond(own: f64, among: &DMatrix<f64>, with: &DVector<f64>, known: &DVector<f64>) -> f64 {
+fn beyond(own: f64, among: DMatrix<f64>, with: &DVector<f64>, known: &DVector<f64>) -> f64 {
     // Correlations that were found pair by pair need not fit together: what no numbers can do says nothing.
-    let Some(solved) = Cholesky::new(among.clone()).map(|factor| factor.solve(with)) else { return 0.0 };
+    let Some(solved) = Cholesky::new(among).map(|factor| factor.solve(with)) else { return 0.0 };
     let left = 1.0 - with.dot(&solved);
     if left <= LEAST_OWN {
         return 0.0;

@@ -4,6 +4,7 @@ use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rows::additions::{Additions, Carried, DriveLaw};
 use crate::diagnosis::rows::links::Links;
+use crate::diagnosis::rows::series::add_to;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::effects::{Scale, Transmission, derivable};
 use crate::model::{Link, Model, RecursiveModel};
@@ -125,11 +126,7 @@ impl<'a> Context<'a> {
             let is_there = |law: &&DriveLaw| law.in_baseline || self.signals[signal].is_target;
             for law in self.additions.laws.iter().filter(is_there) {
                 let made_with = (law.effect, law.place, &law.shape[..], law.scale);
-                for (column, a) in self.series_made_with(signal, made_with).iter().zip(&law.amplitude) {
-                    for (j, values) in column {
-                        drives[*j].iter_mut().zip(values).for_each(|(t, v)| *t += a * v);
-                    }
-                }
+                add_to(&mut drives, &self.series_made_with(signal, made_with), &law.amplitude);
             }
             drives
         })
