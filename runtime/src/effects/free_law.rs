@@ -4,43 +4,8 @@
 //! the products of a few bends of each. A speed comes with its direction, at whose change a torque may jump.
 
 use super::spline::{BENDS, FINE_SPLINES, SPLINES, bends, steps};
+use super::together::Together;
 use super::variable::Variable;
-
-/// How the variables come together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Together {
-    /// One variable alone.
-    One,
-    /// A curve over each, added.
-    Added,
-    /// Products only: what one does is scaled by the other.
-    Multiplied,
-    /// Both.
-    Full,
-    /// One variable alone, by a curve with narrow bends.
-    Fine,
-}
-
-impl Together {
-    const ALL: [Self; 5] = [Self::One, Self::Added, Self::Multiplied, Self::Full, Self::Fine];
-
-    fn code(self) -> f64 {
-        Self::ALL.iter().position(|t| *t == self).unwrap_or(0) as f64
-    }
-
-    /// Whether there is one variable, and no other that comes to it.
-    fn is_alone(self) -> bool {
-        matches!(self, Self::One | Self::Fine)
-    }
-
-    fn has_curves(self) -> bool {
-        self != Self::Multiplied
-    }
-
-    fn has_products(self) -> bool {
-        matches!(self, Self::Multiplied | Self::Full)
-    }
-}
 
 /// A variable and the interval of its values that a curve is over.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,19 +45,48 @@ impl Axis {
 
     /// Number of functions of a curve over it.
     fn curve(&self, together: Together) -> usize {
-        let steps = if together == Together::Fine { FINE_SPLINES } else { SPLINES };
-        steps + usize::from(self.variable.has_direction())
+        let functions = match together {
+            Together::Fine => FINE_SPLINES,
+            Together::Lines => 1,
+            _ => SPLINES,
+        };
+        functions + usize::from(self.variable.has_direction())
     }
 
     fn fill(&self, together: Together, at: Seen, out: &mut Vec<f64>) {
         let place = self.place(at.value);
         match together {
             Together::Fine => out.extend(steps::<FINE_SPLINES>(place)),
+            Together::Lines => out.push(place.clamp(-1.0, 1.0)),
             _ => out.extend(steps::<SPLINES>(place)),
         }
         if self.variable.has_direction() {
             out.push(at.direction);
         }
+    }
+}
+
+/// The sum of two positions, or the first less the second: what a cable that runs over both joints is bent by, or the direction
+/// in space of a link behind parallel axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sum {
+    /// Of the second one: 1 or -1.
+    pub sign: f64,
+    /// Middle of the interval of its values.
+    pub centre: f64,
+    /// Half of its length.
+    pub half: f64,
+}
+
+impl Sum {
+    /// Its value where the two have these.
+    pub fn of(&self, first: f64, second: f64) -> f64 {
+        first + self.sign * second
+    }
+
+    /// Its position in the interval where the two have these values, -1 to 1 within it.
+    fn place(&self, first: f64, second: f64) -> f64 {
+        (self.of(first, second) - self.centre) / self.half.max(f64::MIN_POSITIVE)
     }
 }
 
@@ -116,10 +110,21 @@ impl FreeLaw {
         Self { together: Together::Fine, axes: vec![axis] }
     }
 
-    /// Over two, in each way.
-    pub fn two(a: Axis, b: Axis) -> [Self; 3] {
-        [Together::Multiplied, Together::Added, Together::Full]
-            .map(|together| Self { together, axes: vec![a, b] })
+    /// In proportion to one.
+    pub fn line(axis: Axis) -> Self {
+        Self { together: Together::Lines, axes: vec![axis] }
+    }
+
+    /// Over two that come together in one way.
+    pub fn two(together: Together, [a, b]: [Axis; 2]) -> Self {
+        Self { together, axes: vec![a, b] }
+    }
+
+    /// The sum of its positions, or their difference, with its interval, where it is one curve over that.
+    pub fn sum(&self) -> Option<Sum> {
+        let sign = self.together.sign_of_second()?;
+        let [a, b] = self.axes.as_slice() else { return None };
+        Some(Sum { sign, centre: a.centre + sign * b.centre, half: a.half + b.half })
     }
 
     /// The law as the shape of a term: how the variables come together, then four numbers for each.
@@ -139,8 +144,12 @@ impl FreeLaw {
     /// The law that a shape means in a robot of so many joints; `None` where it means none.
     pub fn from_shape(shape: &[f64], joints: usize) -> Option<Self> {
         let (code, rest) = shape.split_first()?;
-        let together = Together::ALL.into_iter().find(|t| t.code() == *code)?;
-        let wanted = if together.is_alone() { 4 } else { 8 };
+        let together = Together::from_code(*code)?;
+        let whole = match together {
+            Together::One | Together::Fine => rest.len() == 4,
+            Together::Lines => rest.len() == 4 || rest.len() == 8,
+            _ => rest.len() == 8,
+        };
         let axis = |a: &[f64]| {
             let variable = Variable::from_code([a[0], a[1]], joints)?;
             let sound = a[2].is_finite() && a[3].is_finite() && a[3] > 0.0;
@@ -148,7 +157,9 @@ impl FreeLaw {
         };
         let axes: Vec<Axis> = rest.chunks_exact(4).map(axis).collect::<Option<_>>()?;
         let same = axes.windows(2).any(|w| w[0].variable == w[1].variable);
-        (rest.len() == wanted && !same).then_some(Self { together, axes })
+        let is_position = |axis: &Axis| matches!(axis.variable, Variable::Position(_));
+        let adds = together.sign_of_second().is_none() || axes.iter().all(is_position);
+        (whole && !same && adds).then_some(Self { together, axes })
     }
 
     /// Whether a shape means a curve over the position of this joint and nothing else.
@@ -161,6 +172,9 @@ impl FreeLaw {
 
     /// Amplitudes, that is columns.
     pub fn amplitudes(&self) -> usize {
+        if self.together.sign_of_second().is_some() {
+            return FINE_SPLINES;
+        }
         let curves: usize = self.axes.iter().map(|axis| axis.curve(self.together)).sum();
         let products = match self.axes.as_slice() {
             [a, b] => match (a.variable.has_direction(), b.variable.has_direction()) {
@@ -177,6 +191,10 @@ impl FreeLaw {
     /// Values of the columns, one value with its direction for each variable; `out` is filled anew.
     pub fn columns(&self, at: &[Seen], out: &mut Vec<f64>) {
         out.clear();
+        if let (Some(sum), [a, b]) = (self.sum(), at) {
+            out.extend(steps::<FINE_SPLINES>(sum.place(a.value, b.value)));
+            return;
+        }
         if self.together.has_curves() {
             for (axis, at) in self.axes.iter().zip(at) {
                 axis.fill(self.together, *at, out);
@@ -225,10 +243,12 @@ mod tests {
     #[test]
     fn a_law_is_the_same_after_it_was_saved() {
         let [q, dq, time] = [Variable::Position(1), Variable::Speed(0), Variable::Time].map(axis);
-        let laws = [FreeLaw::one(q), FreeLaw::fine(q), FreeLaw::fine(dq)]
-            .into_iter()
-            .chain(FreeLaw::two(q, dq))
-            .chain(FreeLaw::two(dq, time));
+        let p = axis(Variable::Position(0));
+        let alone =
+            [FreeLaw::one(q), FreeLaw::fine(q), FreeLaw::fine(dq), FreeLaw::line(q), FreeLaw::line(dq)];
+        let of_two = |pair| Together::OF_ANY_TWO.map(|together| FreeLaw::two(together, pair));
+        let sums = Together::OF_POSITIONS.map(|together| FreeLaw::two(together, [q, p]));
+        let laws = alone.into_iter().chain(of_two([q, dq])).chain(of_two([dq, time])).chain(sums);
         for law in laws {
             assert_eq!(FreeLaw::from_shape(&law.shape(), 2), Some(law.clone()));
             let mut out = Vec::new();
@@ -248,11 +268,13 @@ mod tests {
         assert!(FreeLaw::from_shape(&wrong, 2).is_none(), "no interval");
         let twice: Vec<f64> = [1.0].iter().chain(&shape[1..]).chain(&shape[1..]).copied().collect();
         assert!(FreeLaw::from_shape(&twice, 2).is_none(), "one variable twice");
+        let mixed = FreeLaw::two(Together::Sum, [axis(Variable::Position(1)), axis(Variable::Time)]);
+        assert!(FreeLaw::from_shape(&mixed.shape(), 2).is_none(), "a sum of a position and a time");
     }
 
     #[test]
     fn products_of_a_direction_jump_with_it_and_are_smooth_in_the_other() {
-        let law = &FreeLaw::two(axis(Variable::Position(1)), axis(Variable::Speed(0)))[0];
+        let law = FreeLaw::two(Together::Multiplied, [axis(Variable::Position(1)), axis(Variable::Speed(0))]);
         let at = |q: f64, direction: f64| {
             let mut out = Vec::new();
             let seen = [Seen { value: q, direction: 0.0 }, Seen { value: 0.5, direction }];
@@ -263,5 +285,20 @@ mod tests {
             assert!((up + down).abs() < 1e-12);
         }
         assert_ne!(at(1.3, 1.0), at(0.3, 1.0));
+    }
+
+    #[test]
+    fn a_curve_over_a_difference_is_the_same_where_both_positions_went_on_as_far() {
+        let pair = [axis(Variable::Position(1)), axis(Variable::Position(0))];
+        let at = |together, a: f64, b: f64| {
+            let mut out = Vec::new();
+            let seen = [a, b].map(|value| Seen { value, direction: 0.0 });
+            FreeLaw::two(together, pair).columns(&seen, &mut out);
+            out
+        };
+        let apart = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f64>();
+        assert!(apart(at(Together::Difference, 0.7, 0.2), at(Together::Difference, 1.2, 0.7)) < 1e-12);
+        assert!(apart(at(Together::Sum, 0.7, 0.2), at(Together::Sum, 0.2, 0.7)) < 1e-12);
+        assert!(apart(at(Together::Sum, 0.7, 0.2), at(Together::Sum, 1.2, 0.7)) > 0.1);
     }
 }

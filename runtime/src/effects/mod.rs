@@ -36,6 +36,7 @@ mod sensitivity;
 mod shape;
 mod spline;
 mod term;
+mod together;
 mod user_law;
 mod variable;
 
@@ -47,7 +48,7 @@ pub use contact::{ContactForce, JointTorque, unit_force_torques};
 pub use coupled::CoupledRotor;
 pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, SpecialCase, ToldBy, Words};
 pub use form::Form;
-pub use free_law::{Axis, FreeLaw, Seen, Together};
+pub use free_law::{Axis, FreeLaw, Seen, Sum};
 pub use joint_law::{At, AtRest, HEARD_JOINT, JointLaw, Scale};
 pub use place::Place;
 pub use quantity::{Parameter, Quantities, unit_behind};
@@ -57,6 +58,7 @@ pub use shape::{Move, ShapeSearch, Step};
 #[cfg(feature = "diagnosis")]
 pub(crate) use term::named;
 pub use term::{EffectTerm, TermScale};
+pub use together::Together;
 pub use user_law::{LawError, UserLaw};
 pub use variable::{SinceReversal, Variable};
 

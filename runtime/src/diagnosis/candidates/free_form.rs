@@ -6,7 +6,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::free::values;
 use crate::diagnosis::rules::{AIC_PENALTY, CURVE_RIDGE, FREE_FORM_PAIRS, FREE_FORM_SINGLES, FREE_FORM_TAIL};
-use crate::effects::{Axis, EffectKind, FreeLaw, Place, Seen, Variable};
+use crate::effects::{Axis, EffectKind, FreeLaw, Place, Seen, Together, Variable};
 use crate::parallel;
 use nalgebra::{DMatrix, DVector};
 
@@ -44,36 +44,66 @@ pub(in crate::diagnosis) fn screen(
         Some(Judged { law, candidate, verdict })
     };
     let glance = Glance::new(context, regression, joint, &axes);
+    let own = Variable::Position(joint);
     let gains = parallel::map(threads, axes.len(), |k| {
-        let curves = [FreeLaw::one, FreeLaw::fine].map(|curve| glance.gain(&curve(axes[k]), &[k]));
-        curves[0].max(curves[1])
+        let gains = alone(axes[k], own).into_iter().map(|law| glance.gain(&law, &[k]));
+        gains.fold(f64::NEG_INFINITY, f64::max)
     });
     let most = most_gained(&gains, FREE_FORM_SINGLES);
     // Narrow bends must show on held-out motion: noise that lasts has some of its own.
     let single = sorted(parallel::map(threads, most.len(), |k| {
-        let curves =
-            [FreeLaw::one, FreeLaw::fine].into_iter().filter_map(|curve| judged(&[curve(axes[most[k]])]));
-        curves.max_by(|a, b| a.verdict.total().total_cmp(&b.verdict.total()))
+        let laws = alone(axes[most[k]], own).into_iter().filter_map(|law| judged(&[law]));
+        laws.max_by(|a, b| a.verdict.total().total_cmp(&b.verdict.total()))
     }));
     let pairs: Vec<[usize; 2]> =
         (0..axes.len()).flat_map(|a| (a + 1..axes.len()).map(move |b| [a, b])).collect();
-    // Products, and sums with the best variable: it may be half of one.
+    // Products; sums with the best variable: it may be half of one; and what two do in proportion, or by what they are together.
     let best = single.first().and_then(|j| axes.iter().position(|a| a.variable == j.law.axes[0].variable));
+    let laws_of = |k: usize, ways: &[Together]| {
+        let two = pairs[k].map(|a| axes[a]);
+        ways.iter().map(|&way| FreeLaw::two(way, two)).collect::<Vec<_>>()
+    };
     let gains = parallel::map(threads, pairs.len(), |k| {
-        let [product, sum, _] = FreeLaw::two(axes[pairs[k][0]], axes[pairs[k][1]]);
+        let of = |ways: &[Together]| {
+            let gains = laws_of(k, ways).into_iter().map(|law| glance.gain(&law, &pairs[k]));
+            gains.fold(f64::NEG_INFINITY, f64::max)
+        };
         let with_best = best.is_some_and(|b| pairs[k].contains(&b));
-        let of = |law: &FreeLaw| glance.gain(law, &pairs[k]);
-        [of(&product), if with_best { of(&sum) } else { f64::NEG_INFINITY }]
+        let few = [&[Together::Lines][..], sums(context, pairs[k].map(|a| axes[a]))].concat();
+        [of(&[Together::Multiplied]), of(if with_best { &[Together::Added] } else { &[] }), of(&few)]
     });
     let mut order: Vec<usize> = Vec::new();
-    for way in 0..2 {
+    for way in 0..3 {
         let left = |k: usize| if order.contains(&k) { f64::NEG_INFINITY } else { gains[k][way] };
         let left: Vec<f64> = (0..pairs.len()).map(left).collect();
         order.extend(most_gained(&left, FREE_FORM_PAIRS));
     }
-    let judge_pair = |k: usize| judged(&FreeLaw::two(axes[pairs[order[k]][0]], axes[pairs[order[k]][1]]));
+    let judge_pair = |k: usize| judged(&of_two(context, pairs[order[k]].map(|a| axes[a])));
     let judged_pairs = sorted(parallel::map(threads, order.len(), judge_pair));
-    Screened { single, pairs: judged_pairs, tried: 2 * axes.len() + pairs.len() }
+    let sums: usize = pairs.iter().map(|pair| sums(context, pair.map(|a| axes[a])).len()).sum();
+    Screened { single, pairs: judged_pairs, tried: 3 * axes.len() + 2 * pairs.len() + sums }
+}
+
+/// The laws over one variable: in proportion to it, which over the joint's own position is a spring of the catalogue; a curve;
+/// and one with narrow bends.
+fn alone(axis: Axis, own: Variable) -> Vec<FreeLaw> {
+    let line = (axis.variable != own).then(|| FreeLaw::line(axis));
+    line.into_iter().chain([FreeLaw::one(axis), FreeLaw::fine(axis)]).collect()
+}
+
+/// The ways in which two variables may be one: positions of one unit.
+fn sums(context: &Context<'_>, [a, b]: [Axis; 2]) -> &'static [Together] {
+    let of_one_unit = |[a, b]: [usize; 2]| context.scales[a].kind == context.scales[b].kind;
+    match [a.variable, b.variable] {
+        [Variable::Position(a), Variable::Position(b)] if of_one_unit([a, b]) => &Together::OF_POSITIONS,
+        _ => &[],
+    }
+}
+
+/// The laws over two variables.
+fn of_two(context: &Context<'_>, two: [Axis; 2]) -> Vec<FreeLaw> {
+    let ways = Together::OF_ANY_TWO.iter().chain(sums(context, two));
+    ways.map(|&way| FreeLaw::two(way, two)).collect()
 }
 
 /// The law over two of these variables that gains most on held-out motion, as a candidate.
@@ -87,7 +117,7 @@ pub(in crate::diagnosis) fn best_of_pairs(
     let axes = axes(context, regression, joint);
     let axes: Vec<Axis> = axes.into_iter().filter(|a| over.contains(&a.variable)).collect();
     let pairs = (0..axes.len()).flat_map(|a| (a + 1..axes.len()).map(move |b| [a, b]));
-    let shapes = pairs.flat_map(|[a, b]| FreeLaw::two(axes[a], axes[b])).map(|law| law.shape());
+    let shapes = pairs.flat_map(|[a, b]| of_two(context, [axes[a], axes[b]])).map(|law| law.shape());
     let place = Place::Joint(joint);
     let of_shape = |shape| make(context, &regression.design, EffectKind::FreeForm, place, &[shape], change);
     let judged = shapes.map(of_shape).filter_map(|c| Some((regression.judge(&c)?.total(), c)));

@@ -8,6 +8,7 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{Axis, Form, FreeLaw, Parameter, Seen, Together, Variable};
 use crate::model::{JointIndex, JointKind, Robot};
+use crate::report::significant;
 
 /// Points of a variable at which a law is evaluated.
 const POINTS: usize = 41;
@@ -103,9 +104,11 @@ pub(in crate::diagnosis) fn curves(model: &ExtendedModel<'_>, k: usize) -> Vec<C
     let residual = model.slow.residual();
     let dense: Vec<&[f64]> =
         model.slow.term_columns[k].clone().map(|c| design.columns[c].as_slice()).collect();
-    let of_axis = |axis: &Axis| {
-        let over: Vec<Vec<f64>> =
-            (0..context.signals.len()).map(|s| values(context, s, axis.variable)).collect();
+    let number = |j: usize| context.model.robot().joint_number(JointIndex(j)).0;
+    let unit = |axis: &Axis| {
+        axis.variable.unit(axis.variable.joint().map_or(JointKind::Revolute, |j| context.scales[j].kind))
+    };
+    let drawn = |over: Vec<Vec<f64>>, variable: String| {
         let mut rows = Vec::new();
         let mut spread = Vec::new();
         for r in design.of_joint(joint).filter(|&r| context.signals[design.rows[r].signal].is_target) {
@@ -116,16 +119,43 @@ pub(in crate::diagnosis) fn curves(model: &ExtendedModel<'_>, k: usize) -> Vec<C
             let made: f64 = x.iter().zip(&covariance).map(|(x_i, row)| x_i * product(row, &x)).sum();
             spread.push((at, made.max(0.0).sqrt(), 0.0));
         }
-        let number = |j: usize| context.model.robot().joint_number(JointIndex(j)).0;
-        let kind = axis.variable.joint().map_or(JointKind::Revolute, |j| context.scales[j].kind);
-        let name = axis.variable.words(number);
         let mut curve = binned(rows);
-        curve.variable = format!("{name}, {}", axis.variable.unit(kind));
+        curve.variable = variable;
         curve.unit = context.scales[joint].kind.torque_unit().into();
         curve.band = binned(spread).residual.iter().map(|s| 2.0 * s).collect();
         curve
     };
+    let motions = || 0..context.signals.len();
+    if let (Some(sum), [a, b]) = (law.sum(), law.axes.as_slice()) {
+        let of_motion = |s| {
+            let [a, b] = [a, b].map(|axis| values(context, s, axis.variable));
+            a.iter().zip(&b).map(|(a, b)| sum.of(*a, *b)).collect()
+        };
+        let name = sum_in_words(&law, number);
+        return vec![drawn(motions().map(of_motion).collect(), format!("{name}, {}", unit(a)))];
+    }
+    let of_axis = |axis: &Axis| {
+        let over = motions().map(|s| values(context, s, axis.variable)).collect();
+        drawn(over, format!("{}, {}", axis.variable.words(number), unit(axis)))
+    };
     law.axes.iter().map(of_axis).collect()
+}
+
+/// What a person calls the sum, or the difference, that a law is over.
+fn sum_in_words(law: &FreeLaw, number: impl Fn(usize) -> usize + Copy) -> String {
+    let names: Vec<String> = law.axes.iter().map(|axis| axis.variable.words(number)).collect();
+    let what = if law.together == Together::Sum { "sum" } else { "difference" };
+    format!("{what} of the {}", names.join(" and the "))
+}
+
+/// What a person calls that which a law depends on.
+pub(in crate::diagnosis) fn in_words(law: &FreeLaw, number: impl Fn(usize) -> usize + Copy) -> String {
+    if law.sum().is_some() {
+        return format!("the {}", sum_in_words(law, number));
+    }
+    let names: Vec<String> =
+        law.axes.iter().map(|axis| format!("the {}", axis.variable.words(number))).collect();
+    names.join(" and ")
 }
 
 /// A short formula that stays within the band of a law over one variable, or over one times the direction of the joint;
@@ -136,6 +166,26 @@ pub(in crate::diagnosis) fn proposal(model: &ExtendedModel<'_>, k: usize) -> Opt
     let amplitude: Vec<f64> = model.slow.term_columns[k].clone().map(|c| model.slow.fit.chi[c]).collect();
     let covariance = covariance(model, k);
     let robot = model.context.model.robot();
+    let unit = model.context.scales[joint].kind.torque_unit();
+    if law.together == Together::Lines {
+        return Some(format!("{} {unit}", lines(robot, &law, &amplitude)));
+    }
+    let is_angle = |axis: &Axis| matches!(axis.variable, Variable::Position(j) if model.context.scales[j].kind != JointKind::Prismatic);
+    let points = |over: &Axis, at: &dyn Fn(f64) -> Vec<f64>| -> Vec<Point> {
+        let point = |x: f64| {
+            let c = at(x);
+            let variance: f64 = c.iter().zip(&covariance).map(|(c_i, row)| c_i * product(row, &c)).sum();
+            Point { x, y: product(&c, &amplitude), sigma: variance.max(0.0).sqrt() }
+        };
+        grid(over).map(point).collect()
+    };
+    if let (Some(sum), [a, b]) = (law.sum(), law.axes.as_slice()) {
+        let over = Axis { centre: sum.centre, half: sum.half, ..*a };
+        let points = points(&over, &|x| columns(&law, joint, &[x - sum.of(0.0, b.centre), b.centre]));
+        let sign = if sum.sign > 0.0 { '+' } else { '-' };
+        let name = format!("({} {sign} {})", a.variable.name(robot), b.variable.name(robot));
+        return propose(&points, &name, is_angle(a)).map(|formula| format!("{formula} {unit}"));
+    }
     let own_speed = |a: &&Axis| a.variable == Variable::Speed(joint);
     let (axis, direction) = match (law.axes.as_slice(), law.together) {
         ([axis], Together::One | Together::Fine) => (axis, None),
@@ -156,19 +206,34 @@ pub(in crate::diagnosis) fn proposal(model: &ExtendedModel<'_>, k: usize) -> Opt
             of(fast).iter().zip(of(-fast)).map(|(a, b)| 0.5 * (a - b)).collect()
         }
     };
-    let points: Vec<Point> = grid(axis)
-        .map(|x| {
-            let c = at(x);
-            let variance: f64 = c.iter().zip(&covariance).map(|(c_i, row)| c_i * product(row, &c)).sum();
-            Point { x, y: product(&c, &amplitude), sigma: variance.max(0.0).sqrt() }
-        })
-        .collect();
-    let name = axis.variable.name(robot);
-    let angle = matches!(axis.variable, Variable::Position(j) if model.context.scales[j].kind != JointKind::Prismatic);
-    let formula = propose(&points, &name, angle)?;
-    let unit = model.context.scales[joint].kind.torque_unit();
+    let formula = propose(&points(axis, &at), &axis.variable.name(robot), is_angle(axis))?;
     Some(match direction {
         None => format!("{formula} {unit}"),
         Some(speed) => format!("sign({})·({formula}) {unit}", speed.variable.name(robot)),
     })
+}
+
+/// What a law in proportion to its variables is, but for a constant.
+fn lines(robot: &Robot, law: &FreeLaw, amplitude: &[f64]) -> String {
+    let mut left = amplitude.iter();
+    let mut words = String::new();
+    let mut add = |number: f64, what: &str| {
+        let joined = match (words.is_empty(), number < 0.0) {
+            (true, _) => significant(number, 3),
+            (false, true) => format!(" - {}", significant(-number, 3)),
+            (false, false) => format!(" + {}", significant(number, 3)),
+        };
+        words.push_str(&format!("{joined}·{what}"));
+    };
+    for axis in &law.axes {
+        let name = axis.variable.name(robot);
+        if let Some(slope) = left.next() {
+            add(slope / axis.half, &name);
+        }
+        let direction = if axis.variable.has_direction() { left.next() } else { None };
+        if let Some(step) = direction {
+            add(*step, &format!("sign({name})"));
+        }
+    }
+    words
 }

@@ -1,5 +1,6 @@
 //! Sentences for a person.
 
+use crate::diagnosis::explanation::free_form::in_words;
 use crate::diagnosis::outcome::{Diagnosis, Finding, Mismatch, NotJudged};
 use crate::diagnosis::reference::Reference;
 use crate::diagnosis::rules;
@@ -101,18 +102,14 @@ pub(in crate::diagnosis) fn of_user(
 fn free_form(robot: &Robot, place: &str, f: &Finding) -> String {
     let number = |j: usize| robot.joint_number(JointIndex(j)).0;
     let law = FreeLaw::from_shape(&f.term.shape, robot.joints());
-    let variables: Vec<String> = law
-        .iter()
-        .flat_map(|law| &law.axes)
-        .map(|axis| format!("the {}", axis.variable.words(number)))
-        .collect();
+    let variables = law.map_or_else(String::new, |law| in_words(&law, number));
     let proposal = f
         .proposal
         .as_ref()
         .map_or_else(String::new, |formula| format!(" A proposal that fits it within its band: {formula}."));
     format!(
         "{place}: a torque that depends on {}, and on nothing else; {}.{proposal} Held-out error of its joints {}.",
-        variables.join(" and "),
+        variables,
         f.term.effect.effect().detail(&f.quantities()),
         change_of_error(f.held_out_before, f.held_out_after)
     )
