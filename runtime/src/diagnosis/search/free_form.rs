@@ -5,9 +5,9 @@
 //! It passes the same gate as every law, all variables and pairs counted. A law of the catalogue that explains nearly as
 //! much is not displaced by it; one that explains much less was its imitator.
 
+use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::free_form::{Judged, Screened, screen};
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::judge::Verdict;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rules::{FREE_FORM_SHARE, NEARLY_AS_MUCH, RIVALS, SLOW_PART_OF_REMAINS, TOLD_APART};
 use crate::diagnosis::search::round::Winner;
@@ -41,26 +41,19 @@ impl Search<'_> {
         let (mut chosen, mut tried): (Vec<(Judged, Vec<Rival>)>, usize) = (Vec::new(), 0);
         for j in joints {
             let screened = screen(&model.context, regression, j, model.change, self.threads());
-            tried += screened.tried;
+            let tried_here = screened.tried;
+            tried += tried_here;
             let firsts = [&screened.single, &screened.pairs].into_iter().filter_map(|list| list.first());
             let most = |(gain, share): (f64, f64), law: &Judged| {
                 (gain.max(law.verdict.total()), share.max(law.verdict.explained_fraction))
             };
             let (most_gained, largest_share) = firsts.fold((0.0, 0.0), most);
-            let mut laws = fewest_variables(regression, screened);
             let least = settings.least_share.max(FREE_FORM_SHARE * slow_part(regression, &residual, j));
+            let mut laws = fewest_variables(regression, screened, least);
             if laws.first().is_none_or(|law| law.verdict.explained_fraction < least) {
                 continue;
             }
-            // On rows of another width gains have other units.
-            let is_nearly_as_much = |window: SmoothingWindow, verdict: &Verdict| match window {
-                SmoothingWindow::Slow => verdict.total() >= NEARLY_AS_MUCH * most_gained,
-                SmoothingWindow::Fast => verdict.explained_fraction >= NEARLY_AS_MUCH * largest_share,
-            };
-            // What the catalogue says with fewer numbers is no new law, even where it is not certain or was told as small.
-            if !self.ranked(Some(j)).iter().any(|r| is_nearly_as_much(r.window, &r.verdict))
-                && !self.small_on(j).any(|(window, verdict)| is_nearly_as_much(window, &verdict))
-            {
+            if !self.catalogue_says(regression, &laws[0], [most_gained, largest_share], (j, tried_here)) {
                 let rivals = not_told_from_first(regression, &laws, self.threads());
                 chosen.push((laws.swap_remove(0), rivals));
             }
@@ -88,12 +81,41 @@ impl Search<'_> {
         found
     }
 
-    /// How laws which were told as small on a joint, and their rivals, do beside the model as it is.
-    fn small_on(&self, joint: usize) -> impl Iterator<Item = (SmoothingWindow, Verdict)> + '_ {
-        [SmoothingWindow::Slow, SmoothingWindow::Fast].into_iter().flat_map(move |window| {
-            let candidates = self.candidates(window).iter();
-            let small = candidates.filter(move |c| c.own.contains(&joint) && self.rival_of_small(c));
-            small.filter_map(move |c| Some((window, self.model.regression(window).judge(c)?)))
+    /// Whether a law of the catalogue on a joint explains nearly as much as the most that laws over any variables do (the gain, and
+    /// the share), even where it is not certain or was told as small: what it says with fewer numbers is no new law. One that
+    /// needs no more numbers than it, and is certainly ahead of it, is.
+    fn catalogue_says(
+        &self,
+        regression: &Regression,
+        law: &Judged,
+        most: [f64; 2],
+        (joint, tried): (usize, usize),
+    ) -> bool {
+        let small = |candidate: &Candidate| candidate.own.contains(&joint) && self.rival_of_small(candidate);
+        let small = [SmoothingWindow::Slow, SmoothingWindow::Fast].into_iter().flat_map(|window| {
+            let candidates = self.candidates(window).iter().filter(|c| small(c));
+            candidates.filter_map(move |c| Some((window, c, self.model.regression(window).judge(c)?)))
+        });
+        let ranked = self.ranked(Some(joint));
+        let ranked = ranked.iter().map(|r| (r.window, self.of(r).1, r.verdict.clone()));
+        ranked.chain(small).any(|(window, candidate, verdict)| {
+            // On rows of another width gains have other units, and those of more joints are of more.
+            let is_nearly_as_much = if window == SmoothingWindow::Slow && candidate.own == [joint] {
+                verdict.total() >= NEARLY_AS_MUCH * most[0]
+            } else {
+                verdict.explained_fraction >= NEARLY_AS_MUCH * most[1]
+            };
+            let numbers = || {
+                let trial = &candidate.trials[verdict.trial];
+                trial.shape.len() + trial.columns.len()
+            };
+            let is_ahead = || {
+                let (law, rival) = ((&law.candidate, law.verdict.trial), (candidate, verdict.trial));
+                regression.difference_p_value(law, rival) * tried as f64 <= TOLD_APART
+            };
+            let is_simpler =
+                || window == SmoothingWindow::Slow && law.law.amplitudes() <= numbers() && is_ahead();
+            is_nearly_as_much && !is_simpler()
         })
     }
 
@@ -148,9 +170,9 @@ impl Search<'_> {
     }
 }
 
-/// The law over the fewest variables that no other is certainly ahead of, and after it the others over as many, those that
-/// gain most first.
-fn fewest_variables(regression: &Regression, screened: Screened) -> Vec<Judged> {
+/// The law over the fewest variables that explains at least so much and that no other is certainly ahead of, and after it the
+/// others over as many, those that gain most first.
+fn fewest_variables(regression: &Regression, screened: Screened, least: f64) -> Vec<Judged> {
     let Screened { single, pairs, tried } = screened;
     let ahead = |a: &Judged, b: &Judged| {
         let law = |j: &Judged| j.verdict.trial;
@@ -158,7 +180,7 @@ fn fewest_variables(regression: &Regression, screened: Screened) -> Vec<Judged> 
         a.verdict.total() > b.verdict.total() && p * tried as f64 <= TOLD_APART
     };
     let two = match (single.first(), pairs.first()) {
-        (Some(one), Some(two)) => ahead(two, one),
+        (Some(one), Some(two)) => one.verdict.explained_fraction < least || ahead(two, one),
         (one, _) => one.is_none(),
     };
     if two { pairs } else { single }
