@@ -12,7 +12,7 @@ use super::rows::design::Design;
 use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
 use super::search::extended_model::ExtendedModel;
 use super::search::state::Search;
-use super::search::tangents::tangents;
+use super::search::tangents::{along_starts, tangents};
 use super::settings::Settings;
 use crate::model::Model;
 
@@ -102,10 +102,10 @@ fn pushed_in_motion(
     let context = &search.model.context;
     let nothing_else = search.model.terms.is_empty() && search.ties.is_empty() && search.rejected.is_empty();
     let level = if nothing_else { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
-    let ringing = ringing(&search.model, &outside);
+    let beside = uncertain(&search.model, &outside);
     let left = Left {
         residual: &search.model.residual_on(&outside),
-        beside: &ringing,
+        beside: &beside,
         fitted: &search.model.fitted_on(&outside),
     };
     let look = moving::look(context, &outside, &left, level);
@@ -119,13 +119,14 @@ fn pushed_in_motion(
 
 /// What transmissions with spring or play do on the rows of a design, and what an error of their numbers would: they ring
 /// in bursts that all joints feel through the inertia of the links, and no number of them is known so well that nothing
-/// of that is left.
-fn ringing(model: &ExtendedModel<'_>, design: &Design) -> Vec<Vec<f64>> {
+/// of that is left; and what laws with an inner state do until they have forgotten the one that a motion began with.
+fn uncertain(model: &ExtendedModel<'_>, design: &Design) -> Vec<Vec<f64>> {
     let mut columns = Vec::new();
     for term in model.terms.iter().filter(|t| t.effect.form().is_fast_only()) {
         columns.extend(model.columns_of(design, term));
         columns.extend(tangents(model, design, term, &[]).into_iter().map(|(_, slope)| slope));
     }
+    columns.extend(model.terms.iter().flat_map(|term| along_starts(model, design, term)));
     columns
 }
 

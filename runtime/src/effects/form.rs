@@ -132,6 +132,20 @@ impl Form {
         }
     }
 
+    /// Whether it has an inner state, which a recording does not tell where a motion begins.
+    pub fn has_memory(self) -> bool {
+        match self {
+            Self::Joint(law) | Self::Heard(law) => law.has_memory(),
+            Self::Sensitivity(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free
+            | Self::User => false,
+        }
+    }
+
     /// The amplitude, where the law leaves none free.
     pub fn fixed_amplitude(self) -> Option<f64> {
         match self {

@@ -150,9 +150,19 @@ pub trait JointLaw: Sync {
         None
     }
 
+    /// Inner state where a motion begins at a speed: what it most likely is, since what happened before is not recorded.
+    fn memory_at_start(&self, _scale: &Scale, _dq: f64) -> f64 {
+        0.0
+    }
+
     /// New inner state after a travel of the joint; laws without memory keep 0.
     fn advance(&self, _shape: &[f64], memory: f64, _travel: f64) -> f64 {
         memory
+    }
+
+    /// Whether it has an inner state that [`Self::advance`] changes.
+    fn has_memory(&self) -> bool {
+        false
     }
 
     /// How it acts in a simulated robot whose joint comes to rest.

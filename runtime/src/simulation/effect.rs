@@ -119,8 +119,9 @@ impl ExtraTorque for EffectTorque {
 
     fn advance(&mut self, at: &Instant<'_>, _: f64) {
         let q = at.q[self.of];
-        if let Some(last) = self.last {
-            self.memory = self.law.advance(&self.shape, self.memory, q - last);
+        match self.last {
+            Some(last) => self.memory = self.law.advance(&self.shape, self.memory, q - last),
+            None => self.memory = self.law.memory_at_start(&self.scale, at.dq[self.of]),
         }
         self.last = Some(q);
     }

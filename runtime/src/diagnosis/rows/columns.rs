@@ -88,7 +88,9 @@ impl Context<'_> {
         let drive = law.looks_at_torque().then(|| &self.drives(signal)[j]);
         let mut columns = vec![vec![0.0; s.len()]; law.amplitudes(shape)];
         let mut out = vec![0.0; columns.len()];
-        let (mut memory, mut before) = (0.0, s.q[j].first().copied().unwrap_or(0.0));
+        let first = |series: &[f64]| series.first().copied().unwrap_or(0.0);
+        let mut memory = law.memory_at_start(scale, first(&s.dq[j])) + self.off_at_start;
+        let mut before = first(&s.q[j]);
         for t in 0..s.len() {
             memory = law.advance(shape, memory, s.q[j][t] - before);
             before = s.q[j][t];

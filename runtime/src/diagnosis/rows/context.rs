@@ -51,6 +51,8 @@ pub(in crate::diagnosis) struct Context<'a> {
     pub(super) additions: Additions,
     /// What follows from these; copies share it until they take others.
     pub(super) made: Arc<Made>,
+    /// How far the inner state of every law that has one is off where a motion begins.
+    pub off_at_start: f64,
     /// Transmissions that are known in physical units, per joint.
     pub transmissions: Vec<(usize, Transmission)>,
     /// The robot before it changed, as a model.
@@ -76,6 +78,7 @@ impl<'a> Context<'a> {
             chi,
             additions: Additions::default(),
             made: Arc::new(Made::nothing(signals.len(), robot.joints())),
+            off_at_start: 0.0,
             transmissions: Vec::new(),
             reference: None,
             threads: 1,

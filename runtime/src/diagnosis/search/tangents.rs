@@ -47,6 +47,32 @@ pub(super) fn weights(term: &Accepted, amplitude: &[f64]) -> Vec<f64> {
     term.fixed.map_or_else(|| amplitude.to_vec(), |fixed| vec![fixed])
 }
 
+/// What the torque of a term with an inner state moves by where this is off by one at the beginning of a motion, on the rows of a
+/// design: one column for each motion; none for other terms.
+pub(in crate::diagnosis) fn along_starts(
+    model: &ExtendedModel<'_>,
+    design: &Design,
+    term: &Accepted,
+) -> Vec<Vec<f64>> {
+    if !term.effect.form().has_memory() {
+        return Vec::new();
+    }
+    let here = model.columns_of(design, term);
+    let mut moved = model.context.clone();
+    moved.off_at_start = 1.0;
+    let there = dense_columns(&moved, design, term.effect, term.place, &term.shape, model.change);
+    let of_motion = |k: usize| {
+        let moved = here.iter().zip(&there).map(move |(here, there)| {
+            let row = |(r, (here, there)): (usize, (&f64, &f64))| {
+                if design.rows[r].signal == k { there - here } else { 0.0 }
+            };
+            here.iter().zip(there).enumerate().map(row).collect::<Vec<f64>>()
+        });
+        moved.filter(|column| column.iter().any(|x| *x != 0.0)).collect::<Vec<_>>()
+    };
+    (0..model.context.signals.len()).flat_map(of_motion).collect()
+}
+
 /// Derivatives of a term's torque on the rows that it is judged on by the base parameters, where its columns are made of
 /// these: the load of a gear, a torque that is heard. Differences over one standard deviation of each parameter, as far as
 /// it may be off; each with the place of the parameter.

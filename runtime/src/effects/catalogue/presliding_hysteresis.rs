@@ -35,6 +35,9 @@ const PROPERTIES: Properties = Properties {
     is_factor: false,
 };
 
+/// From this part of its top speed on a joint moves. Mechanics: slower ones may creep, or be noise of a joint at rest.
+const MOVES: f64 = 0.05;
+
 /// The effect.
 pub(super) struct PreslidingHysteresis;
 
@@ -81,6 +84,15 @@ impl JointLaw for PreslidingHysteresis {
     /// standard model has it, so that the column is what builds up late.
     fn law(&self, _: &Scale, _: &[f64], at: &At, memory: f64, out: &mut [f64]) {
         out[0] = memory - at.sign;
+    }
+
+    /// A joint that moves when the recording begins has moved before.
+    fn memory_at_start(&self, scale: &Scale, dq: f64) -> f64 {
+        if dq.abs() > MOVES * scale.speed { dq.signum() } else { 0.0 }
+    }
+
+    fn has_memory(&self) -> bool {
+        true
     }
 
     fn advance(&self, shape: &[f64], memory: f64, travel: f64) -> f64 {
