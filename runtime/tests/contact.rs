@@ -3,9 +3,9 @@
 
 mod common;
 
-use common::{Hidden, SimulatedRobot, planar, scara};
+use common::{Hidden, SimulatedRobot, planar, scara, term};
 use dynid_runtime::diagnosis::{Diagnosis, Finding, Settings, Silent, diagnose};
-use dynid_runtime::effects::{ContactForce, JointTorque};
+use dynid_runtime::effects::{ContactForce, EffectKind, JointTorque, Place};
 use dynid_runtime::recording::Trajectory;
 
 /// Two motions of 8 s of the planar robot, pushed.
@@ -133,4 +133,20 @@ fn an_arm_with_a_slide_that_nothing_pushes_shows_no_contact() {
     let robot = scara();
     let diagnosis = diagnosed(&robot, &recorded(&robot, vec![], 9), &[]);
     assert!(diagnosis.findings.iter().all(|f| f.effect != "contact"), "{:?}", diagnosis.verdict);
+}
+
+#[test]
+fn what_friction_remembers_of_before_a_recording_is_no_push() {
+    let robot = planar();
+    let presliding = term(EffectKind::PreslidingHysteresis, Place::Joint(1), &[0.15], &[1.0]);
+    let hidden = Hidden::in_robot(move |world| world.put(&presliding));
+    for seed in [3, 4, 5] {
+        let recorded = robot.record(&robot.motions(3, 7.0, seed), &hidden, seed);
+        // The recording begins when the robot has long been moving.
+        let later = |motion: &Trajectory| motion.within([motion.time[0] + 1.0, f64::INFINITY]).unwrap();
+        let motions: Vec<Trajectory> = recorded.iter().map(later).collect();
+        let diagnosis = diagnosed(&robot, &motions, &[]);
+        let found: Vec<&str> = diagnosis.findings.iter().map(|f| f.effect.as_str()).collect();
+        assert_eq!(found, ["presliding_hysteresis"], "seed {seed}: {:?}", diagnosis.verdict);
+    }
 }

@@ -5,7 +5,7 @@ use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::judging::testing::correlated;
 use crate::diagnosis::rows::design::Design;
-use crate::effects::{Axis, FreeLaw, Seen, Variable};
+use crate::effects::{Axis, FreeLaw, Seen, Together, Variable};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -54,9 +54,14 @@ fn judged(regression: &Regression, variables: &[Vec<f64>], laws: Vec<FreeLaw>) -
 
 /// Which variables are taken of torques that depend on the first one, and on the second one by `second`.
 fn taken(rng: &mut Pcg64, second: f64) -> Vec<Variable> {
+    let law = law(rng, |a, b| 2.0 * (0.5 * a).sin() + second * b);
+    law.axes.iter().map(|a| a.variable).collect()
+}
+
+/// The law that is taken of torques that depend like this on the first two variables.
+fn law(rng: &mut Pcg64, torque: impl Fn(f64, f64) -> f64) -> FreeLaw {
     let (variables, noise) = series(rng);
-    let y: Vec<f64> =
-        (0..ALL).map(|r| 2.0 * (0.5 * variables[0][r]).sin() + second * variables[1][r] + noise[r]).collect();
+    let y: Vec<f64> = (0..ALL).map(|r| torque(variables[0][r], variables[1][r]) + noise[r]).collect();
     let design = Design::made_up(1, &SEGMENTS, ROWS, vec![vec![1.0; ALL]], y);
     let regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
     let sorted = |list: Vec<Option<Judged>>| {
@@ -65,12 +70,14 @@ fn taken(rng: &mut Pcg64, second: f64) -> Vec<Variable> {
         list
     };
     let single = (0..4).map(|k| judged(&regression, &variables, vec![FreeLaw::one(axis(k))])).collect();
-    let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
-        .map(|(a, b)| judged(&regression, &variables, FreeLaw::two(axis(a), axis(b)).to_vec()));
+    let ways = || Together::OF_ANY_TWO.into_iter().chain(Together::OF_POSITIONS);
+    let pairs = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]].map(|pair| {
+        let laws = ways().map(|way| FreeLaw::two(way, pair.map(axis))).collect();
+        judged(&regression, &variables, laws)
+    });
     let screened = Screened { single: sorted(single), pairs: sorted(pairs.into()), tried: 10 };
-    let laws = fewest_variables(&regression, screened);
-    let law = laws.first().expect("the first variable is there");
-    law.law.axes.iter().map(|a| a.variable).collect()
+    let laws = fewest_variables(&regression, screened, 0.1);
+    laws.into_iter().next().expect("the first variable is there").law
 }
 
 #[test]
@@ -92,4 +99,19 @@ fn a_second_variable_that_is_there_is_taken() {
     let both = [Variable::Position(0), Variable::Position(1)];
     let right = (0..30).filter(|_| taken(&mut rng, 0.8) == both).count();
     assert!(right >= 27, "{right} of 30");
+}
+
+#[test]
+fn a_torque_in_proportion_to_two_variables_is_taken_as_that() {
+    let mut rng = Pcg64::seed_from_u64(7);
+    let lines = (0..30).filter(|_| law(&mut rng, |a, b| a - b).together == Together::Lines).count();
+    assert!(lines >= 27, "{lines} of 30");
+}
+
+#[test]
+fn a_torque_that_waves_over_the_sum_of_two_positions_is_taken_as_that() {
+    let mut rng = Pcg64::seed_from_u64(8);
+    let wave = |a: f64, b: f64| 2.0 * (0.7 * (a + b)).sin();
+    let sums = (0..30).filter(|_| law(&mut rng, wave).together == Together::Sum).count();
+    assert!(sums >= 27, "{sums} of 30");
 }
