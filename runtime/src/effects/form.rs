@@ -134,15 +134,20 @@ impl Form {
 
     /// Whether it has an inner state, which a recording does not tell where a motion begins.
     pub fn has_memory(self) -> bool {
+        self.joint_law().is_some_and(JointLaw::has_memory)
+    }
+
+    /// The law of one joint, felt by itself or heard by its neighbour.
+    fn joint_law(self) -> Option<&'static dyn JointLaw> {
         match self {
-            Self::Joint(law) | Self::Heard(law) => law.has_memory(),
+            Self::Joint(law) | Self::Heard(law) => Some(law),
             Self::Sensitivity(_)
             | Self::Compliance(_)
             | Self::Body(_)
             | Self::Coupled
             | Self::Window
             | Self::Free
-            | Self::User => false,
+            | Self::User => None,
         }
     }
 
@@ -163,16 +168,7 @@ impl Form {
 
     /// Whether a negative amplitude is something else.
     pub fn only_positive(self) -> bool {
-        match self {
-            Self::Joint(law) | Self::Heard(law) => law.only_positive(),
-            Self::Sensitivity(_)
-            | Self::Compliance(_)
-            | Self::Body(_)
-            | Self::Coupled
-            | Self::Window
-            | Self::Free
-            | Self::User => false,
-        }
+        self.joint_law().is_some_and(JointLaw::only_positive)
     }
 
     /// Whether its shape is its amplitude once more: an error that is not small bends its own column, so that the

@@ -59,17 +59,14 @@ pub(in crate::diagnosis) fn screen(
         (0..axes.len()).flat_map(|a| (a + 1..axes.len()).map(move |b| [a, b])).collect();
     // Products; sums with the best variable: it may be half of one; and what two do in proportion, or by what they are together.
     let best = single.first().and_then(|j| axes.iter().position(|a| a.variable == j.law.axes[0].variable));
-    let laws_of = |k: usize, ways: &[Together]| {
-        let two = pairs[k].map(|a| axes[a]);
-        ways.iter().map(|&way| FreeLaw::two(way, two)).collect::<Vec<_>>()
-    };
     let gains = parallel::map(threads, pairs.len(), |k| {
+        let two = pairs[k].map(|a| axes[a]);
         let of = |ways: &[Together]| {
-            let gains = laws_of(k, ways).into_iter().map(|law| glance.gain(&law, &pairs[k]));
+            let gains = ways.iter().map(|&way| glance.gain(&FreeLaw::two(way, two), &pairs[k]));
             gains.fold(f64::NEG_INFINITY, f64::max)
         };
         let with_best = best.is_some_and(|b| pairs[k].contains(&b));
-        let few = [&[Together::Lines][..], sums(context, pairs[k].map(|a| axes[a]))].concat();
+        let few = [&[Together::Lines][..], sums(context, two)].concat();
         [of(&[Together::Multiplied]), of(if with_best { &[Together::Added] } else { &[] }), of(&few)]
     });
     let mut order: Vec<usize> = Vec::new();

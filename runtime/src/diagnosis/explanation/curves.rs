@@ -14,7 +14,7 @@ use crate::diagnosis::rules::{BINS, LEAST_DIFFERENCES, LEAST_MISMATCH, ORDERED_B
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{Abscissa, EffectKind, Place, Variable};
-use crate::model::{JointIndex, JointKind};
+use crate::model::JointIndex;
 
 /// The variable that reveals a law with these numbers, on a joint at a sample of a motion.
 pub(in crate::diagnosis) fn abscissa(
@@ -95,11 +95,7 @@ pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, term: &Accepted, 
     curve.fine = fine_law(model, (term, &amplitude), joint, at, along);
     let kind = |j: usize| model.context.scales[j].kind;
     let name = match variable {
-        Some(variable) => {
-            let number = |j: usize| model.context.model.robot().joint_number(JointIndex(j)).0;
-            let unit = variable.unit(variable.joint().map_or(JointKind::Revolute, kind));
-            format!("{}, {unit}", variable.words(number))
-        }
+        Some(variable) => free_form::label(model, variable),
         None => properties.abscissa.label(kind(joint)),
     };
     curve.variable =

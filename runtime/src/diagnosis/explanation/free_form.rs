@@ -46,6 +46,12 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// Standard deviation of a law where its columns have these values.
+fn deviation(covariance: &[Vec<f64>], columns: &[f64]) -> f64 {
+    let variance: f64 = columns.iter().zip(covariance).map(|(c, row)| c * product(row, columns)).sum();
+    variance.max(0.0).sqrt()
+}
+
 /// Values of a variable from one end of its interval to the other, without its middle, where a direction changes.
 fn grid(axis: &Axis) -> impl Iterator<Item = f64> + use<> {
     let (low, step) = (axis.centre - axis.half, 2.0 * axis.half / (POINTS - 1) as f64);
@@ -105,9 +111,6 @@ pub(in crate::diagnosis) fn curves(model: &ExtendedModel<'_>, k: usize) -> Vec<C
     let dense: Vec<&[f64]> =
         model.slow.term_columns[k].clone().map(|c| design.columns[c].as_slice()).collect();
     let number = |j: usize| context.model.robot().joint_number(JointIndex(j)).0;
-    let unit = |axis: &Axis| {
-        axis.variable.unit(axis.variable.joint().map_or(JointKind::Revolute, |j| context.scales[j].kind))
-    };
     let drawn = |over: Vec<Vec<f64>>, variable: String| {
         let mut rows = Vec::new();
         let mut spread = Vec::new();
@@ -116,8 +119,7 @@ pub(in crate::diagnosis) fn curves(model: &ExtendedModel<'_>, k: usize) -> Vec<C
             let torque = product(&x, &amplitude);
             let at = over[design.rows[r].signal][design.rows[r].centre];
             rows.push((at, residual[r] + torque, torque));
-            let made: f64 = x.iter().zip(&covariance).map(|(x_i, row)| x_i * product(row, &x)).sum();
-            spread.push((at, made.max(0.0).sqrt(), 0.0));
+            spread.push((at, deviation(&covariance, &x), 0.0));
         }
         let mut curve = binned(rows);
         curve.variable = variable;
@@ -132,13 +134,27 @@ pub(in crate::diagnosis) fn curves(model: &ExtendedModel<'_>, k: usize) -> Vec<C
             a.iter().zip(&b).map(|(a, b)| sum.of(*a, *b)).collect()
         };
         let name = sum_in_words(&law, number);
-        return vec![drawn(motions().map(of_motion).collect(), format!("{name}, {}", unit(a)))];
+        return vec![drawn(
+            motions().map(of_motion).collect(),
+            format!("{name}, {}", unit(model, a.variable)),
+        )];
     }
     let of_axis = |axis: &Axis| {
         let over = motions().map(|s| values(context, s, axis.variable)).collect();
-        drawn(over, format!("{}, {}", axis.variable.words(number), unit(axis)))
+        drawn(over, label(model, axis.variable))
     };
     law.axes.iter().map(of_axis).collect()
+}
+
+fn unit(model: &ExtendedModel<'_>, variable: Variable) -> &'static str {
+    let kind = |j: usize| model.context.scales[j].kind;
+    variable.unit(variable.joint().map_or(JointKind::Revolute, kind))
+}
+
+/// A variable with its unit, as an axis is called.
+pub(in crate::diagnosis) fn label(model: &ExtendedModel<'_>, variable: Variable) -> String {
+    let number = |j: usize| model.context.model.robot().joint_number(JointIndex(j)).0;
+    format!("{}, {}", variable.words(number), unit(model, variable))
 }
 
 /// What a person calls the sum, or the difference, that a law is over.
@@ -174,8 +190,7 @@ pub(in crate::diagnosis) fn proposal(model: &ExtendedModel<'_>, k: usize) -> Opt
     let points = |over: &Axis, at: &dyn Fn(f64) -> Vec<f64>| -> Vec<Point> {
         let point = |x: f64| {
             let c = at(x);
-            let variance: f64 = c.iter().zip(&covariance).map(|(c_i, row)| c_i * product(row, &c)).sum();
-            Point { x, y: product(&c, &amplitude), sigma: variance.max(0.0).sqrt() }
+            Point { x, y: product(&c, &amplitude), sigma: deviation(&covariance, &c) }
         };
         grid(over).map(point).collect()
     };
