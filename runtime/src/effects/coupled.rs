@@ -16,6 +16,9 @@ impl CoupledRotor {
     /// Ratios to try.
     pub const RATIOS: [f64; 6] = [-1.0, -0.5, -0.25, 0.25, 0.5, 1.0];
 
+    /// Speed over which dry friction of the rotor turns its sign, rad/s or m/s of joint b.
+    const ROUNDING: f64 = 0.01;
+
     /// Neighbouring joints whose coupling the model does not have.
     pub fn places(robot: &Robot) -> Vec<Place> {
         let n = robot.joints();
@@ -40,8 +43,13 @@ impl CoupledRotor {
     pub fn columns(&self, dq: [f64; 2], ddq: [f64; 2]) -> [[f64; 2]; 3] {
         let v = self.ratio * dq[0] + dq[1];
         let dv = self.ratio * ddq[0] + ddq[1];
-        let sign = if v == 0.0 { 0.0 } else { v.signum() };
-        [v, sign, dv].map(|x| [self.ratio * x, x])
+        [v, Self::direction(v), dv].map(|x| [self.ratio * x, x])
+    }
+
+    /// The sign of the rotor's speed, which does not turn in an instant. The rotor passes zero while both joints move, and may
+    /// stay near it for long: a sign that jumps there would say of the ratio what nobody knows of the speed.
+    pub fn direction(speed: f64) -> f64 {
+        (speed / Self::ROUNDING).tanh()
     }
 
     /// Amplitudes and ratio as the quantities a person knows, with their standard deviations.
@@ -54,5 +62,19 @@ impl CoupledRotor {
             .collect();
         list.push(Parameter::new("ratio", self.ratio, ratio_sigma, "1"));
         list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dry_friction_of_a_rotor_that_hardly_turns_has_no_full_sign_and_of_one_that_turns_it_has() {
+        let of = |dq: [f64; 2]| CoupledRotor { ratio: -0.5 }.columns(dq, [0.0, 0.0])[1];
+        assert_eq!(of([2.0, 1.0]), [0.0, 0.0]);
+        let [on_a, on_b] = of([2.0, 1.001]);
+        assert!((0.05..0.2).contains(&on_b) && on_a == -0.5 * on_b, "{on_a} {on_b}");
+        assert!(of([2.0, 1.1])[1] > 0.999 && of([2.0, 0.9])[1] < -0.999);
     }
 }

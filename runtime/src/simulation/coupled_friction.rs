@@ -1,6 +1,7 @@
 //! Friction of a rotor that two joints drive, in a simulated robot.
 
 use super::extra::{ExtraTorque, Instant};
+use crate::effects::CoupledRotor;
 
 /// Friction of a rotor that turns with two joints, its speed being ratio·dq_a + dq_b.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,14 +16,11 @@ pub(super) struct CoupledFriction {
     pub(super) coulomb: f64,
 }
 
-/// Speed over which the sign of the rotor's velocity turns, rad/s: it must not chatter at rest.
-const ROUNDING: f64 = 0.01;
-
 impl ExtraTorque for CoupledFriction {
     fn torque(&self, at: &Instant<'_>, out: &mut [f64]) {
         let [a, b] = self.joints;
         let speed = self.ratio * at.dq[a] + at.dq[b];
-        let friction = self.viscous * speed + self.coulomb * (speed / ROUNDING).tanh();
+        let friction = self.viscous * speed + self.coulomb * CoupledRotor::direction(speed);
         out[a] += self.ratio * friction;
         out[b] += friction;
     }

@@ -23,6 +23,12 @@ pub(in crate::diagnosis) struct Candidate {
 }
 
 impl Candidate {
+    /// Whether it acts on the joints of another, in any order: a rotor that turns as much with one joint as with its neighbour
+    /// is the same law from both.
+    pub fn acts_where(&self, other: &Self) -> bool {
+        self.own.len() == other.own.len() && self.own.iter().all(|j| other.own.contains(j))
+    }
+
     /// Whether it is a number of the model that changes with time, of one joint or of all.
     pub fn is_trend(&self) -> bool {
         self.effect.properties().abscissa == Abscissa::Time

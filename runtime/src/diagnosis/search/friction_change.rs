@@ -148,7 +148,6 @@ impl Search<'_> {
     /// Makes what has changed on a joint a term of the model, in the place of friction that is free in the recording.
     fn take(&mut self, found: &Changed) -> Result<(), SingularDesign> {
         let &Changed { joint, change, significance, confidence } = found;
-        let before = self.friction_of_baseline(joint);
         let variances = self.model.slow.fit.variances();
         let chi = &self.model.slow.fit.chi;
         let ratios = self.own_friction(joint).map(|k| chi[k].abs() / variances[k].max(1e-300).sqrt());
@@ -170,8 +169,8 @@ impl Search<'_> {
             difference_p_value: 1.0,
         };
         let (effect, shape, rivals) = match change {
-            Change::Friction => (EffectKind::FrictionLevelChange, before.to_vec(), Vec::new()),
-            Change::Either => (EffectKind::FrictionLevelChange, before.to_vec(), vec![rival(DRIVE_GAIN)]),
+            Change::Friction => (EffectKind::FrictionLevelChange, vec![1.0; 2], Vec::new()),
+            Change::Either => (EffectKind::FrictionLevelChange, vec![1.0; 2], vec![rival(DRIVE_GAIN)]),
             Change::DriveGain => (DRIVE_GAIN, Vec::new(), Vec::new()),
         };
         self.model.terms.push(Accepted {
@@ -189,7 +188,15 @@ impl Search<'_> {
             rivals,
             is_transient: false,
         });
-        self.refit_and_update()
+        self.refit_and_update()?;
+        if effect == EffectKind::FrictionLevelChange {
+            // What the friction was before is told apart from what it is now by the term itself.
+            let before = self.friction_of_baseline(joint);
+            if let Some(term) = self.model.terms.last_mut() {
+                term.shape = before.to_vec();
+            }
+        }
+        Ok(())
     }
 
     fn own_friction(&self, joint: usize) -> Range<usize> {

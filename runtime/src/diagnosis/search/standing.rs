@@ -42,7 +42,7 @@ impl Search<'_> {
         let (gain, window) = (ranked[candidate].verdict.gain, ranked[candidate].window);
         let mut rivals: Vec<usize> = (0..ranked.len())
             .filter(|&k| ranked[k].window == window && ranked[k].verdict.gain > COMPARABLE * gain)
-            .filter(|&k| self.of(&ranked[k]).1.own != law.own)
+            .filter(|&k| !self.of(&ranked[k]).1.acts_where(law))
             // What would itself not be named beside a simpler law is no rival of others.
             .filter(|&k| self.is_told_from_simpler(round, ranked, k, least_confidence))
             .collect();
