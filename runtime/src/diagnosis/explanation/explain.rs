@@ -4,6 +4,7 @@ use crate::diagnosis::candidates::companions::LEVELS;
 use crate::diagnosis::candidates::nuisances::friction_columns;
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
+use crate::diagnosis::explanation::deviations::deviations;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
 use crate::diagnosis::explanation::{
@@ -56,7 +57,9 @@ pub(in crate::diagnosis) fn explain(
     let skew = ended.delay + model.slow.fit.chi[model.slow.design.parameters];
 
     // 1. What was found, and what it gains on motion that was held out.
-    let effects = parallel::map(settings.threads, model.terms.len(), |k| of_term(model, k));
+    let deviations = deviations(model)?;
+    let effects =
+        parallel::map(settings.threads, model.terms.len(), |k| of_term(model, k, deviations[k].clone()));
     let effects = effects.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut cannot_tell = cannot_tell(model, &effects);
     for tie in &search.ties {

@@ -3,8 +3,9 @@
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::curves;
+use crate::diagnosis::explanation::deviations::Deviations;
 use crate::diagnosis::explanation::free_form;
-use crate::diagnosis::explanation::quantities::{Quantified, quantified, uncertainty};
+use crate::diagnosis::explanation::quantities::{Quantified, quantified};
 use crate::diagnosis::explanation::standard_model::estimated;
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::outcome::{Alternative, Finding, ParameterValue, WithoutIt};
@@ -39,17 +40,21 @@ pub(in crate::diagnosis) fn named_on(robot: &Robot, effect: EffectKind, place: P
     joints.map(|j| robot.joint_number(JointIndex(j)).0).collect()
 }
 
-/// Term k of a model as a finding. The model stays as it is: the errors without the term are those of a copy.
+/// Term k of a model as a finding, given the standard deviations of its numbers. The model stays as it is: the errors without
+/// the term are those of a copy.
 ///
 /// # Errors
 /// [`DiagnosisError`] where the model without the term has no fit.
-pub(in crate::diagnosis) fn of_term(model: &ExtendedModel<'_>, k: usize) -> Result<Finding, DiagnosisError> {
+pub(in crate::diagnosis) fn of_term(
+    model: &ExtendedModel<'_>,
+    k: usize,
+    deviations: Deviations,
+) -> Result<Finding, DiagnosisError> {
     let accepted = &model.terms[k];
     let window = accepted.effect.properties().window;
     let regression = model.regression(window);
     let range = regression.term_columns[k].clone();
     let amplitude: Vec<f64> = range.map(|c| regression.fit.chi[c]).collect();
-    let deviations = uncertainty(model, k, &amplitude)?;
     let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
     let reduced = model.without(k)?;
     let seen = regression.curves();
@@ -91,7 +96,7 @@ fn bare_term(model: &ExtendedModel<'_>, k: usize) -> EffectTerm {
     let accepted = &model.terms[k];
     let regression = model.regression(accepted.effect.properties().window);
     let amplitude: Vec<f64> = regression.term_columns[k].clone().map(|c| regression.fit.chi[c]).collect();
-    let deviations = (vec![0.0; amplitude.len()], vec![0.0; accepted.shape.len()]);
+    let deviations = Deviations::none(amplitude.len(), accepted.shape.len());
     let Quantified { amplitude, sigma, .. } = quantified(model, accepted, amplitude, deviations);
     with_amplitude(model, accepted, amplitude, sigma)
 }

@@ -4,6 +4,7 @@ mod binned;
 pub(in crate::diagnosis) mod covariance;
 pub(in crate::diagnosis) mod curves;
 pub(in crate::diagnosis) mod delay;
+mod deviations;
 pub(in crate::diagnosis) mod explain;
 pub(in crate::diagnosis) mod finding;
 mod fine_law;

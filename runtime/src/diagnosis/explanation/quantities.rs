@@ -1,67 +1,14 @@
 //! The quantities of an accepted effect that a person knows, with their uncertainty.
 
-use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::explanation::deviations::Deviations;
 use crate::diagnosis::explanation::free_form;
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, LONGEST_BLOCK, QUANTITY_STEP};
+use crate::diagnosis::rules::QUANTITY_STEP;
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
-use crate::diagnosis::search::tangents::{along_parameters, tangents};
 use crate::diagnosis::search::term::{Accepted, Mode};
 use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter};
 use crate::model::JointIndex;
-
-/// Standard deviations of amplitudes and shape parameters, estimated together: shape parameters enter through the
-/// derivative of the columns (variable projection, Golub and Pereyra 1973), and the columns of base parameters are the
-/// derivatives of all that is made of them, the load that a gear loses a part of too. Each is the larger of two: with the
-/// noise that the test of the term allowed for, and as blocks of motion differ.
-///
-/// # Errors
-/// [`SingularDesign`] where there is no fit with these derivatives.
-pub(in crate::diagnosis) fn uncertainty(
-    model: &ExtendedModel<'_>,
-    k: usize,
-    amplitude: &[f64],
-) -> Result<(Vec<f64>, Vec<f64>), SingularDesign> {
-    let term = &model.terms[k];
-    let side = model.regression(term.effect.properties().window);
-    let mut design = side.design.clone();
-    let start = design.columns.len();
-    let mut varied = Vec::new();
-    for (i, slope) in tangents(model, &side.design, term, amplitude) {
-        design.push(slope);
-        varied.push(i);
-    }
-    let of_parameters = along_parameters(model, term, amplitude);
-    let first = of_parameters.first().map_or(start, |(i, _)| *i);
-    for (i, slope) in of_parameters {
-        design.columns[i].iter_mut().zip(slope).for_each(|(column, slope)| *column += slope);
-    }
-    design.refresh_from(first);
-    let fit = Fit::whole(&design, &side.sigma)?;
-    let variances = fit.variances();
-    let residual = fit.residual(&design);
-    let rows = design.rows_within(LONGEST_BLOCK);
-    // The first allows for the noise of the test; by blocks also noise of longer memory and what the law lacks count.
-    let sd = |c: usize| {
-        let white = term.inflation * term.inflation * variances[c];
-        let by_blocks = fit.variance_by_blocks(&design, &residual, c, rows);
-        white.max(by_blocks.map_or(0.0, |by_blocks| by_blocks.widened())).max(0.0).sqrt()
-    };
-    let amplitudes = side.term_columns[k].clone().map(sd).collect();
-    let mut shapes = vec![0.0; term.shape.len()];
-    for (at, &i) in varied.iter().enumerate() {
-        shapes[i] = sd(start + at).min(LARGEST_SHAPE_SIGMA * term.shape[i].abs());
-    }
-    if let Form::Compliance(law) = term.effect.form() {
-        let highest = 0.5 / design.step;
-        for i in law.unseen(&term.shape, highest) {
-            shapes[i] = LARGEST_SHAPE_SIGMA * term.shape[i].abs();
-        }
-    }
-    Ok((amplitudes, shapes))
-}
 
 /// What a finding and a model keep of an accepted effect.
 pub(in crate::diagnosis) struct Quantified {
@@ -79,9 +26,10 @@ pub(in crate::diagnosis) fn quantified(
     model: &ExtendedModel<'_>,
     term: &Accepted,
     amplitude: Vec<f64>,
-    (sigma, shape_sigma): (Vec<f64>, Vec<f64>),
+    deviations: Deviations,
 ) -> Quantified {
     let context = &model.context;
+    let Deviations { amplitude: sigma, shape: shape_sigma } = deviations;
     let parameters = match term.effect.form() {
         Form::Joint(law) | Form::Heard(law) => term.place.law_of().map(|j| {
             let of = |shape: &[f64]| law.parameters(&context.scales[j], shape, &amplitude, &sigma);

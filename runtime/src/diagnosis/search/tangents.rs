@@ -73,11 +73,12 @@ pub(in crate::diagnosis) fn along_starts(
     (0..model.context.signals.len()).flat_map(of_motion).collect()
 }
 
-/// Derivatives of a term's torque on the rows that it is judged on by the base parameters, where its columns are made of
+/// Derivatives of a term's torque on the rows of a regression by the base parameters, where its columns are made of
 /// these: the load of a gear, a torque that is heard. Differences over one standard deviation of each parameter, as far as
 /// it may be off; each with the place of the parameter.
 pub(in crate::diagnosis) fn along_parameters(
     model: &ExtendedModel<'_>,
+    Regression { design, fit, .. }: &Regression,
     term: &Accepted,
     amplitude: &[f64],
 ) -> Vec<(usize, Vec<f64>)> {
@@ -85,7 +86,6 @@ pub(in crate::diagnosis) fn along_parameters(
     if !term.effect.properties().follows_parameters || term.effect.form().is_curve() {
         return Vec::new();
     }
-    let Regression { design, fit, .. } = model.regression(term.effect.properties().window);
     let deviations = fit.variances().map(|v| v.max(0.0).sqrt());
     let weights = weights(term, amplitude);
     let torque = |context: &Context<'_>| {
