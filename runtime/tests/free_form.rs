@@ -85,6 +85,13 @@ fn hose(motion: &mut Trajectory) {
     }
 }
 
+/// A step in the casting that a seal of the first joint passes where the second one stands at an angle.
+fn bump_over_another_angle(motion: &mut Trajectory) {
+    for t in 0..motion.time.len() {
+        motion.torque[0][t] += 4.0 * (-((motion.position[1][t] - 0.3) / 0.15).powi(2)).exp();
+    }
+}
+
 fn magnet(motion: &mut Trajectory) {
     for t in 0..motion.time.len() {
         motion.torque[1][t] += 2.0 * (-(motion.position[1][t] / 0.4).powi(2)).exp();
@@ -160,6 +167,13 @@ fn a_magnet_under_a_joint_depends_on_its_own_position_whatever_it_is_called() {
     };
     assert!(diagnosis.findings.iter().any(|f| f.joints == [2] && of_position(f)));
     assert!(diagnosis.findings.iter().all(|f| f.joints == [2] && of_position(f)));
+}
+
+#[test]
+fn what_comes_back_with_the_angle_of_another_joint_is_a_law_and_no_row_of_pushes() {
+    let diagnosis = diagnosed_from(&planar(), &Hidden::in_recording(bump_over_another_angle), 12.0);
+    assert_eq!(named(&diagnosis), [("free_form", vec![1])]);
+    over(&diagnosis, 1, &["q2"]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Pushes from outside in the course of a diagnosis: found beside the standard model, set aside, looked at again beside the
 //! laws that were found.
 
+use super::candidates::trial::dense_columns;
 use super::contact::felt::Around;
 use super::contact::moving;
 use super::contact::search::{self as contact_search, Contacts};
@@ -14,9 +15,11 @@ use super::search::extended_model::ExtendedModel;
 use super::search::state::Search;
 use super::search::tangents::{along_starts, tangents};
 use super::settings::Settings;
+use crate::effects::{EffectKind, Place};
 use crate::model::Model;
 
 /// Windows in which something outside seems to have pushed the robot.
+#[derive(Clone)]
 pub(super) struct Pushes {
     /// Seen by several joints.
     contacts: Option<Contacts>,
@@ -42,6 +45,11 @@ impl Pushes {
         Contacts::joined(self.contacts.clone().filter(|_| self.set_aside), self.of_single_joints.clone())
     }
 
+    /// How many were seen by single joints.
+    pub fn of_single_joints(&self) -> usize {
+        self.of_single_joints.as_ref().map_or(0, |contacts| contacts.wrenches.len())
+    }
+
     /// Looks at what a model with effects leaves; whether other rows are to be set aside than were.
     pub fn differ_beside(
         &mut self,
@@ -63,7 +71,7 @@ impl Pushes {
         if self.scanned && self.of_single_joints.is_none() && self.contacts.is_none() {
             return false;
         }
-        let (confirmed, found) = pushed_in_motion(model, prepared, self.contacts.as_ref(), search);
+        let (confirmed, found) = pushed_in_motion(model, prepared, self.contacts.as_ref(), search, settings);
         let refuted = self.contacts.is_some() && confirmed.is_none();
         self.contacts = confirmed;
         if self.scanned || !settings.single_joint_contacts {
@@ -97,12 +105,19 @@ fn pushed_in_motion(
     prepared: &Prepared,
     contacts: Option<&Contacts>,
     search: &Search<'_>,
+    settings: &Settings,
 ) -> (Option<Contacts>, Option<Contacts>) {
     let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
     let context = &search.model.context;
     let nothing_else = search.model.terms.is_empty() && search.ties.is_empty() && search.rejected.is_empty();
     let level = if nothing_else { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
-    let beside = uncertain(&search.model, &outside);
+    let mut beside = uncertain(&search.model, &outside);
+    // A wave over the angle of a joint that creeps comes and goes as slowly as a push.
+    let ripple = EffectKind::TorqueRipple;
+    for (joint, lines) in search.lines_beside_model(settings) {
+        let orders: Vec<f64> = lines.iter().map(|line| line.order).collect();
+        beside.extend(dense_columns(context, &outside, ripple, Place::Joint(joint), &orders, false));
+    }
     let left = Left {
         residual: &search.model.residual_on(&outside),
         beside: &beside,

@@ -481,6 +481,9 @@ pub(super) const SCAN_LEVEL: f64 = 2e-4;
 /// right, or not at all, leaves short waves where it acts, which the law of the largest means knows nothing of, and of which
 /// joints feel the same; pushes of a hand are mostly far beyond.
 pub(super) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-6;
+/// Pushes on single joints, at least so many, are a law where one over any variables leaves at most one in so many of them.
+/// Judgement: a hand does not come back with the state of the robot, and what does is predicted on motion that was held out.
+pub(super) const RECURRING: usize = 2;
 /// A push whose half wave is longer than this, s, is none. Mechanics: what lasts longer than the longest window goes on as slowly
 /// as the motion does, and a law that acts as long as a stroke looks like it.
 pub(super) const SCAN_LONGEST: f64 = 2.7;
@@ -540,6 +543,9 @@ pub(super) const RECORDED_BAND: f64 = 0.4;
 /// Parts of that band in which a wave is sought. Mechanics: a position loop reaches a twentieth to a fifth of the rate at
 /// which a robot is recorded, and its motor answers to no ripple that is faster.
 pub(super) const LINE_BANDS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+/// Part of the cut-off of the positions below which a wave has its whole amplitude. Mechanics: there a filter of the fourth
+/// order, forwards and backwards, lets 99.6 % of the acceleration through that a controller leaves of it.
+pub(super) const LINE_FOLLOWED: f64 = 0.5;
 /// Orders of a spectrum that are looked at besides.
 pub(super) const LINE_PICKED: usize = 4;
 /// How far a known order must stand above the larger median of the orders on both sides of it to be a line of a motion.

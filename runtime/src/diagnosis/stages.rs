@@ -13,6 +13,7 @@ use super::pushes::Pushes;
 use super::rate::LAW;
 use super::reference::Reference;
 use super::rows::fit::Fit;
+use super::rules::RECURRING;
 use super::search::extended_model::ExtendedModel;
 use super::search::report::SearchReport;
 use super::search::state::Search;
@@ -167,8 +168,12 @@ impl<'a> Course<'a> {
             Some(known) => search.force(known)?,
             None => search.run(settings, self.progress)?,
         };
+        let before = pushes.clone();
         if pushes.differ_beside(self.model, self.prepared, search, settings) {
-            return Ok(None);
+            let Some(of_law) = self.law_in_their_place(search, pushes, before, settings)? else {
+                return Ok(None);
+            };
+            report = of_law;
         }
         // What something outside did is no law over some variable: those are looked for without it.
         if self.known.is_none() && !search.beyond_catalogue {
@@ -186,6 +191,30 @@ impl<'a> Course<'a> {
             search.keep_transients(settings)?;
         }
         Ok(Some(report))
+    }
+
+    /// A law over any variables that leaves few of the pushes on single joints which were found, looked for with their rows:
+    /// what comes back with the state of the robot is no push. `before` is what was known of pushes before they were found;
+    /// `None` where there is no such law, or other rows are set aside beside it.
+    fn law_in_their_place(
+        &self,
+        search: &mut Search<'_>,
+        pushes: &mut Pushes,
+        before: Pushes,
+        settings: &Settings,
+    ) -> Result<Option<SearchReport>, DiagnosisError> {
+        if self.known.is_some() || search.beyond_catalogue || pushes.of_single_joints() < RECURRING {
+            return Ok(None);
+        }
+        search.beyond_catalogue = true;
+        let report = search.run(settings, self.progress)?;
+        let mut left = before;
+        let differ = left.differ_beside(self.model, self.prepared, search, settings);
+        if left.of_single_joints() > pushes.of_single_joints() / RECURRING {
+            return Ok(None);
+        }
+        *pushes = left;
+        Ok((!differ).then_some(report))
     }
 
     fn explained(

@@ -7,12 +7,13 @@
 //! waves.
 //!
 //! A motor's torque shows a ripple only as far as its controller answers to it: what is faster than the loop is left in the
-//! speed. How fast that is nobody knows beforehand, so that a wave is also sought where the joint is slow.
+//! speed. How fast that is nobody knows beforehand, so that a wave is also sought where the joint is slow. Where the positions
+//! hold it, what is left in the speed is part of the torque of the model: there it has its whole amplitude.
 
 use super::wave::{Orders, Sample, Wave, turned, wave};
 use crate::diagnosis::rules::{
-    LINE_ABOVE, LINE_AROUND, LINE_BANDS, LINE_COVERED, LINE_LEAST_FRACTION, LINE_LEAST_SAMPLES,
-    LINE_LEAST_WAVES, LINE_PICKED_ABOVE, LINE_SLOWER,
+    LINE_ABOVE, LINE_AROUND, LINE_BANDS, LINE_COVERED, LINE_FOLLOWED, LINE_LEAST_FRACTION,
+    LINE_LEAST_SAMPLES, LINE_LEAST_WAVES, LINE_PICKED_ABOVE, LINE_SLOWER,
 };
 use crate::statistics::greatest_of::highest_p_value;
 use crate::statistics::median::median;
@@ -26,6 +27,8 @@ pub(in crate::diagnosis) struct Stroke<'a> {
     pub residual: &'a [f64],
     /// Highest frequency that the residual holds, Hz.
     pub band: f64,
+    /// Highest frequency that the positions hold, from which the torque of the model is, Hz.
+    pub cutoff: f64,
 }
 
 /// A line in the order spectrum of a joint.
@@ -34,10 +37,12 @@ pub(in crate::diagnosis) struct Line {
     /// Angle of the wave per angle of the joint.
     pub order: f64,
     /// Amplitudes of cosine and sine, N.m or N, all motions together, and their standard deviation from the orders
-    /// around it.
+    /// around it; where the wave is so slow that the model has the acceleration which a controller leaves of it.
     pub cosine: f64,
     pub sine: f64,
     pub sigma: f64,
+    /// Amplitude of the wave in standard deviations of those around it, where it stands out farthest.
+    pub above: f64,
     /// Rms of the residual without what is slower, N.m or N, the median of the motions.
     pub rms: f64,
     /// Probability that noise stands as far above the orders on both sides of it anywhere near the order that was asked for, in
@@ -94,7 +99,8 @@ fn line(
     (part, slowest): (f64, f64),
     resolved: f64,
 ) -> Option<Line> {
-    let sampled: Vec<Vec<Sample>> = strokes.iter().map(|s| samples(s, order, (part, slowest))).collect();
+    let slower = |s: &Stroke<'_>| 0.9 * part * s.band;
+    let sampled: Vec<Vec<Sample>> = strokes.iter().map(|s| samples(s, order, [slowest, slower(s)])).collect();
     let looked: Vec<Look> = strokes.iter().zip(&sampled).map(|(s, all)| look(s, all, order)).collect();
     let able = looked.iter().filter(|l| !matches!(l, Look::Blind)).count();
     let shown: Vec<&InMotion> = looked.iter().filter_map(|l| l.line(above)).collect();
@@ -109,11 +115,25 @@ fn line(
     let (order, together) = highest(&all, usual(|l| l.order), resolved)?;
     // A wave over the joint's angle has one phase in all motions: together they show it no worse than one by one.
     let around = Around::of(&all, order, resolved);
-    (together.norm() >= above * around.level).then(|| Line {
+    if together.norm() < above * around.level {
+        return None;
+    }
+    let followed = |s: &Stroke<'_>| slower(s).min(LINE_FOLLOWED * s.cutoff);
+    let whole: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, [slowest, followed(s)])).collect();
+    let (wave, sigma) = if turns(&whole, order) < LINE_LEAST_WAVES {
+        // Of a wave that is nowhere that slow only what the controller answered is known, a part of it.
+        let sigma = deviation(around.level).max(together.norm());
+        (together, sigma)
+    } else {
+        let sigma = deviation(Around::of(&whole, order, resolved).level);
+        (wave(&whole, &turned(&whole, order)), sigma)
+    };
+    Some(Line {
         order,
-        cosine: together.c,
-        sine: together.s,
-        sigma: deviation(around.level),
+        cosine: wave.c,
+        sine: wave.s,
+        sigma,
+        above: together.norm() / deviation(around.level),
         rms: usual(|l| l.rms),
         p_value: highest_p_value(together.norm() / around.level, around.orders, resolved * spread(&all)),
         known,
@@ -164,11 +184,8 @@ impl Look {
 fn look(stroke: &Stroke<'_>, samples: &[Sample], order: f64) -> Look {
     let half = samples.len() / 2;
     let (first, second) = samples.split_at(half);
-    let turns = |part: &[Sample]| {
-        part.windows(2).map(|w| (w[1].q - w[0].q).abs()).filter(|d| d * order < 3.0).sum::<f64>() * order
-            / TAU
-    };
-    if half < LINE_LEAST_SAMPLES || turns(first) < LINE_LEAST_WAVES || turns(second) < LINE_LEAST_WAVES {
+    let few = |part: &[Sample]| turns(part, order) < LINE_LEAST_WAVES;
+    if half < LINE_LEAST_SAMPLES || few(first) || few(second) {
         return Look::Blind;
     }
     let step = TAU / travel(stroke.q).max(1e-9);
@@ -195,6 +212,12 @@ fn look(stroke: &Stroke<'_>, samples: &[Sample], order: f64) -> Look {
         above: fitted.norm() / Around::of(samples, order, step).level,
         share,
     })
+}
+
+/// Waves that samples pass.
+fn turns(samples: &[Sample], order: f64) -> f64 {
+    let steps = samples.windows(2).map(|w| (w[1].q - w[0].q).abs());
+    steps.filter(|d| d * order < 3.0).sum::<f64>() * order / TAU
 }
 
 /// Where exactly a line near an order is, as far as the travel tells.
@@ -243,9 +266,9 @@ impl Around {
     }
 }
 
-/// Samples at which the joint moves slowly enough for this part of the band to hold the wave.
-fn samples(stroke: &Stroke<'_>, order: f64, (part, slowest): (f64, f64)) -> Vec<Sample> {
-    let fastest = 0.9 * part * stroke.band * TAU / order;
+/// Samples at which the joint moves faster than `slowest` and the wave is slower than a frequency.
+fn samples(stroke: &Stroke<'_>, order: f64, [slowest, frequency]: [f64; 2]) -> Vec<Sample> {
+    let fastest = frequency * TAU / order;
     let usable = |t: usize| stroke.dq[t].abs() > slowest && stroke.dq[t].abs() < fastest;
     let reach = 0.5 * LINE_SLOWER * TAU / order;
     let mut out = Vec::new();

@@ -44,7 +44,10 @@ fn with_phase(rng: &mut Pcg64, speed: f64, order: f64, amplitude: f64, angle: f6
 }
 
 fn strokes(motions: &[Motion]) -> Vec<Stroke<'_>> {
-    motions.iter().map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE }).collect()
+    motions
+        .iter()
+        .map(|m| Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE, cutoff: RATE })
+        .collect()
 }
 
 fn found(motions: &[Motion]) -> Vec<Line> {
@@ -136,6 +139,51 @@ fn a_wave_that_is_mostly_faster_than_the_controller_is_found_where_the_joint_is_
     assert!(in_whole_band <= 4, "{in_whole_band} of 40");
 }
 
+/// The model has what a controller leaves of a ripple in the acceleration, as far as the positions hold it: up to 40 Hz.
+#[test]
+fn the_amplitude_of_a_wave_is_that_where_the_model_follows_what_the_controller_leaves_of_it() {
+    let mut rng = Pcg64::seed_from_u64(30);
+    let (order, cutoff, height) = (2.0 * GEAR, 40.0, 1.2);
+    let (mut within, mut tried, mut too_small) = (0, 0, 0);
+    for _ in 0..40 {
+        let mut all = motion(&mut rng, 2.0, order, 0.0);
+        for ((r, q), dq) in all.residual.iter_mut().zip(&all.q).zip(&all.dq) {
+            let frequency = dq * order / TAU;
+            let held = 1.0 / (1.0 + (frequency / cutoff).powi(8));
+            let lag = frequency / 10.0;
+            let answered = (order * q - lag.atan()).sin() / lag.hypot(1.0);
+            *r += height * (held * (order * q).sin() + (1.0 - held) * answered);
+        }
+        let motions = [all];
+        let near = |lines: Vec<Line>| lines.into_iter().find(|l| (l.order - order).abs() < 1.0);
+        let known: Vec<f64> = LINE_MULTIPLES.iter().map(|k| k * GEAR).collect();
+        let told = |cutoff: f64| {
+            let strokes: Vec<Stroke<'_>> =
+                strokes(&motions).into_iter().map(|s| Stroke { cutoff, ..s }).collect();
+            near(lines(&strokes, &known, &[], 0.05))
+        };
+        let Some([line, of_all]) = told(cutoff).zip(told(RATE)).map(|(a, b)| [a, b]) else { continue };
+        tried += 1;
+        within += usize::from((line.amplitude() - height).abs() < 2.5 * line.sigma);
+        too_small += usize::from(of_all.amplitude() < height - 2.5 * of_all.sigma);
+    }
+    println!("{within} of {tried} hold it, {too_small} too small were every wave believed");
+    assert!(tried >= 30 && within * 10 >= tried * 9, "{within} of {tried}");
+    assert!(too_small * 2 > tried, "{too_small} of {tried}");
+}
+
+#[test]
+fn of_a_wave_that_is_too_fast_everywhere_only_the_order_of_its_amplitude_is_told() {
+    let mut rng = Pcg64::seed_from_u64(31);
+    let order = 4.0 * GEAR;
+    let motions = [motion(&mut rng, 0.5, order, 0.8)];
+    let strokes: Vec<Stroke<'_>> =
+        strokes(&motions).into_iter().map(|s| Stroke { cutoff: 4.0, ..s }).collect();
+    let found = lines(&strokes, &[order], &[], 0.05);
+    let [line] = found.as_slice() else { panic!("{found:?}") };
+    assert!(line.sigma >= line.amplitude(), "{line:?}");
+}
+
 #[test]
 fn a_line_with_three_per_cent_is_mostly_found_where_several_motions_show_it() {
     let mut rng = Pcg64::seed_from_u64(23);
@@ -203,7 +251,7 @@ fn friction_that_was_not_fitted_has_no_line() {
 fn an_order_that_nobody_knew_is_found_among_picked_ones() {
     let mut rng = Pcg64::seed_from_u64(27);
     let m = motion(&mut rng, 0.8, 77.7, amplitude(0.05));
-    let stroke = Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE };
+    let stroke = Stroke { q: &m.q, dq: &m.dq, residual: &m.residual, band: 0.4 * RATE, cutoff: RATE };
     let lines = lines(&[stroke], &[], &[30.0, 78.0, 140.0], 0.05);
     assert_eq!(lines.len(), 1);
     assert!((lines[0].order - 77.7).abs() < 1.0);
@@ -212,7 +260,7 @@ fn an_order_that_nobody_knew_is_found_among_picked_ones() {
 #[test]
 fn a_joint_that_hardly_moves_shows_nothing() {
     let still = vec![0.0; 1000];
-    let stroke = Stroke { q: &still, dq: &still, residual: &still, band: 100.0 };
+    let stroke = Stroke { q: &still, dq: &still, residual: &still, band: 100.0, cutoff: 100.0 };
     assert!(lines(&[stroke], &[202.0], &[100.0], 0.05).is_empty());
     assert!(lines(&[], &[202.0], &[], 0.05).is_empty());
 }

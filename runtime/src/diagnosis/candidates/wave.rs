@@ -7,6 +7,7 @@ pub(super) struct Sample {
 }
 
 /// c cos kq + s sin kq.
+#[derive(Clone, Copy)]
 pub(super) struct Wave {
     pub c: f64,
     pub s: f64,

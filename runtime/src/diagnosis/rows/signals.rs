@@ -215,6 +215,11 @@ impl Signals {
         }
     }
 
+    /// The highest frequency that positions and torques hold, Hz: the cut-off of their filter.
+    pub fn cutoff(&self) -> f64 {
+        self.recorded.as_ref().map_or(RECORDED_BAND * self.rate, |r| r.cutoff)
+    }
+
     /// What the recorded torque of a joint has above the cut-off of the filter; nothing where that is not known.
     pub fn fast_torque(&self, joint: usize) -> Vec<f64> {
         let Some(r) = &self.recorded else { return Vec::new() };

@@ -5,7 +5,11 @@ use crate::diagnosis::candidates::order_line::{Line, Stroke, lines, resolution};
 use crate::diagnosis::candidates::spectrum::peaks;
 use crate::diagnosis::outcome::OrderSpectrum;
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rules::{LINE_MULTIPLES, LINE_PICKED};
+use crate::diagnosis::rules::{LINE_COVERED, LINE_MULTIPLES, LINE_PICKED};
+use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::settings::Settings;
+use crate::effects::{EffectKind, Place};
 use crate::parallel;
 
 /// The lines of one joint, and how close two orders are one.
@@ -53,6 +57,7 @@ pub(in crate::diagnosis) fn all_lines(
                         dq: &s.dq[j][inside.clone()],
                         residual: &r[inside],
                         band: *band,
+                        cutoff: s.cutoff(),
                     }
                 })
                 .collect()
@@ -79,6 +84,33 @@ pub(in crate::diagnosis) fn all_lines(
             torque: (squares / f64::from(count.max(1))).sqrt(),
         }
     })
+}
+
+impl Search<'_> {
+    /// Lines that are certain and no part of the model, per joint that has any: strongest first.
+    pub fn lines_beside_model(&self, settings: &Settings) -> Vec<(usize, Vec<&Line>)> {
+        let level = 1.0 - settings.confidence_of_one_search();
+        let of_joint = |j: usize| -> (usize, Vec<&Line>) {
+            let found = &self.lines[j];
+            let place = Place::Joint(j);
+            let near = LINE_COVERED as f64 * found.resolution;
+            let ripple = |t: &&Accepted| t.effect == EffectKind::TorqueRipple && t.place == place;
+            let orders: Vec<f64> =
+                self.model.terms.iter().filter(ripple).flat_map(|t| t.shape.iter().copied()).collect();
+            let in_model = |line: &Line| orders.iter().any(|order| (order - line.order).abs() <= near);
+            let sure = |line: &&Line| self.doubt(line) <= level && !in_model(line);
+            (j, found.lines.iter().filter(sure).collect())
+        };
+        let all = (0..self.lines.len()).map(of_joint);
+        all.filter(|(_, lines)| !lines.is_empty()).collect()
+    }
+
+    /// Probability that noise has a line like this one anywhere.
+    pub fn doubt(&self, line: &Line) -> f64 {
+        let of_all = |number: fn(&JointLines) -> usize| self.lines.iter().map(number).sum::<usize>() as f64;
+        let tried = if line.known { of_all(|lines| lines.known) } else { of_all(|lines| lines.tried) };
+        tried * line.p_value
+    }
 }
 
 /// Standard deviation of the positions at which a joint moves faster than `slowest`.
