@@ -546,6 +546,9 @@ pub(super) const LINE_BANDS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 /// Part of the cut-off of the positions below which a wave has its whole amplitude. Mechanics: there a filter of the fourth
 /// order, forwards and backwards, lets 99.6 % of the acceleration through that a controller leaves of it.
 pub(super) const LINE_FOLLOWED: f64 = 0.5;
+/// Largest standard deviation of an amplitude from there, as a part of what all of the motion shows. Judgement: what is known
+/// worse than by a third is told as the torque shows it, with a deviation of what it may lack.
+pub(super) const LINE_TOLD: f64 = 1.0 / 3.0;
 /// Orders of a spectrum that are looked at besides.
 pub(super) const LINE_PICKED: usize = 4;
 /// How far a known order must stand above the larger median of the orders on both sides of it to be a line of a motion.

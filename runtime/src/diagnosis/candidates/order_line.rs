@@ -13,7 +13,7 @@
 use super::wave::{Orders, Sample, Wave, turned, wave};
 use crate::diagnosis::rules::{
     LINE_ABOVE, LINE_AROUND, LINE_BANDS, LINE_COVERED, LINE_FOLLOWED, LINE_LEAST_FRACTION,
-    LINE_LEAST_SAMPLES, LINE_LEAST_WAVES, LINE_PICKED_ABOVE, LINE_SLOWER,
+    LINE_LEAST_SAMPLES, LINE_LEAST_WAVES, LINE_PICKED_ABOVE, LINE_SLOWER, LINE_TOLD,
 };
 use crate::statistics::greatest_of::highest_p_value;
 use crate::statistics::median::median;
@@ -37,7 +37,9 @@ pub(in crate::diagnosis) struct Line {
     /// Angle of the wave per angle of the joint.
     pub order: f64,
     /// Amplitudes of cosine and sine, N.m or N, all motions together, and their standard deviation from the orders
-    /// around it; where the wave is so slow that the model has the acceleration which a controller leaves of it.
+    /// around it; of a wave that is slow for long enough with what a controller leaves of it in the acceleration. Any other is told
+    /// as the torque shows it, which may be a part of it: its deviation is what is not known of the rest, as large as itself where
+    /// the wave is slow nowhere.
     pub cosine: f64,
     pub sine: f64,
     pub sigma: f64,
@@ -54,6 +56,7 @@ pub(in crate::diagnosis) struct Line {
     pub share: f64,
 }
 
+#[cfg(test)]
 impl Line {
     /// Of the wave, N.m or N.
     pub fn amplitude(&self) -> f64 {
@@ -121,12 +124,12 @@ fn line(
     let followed = |s: &Stroke<'_>| slower(s).min(LINE_FOLLOWED * s.cutoff);
     let whole: Vec<Sample> = strokes.iter().flat_map(|s| samples(s, order, [slowest, followed(s)])).collect();
     let (wave, sigma) = if turns(&whole, order) < LINE_LEAST_WAVES {
-        // Of a wave that is nowhere that slow only what the controller answered is known, a part of it.
-        let sigma = deviation(around.level).max(together.norm());
-        (together, sigma)
+        (together, together.norm())
     } else {
+        let slow = wave(&whole, &turned(&whole, order));
         let sigma = deviation(Around::of(&whole, order, resolved).level);
-        (wave(&whole, &turned(&whole, order)), sigma)
+        let apart = (slow.c - together.c).hypot(slow.s - together.s);
+        if sigma <= LINE_TOLD * together.norm() { (slow, sigma) } else { (together, sigma.max(apart)) }
     };
     Some(Line {
         order,

@@ -28,7 +28,7 @@ fn finding(search: &Search<'_>, joint: usize, lines: &[&Line]) -> Option<Finding
     let scale = &model.context.scales[joint];
     let Form::Joint(law) = effect.form() else { return None };
     // A wave's phase at both ends of what was travelled tells its order (the Cramer-Rao bound of a sine's frequency).
-    let of_order = |l: &&Line| l.sigma / (l.amplitude() * found.spread).max(1e-300);
+    let of_order = |l: &&Line| 1.0 / (l.above * found.spread).max(1e-300);
     let shape_sigma: Vec<f64> = lines.iter().map(of_order).collect();
     let parameters =
         propagate(|shape| law.parameters(scale, shape, &amplitude, &sigma), &shape, &shape_sigma);
