@@ -59,6 +59,9 @@ impl Transmission {
     }
 }
 
+/// Place of the play in the shape of a transmission.
+pub(crate) const PLAY: usize = 3;
+
 /// An effect of this form.
 pub trait Compliance: Sync {
     /// Shapes to try: natural frequency Hz, damping ratio, rotor fraction, play as a fraction of the travel.

@@ -4,10 +4,10 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::prior::Prior;
-use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, LONGEST_BLOCK};
+use crate::diagnosis::rules::{LARGEST_SHAPE_SIGMA, LONGEST_BLOCK, PLAY_BESIDE_UNSEEN};
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::tangents::{along_parameters, tangents};
-use crate::effects::{Form, SmoothingWindow};
+use crate::effects::{Form, PLAY, SmoothingWindow};
 use crate::parallel;
 use std::sync::Arc;
 
@@ -109,7 +109,12 @@ impl Linearised {
         }
         if let Form::Compliance(law) = term.effect.form() {
             let highest = 0.5 / self.design.step;
-            for i in law.unseen(&term.shape, highest) {
+            let unseen = law.unseen(&term.shape, highest);
+            if !unseen.is_empty() {
+                // What the play is told beside differs with them.
+                shape[PLAY] = shape[PLAY].hypot(PLAY_BESIDE_UNSEEN * term.shape[PLAY]);
+            }
+            for i in unseen {
                 shape[i] = largest(term.shape[i]);
             }
         }

@@ -10,11 +10,13 @@
 use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::calibration::{Calibrated, Law, beside, calibrate};
+use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::white_products::Background;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
+use crate::diagnosis::rows::signals::ModelTorques;
 use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
 use crate::diagnosis::search::bench::{Bench, Size};
 use crate::diagnosis::search::certainty::of_amplitudes;
@@ -168,9 +170,10 @@ impl Search<'_> {
             explained_fraction: 0.0,
             difference_p_value: 1.0,
         };
+        let before = self.friction_of_baseline(joint).to_vec();
         let (effect, shape, rivals) = match change {
-            Change::Friction => (EffectKind::FrictionLevelChange, vec![1.0; 2], Vec::new()),
-            Change::Either => (EffectKind::FrictionLevelChange, vec![1.0; 2], vec![rival(DRIVE_GAIN)]),
+            Change::Friction => (EffectKind::FrictionLevelChange, before, Vec::new()),
+            Change::Either => (EffectKind::FrictionLevelChange, before, vec![rival(DRIVE_GAIN)]),
             Change::DriveGain => (DRIVE_GAIN, Vec::new(), Vec::new()),
         };
         self.model.terms.push(Accepted {
@@ -188,15 +191,7 @@ impl Search<'_> {
             rivals,
             is_transient: false,
         });
-        self.refit_and_update()?;
-        if effect == EffectKind::FrictionLevelChange {
-            // What the friction was before is told apart from what it is now by the term itself.
-            let before = self.friction_of_baseline(joint);
-            if let Some(term) = self.model.terms.last_mut() {
-                term.shape = before.to_vec();
-            }
-        }
-        Ok(())
+        self.refit_and_update()
     }
 
     fn own_friction(&self, joint: usize) -> Range<usize> {
@@ -261,13 +256,16 @@ impl Search<'_> {
         Size { law: rms(changed), needed: LEAST_FRICTION_CHANGE * rms(whole) }
     }
 
-    /// Viscous and Coulomb coefficients that the model has for a joint.
+    /// Viscous and Coulomb coefficients that a joint had in the baseline, where those of the recording are free or a term.
     fn friction_of_baseline(&self, joint: usize) -> [f64; 2] {
-        let design = &self.model.slow.design;
+        let Regression { design, fit, .. } = &self.model.slow;
         let mut friction = Vec::new();
         let context = &self.model.context;
-        for k in 0..context.signals.len() {
-            design.sample(joint, k, &context.torques(k).friction[joint], &mut friction);
+        // Those of the context are of all motion as long as nothing has been found beside them.
+        let chi = &fit.chi.as_slice()[..design.parameters];
+        for (k, signals) in context.signals.iter().enumerate() {
+            let torques = ModelTorques::new(context.model, chi, signals);
+            design.sample(joint, k, &torques.friction[joint], &mut friction);
         }
         let columns = &self.model.bench(SmoothingWindow::Slow).friction[joint][..2];
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
