@@ -4,9 +4,9 @@
 //! cargo test --release --test coverage -- --ignored --nocapture
 //! ```
 //!
-//! Environment: `COVERAGE_SEEDS` (40), and lists separated by commas of which every part must be a part of the names:
-//! `COVERAGE_ROBOTS`, `COVERAGE_SHAPES`, `COVERAGE_NOISE`, `COVERAGE_METHODS`; `COVERAGE_BAND`, Hz; `COVERAGE_PAGE`, the
-//! page that is written.
+//! Environment: `COVERAGE_SEEDS` (40), how many, from `COVERAGE_FIRST_SEED` (1) on; lists separated by commas of which
+//! every part must be a part of the names: `COVERAGE_ROBOTS`, `COVERAGE_SHAPES`, `COVERAGE_NOISE`, `COVERAGE_METHODS`;
+//! `COVERAGE_BAND`, Hz; `COVERAGE_PAGE`, the page that is written.
 #![allow(clippy::unwrap_used, reason = "a measurement that cannot set itself up has failed")]
 
 #[path = "coverage/cases.rs"]
@@ -38,6 +38,7 @@ fn number<T: std::str::FromStr>(name: &str) -> Option<T> {
 #[ignore = "a measurement of minutes to hours: its command is above"]
 fn intervals_contain_the_truth_as_often_as_they_say() {
     let seeds: u64 = number("COVERAGE_SEEDS").unwrap_or(40);
+    let first: u64 = number("COVERAGE_FIRST_SEED").unwrap_or(1);
     let band: Option<f64> = number("COVERAGE_BAND");
     let wanted = (
         listed("COVERAGE_ROBOTS", &ROBOTS),
@@ -53,14 +54,14 @@ fn intervals_contain_the_truth_as_often_as_they_say() {
                 Noise::ALL.into_iter().filter(|n| wanted.2.iter().any(|w| w == n.name())).collect();
             let tallies: Vec<Mutex<Tally>> =
                 noises.iter().map(|_| Mutex::new(Tally::new(case.truth()))).collect();
-            let next = AtomicU64::new(1);
+            let next = AtomicU64::new(first);
             let threads = std::thread::available_parallelism().map_or(1, usize::from);
             std::thread::scope(|scope| {
                 for _ in 0..threads {
                     scope.spawn(|| {
                         loop {
                             let seed = next.fetch_add(1, Ordering::Relaxed);
-                            if seed > seeds {
+                            if seed >= first + seeds {
                                 break;
                             }
                             for (noise, tally) in noises.iter().zip(&tallies) {

@@ -138,6 +138,7 @@ fn found(
     let late = delay::finding(model, skew - expected, &settings)?;
     let named_skew = late.is_some().then_some(skew - expected);
     findings.extend(late);
+    rate::in_true_seconds(robot, &mut findings);
     // Pushes and a wrong rate are looked for on slow rows, and what was there before them was predicted on these.
     let slow = ended.contacts.is_some() || ended.rate.is_some();
     let (window, standard, band) = if slow {
