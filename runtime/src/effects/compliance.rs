@@ -39,7 +39,7 @@ impl Transmission {
             stiffness,
             damping: 2.0 * shape[1] * (stiffness * link).sqrt(),
             rotor,
-            play: shape[3] * travel,
+            play: shape[PLAY] * travel,
             frequency: shape[0],
             kind,
         }
