@@ -50,6 +50,7 @@ mod estimate;
 mod factor;
 mod householder;
 mod instrumental;
+mod memory;
 mod method;
 pub mod observe;
 mod outcome;

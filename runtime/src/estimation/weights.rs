@@ -1,6 +1,7 @@
 //! Weights per equation and trajectory: (20), (21), and their iteration to a fixed point.
 //! Equation numbers are those of Gautier and Briot.
 
+use super::memory::rows_worth_one;
 use super::observe::{EquationFactor, Observation};
 use super::solve::{back_substitute, inverse_gram};
 use super::{Factor, RANK_TOLERANCE};
@@ -21,6 +22,8 @@ pub(super) struct Weights {
     pub sigma: Vec<f64>,
     /// For each group the degrees of freedom that the fit leaves in it.
     pub freedom: Vec<f64>,
+    /// For each group how many of its rows say as much about the size of its errors as one independent row.
+    pub rows_worth_one: Vec<f64>,
     pub iterations: usize,
     pub converged: bool,
 }
@@ -50,7 +53,13 @@ fn stacked<'a>(
 /// Equal weights: ordinary least squares.
 pub(super) fn equal(observation: &Observation) -> Weights {
     let count = observation.groups.len();
-    Weights { sigma: vec![1.0; count], freedom: rows_of(observation), iterations: 0, converged: true }
+    Weights {
+        sigma: vec![1.0; count],
+        freedom: rows_of(observation),
+        rows_worth_one: vec![1.0; count],
+        iterations: 0,
+        converged: true,
+    }
 }
 
 /// The weights of (20): every equation is fitted alone, over all trajectories, and the error of each trajectory in
@@ -59,7 +68,8 @@ pub(super) fn from_own_fits(observation: &Observation) -> Weights {
     let mut weights = equal(observation);
     let mut found = vec![Variance::of_squares(0.0, 0.0); observation.groups.len()];
     let equations = by_equation(observation);
-    for own in &equations {
+    let mut fits = vec![vec![0.0; observation.unknowns.len()]; equations.len()];
+    for (own, chi) in equations.iter().zip(&mut fits) {
         let Some((&first, others)) = own.split_first() else { continue };
         let mut all = observation.groups[first].factor.clone();
         for &g in others {
@@ -69,18 +79,20 @@ pub(super) fn from_own_fits(observation: &Observation) -> Weights {
         let reduced = all.select(&independent);
         let (solved, _) = back_substitute(&reduced);
         let inverse = inverse_gram(&reduced);
-        let mut chi = vec![0.0; all.unknowns()];
+        let columns = &observation.groups[first].columns;
         for (&l, x) in independent.iter().zip(solved) {
-            chi[l] = x;
+            chi[columns[l]] = x;
         }
         let places: Vec<(usize, usize)> =
             independent.iter().enumerate().map(|(place, &l)| (l, place)).collect();
         for &g in own {
             let factor = &observation.groups[g].factor;
             let leverage = leverage(&gram(factor), &places, &inverse);
-            found[g] = squares(factor, factor.residual_norm(&chi), leverage);
+            found[g] = squares(factor, residual_norm(&observation.groups[g], chi), leverage);
         }
     }
+    let worth = rows_worth_one(observation, &fits);
+    weights.rows_worth_one = observation.groups.iter().map(|g| worth[g.equation]).collect();
     settle(observation, &equations, &found, &mut weights);
     weights
 }
@@ -91,7 +103,8 @@ pub(super) fn from_own_fits(observation: &Observation) -> Weights {
 /// The errors of a group are counted against the degrees of freedom that the weighted fit leaves in it, which is its
 /// share of restricted maximum likelihood (Patterson and Thompson 1971), and its variance is moderated by those of the
 /// other trajectories of its joint: a trajectory with fewer rows than parameters would else be interpolated, and the
-/// smaller its error the larger its weight.
+/// smaller its error the larger its weight. Rows of noise that lasts say less about its size ([`rows_worth_one`]): weights of
+/// so many rows would scatter by more than they are believed to, and the estimate with them.
 pub(super) fn iterate(observation: &Observation, active: &[usize], start: &Weights) -> Weights {
     let mut weights = Weights { iterations: 0, converged: false, ..start.clone() };
     let mut place = vec![None; observation.unknowns.len()];
@@ -196,11 +209,13 @@ fn settle(observation: &Observation, equations: &[Vec<usize>], squares: &[Varian
     };
     let lent = Lent::of((0..squares.len()).map(|g| (squares[g], mean_square(g))));
     for own in equations {
-        let seen: Vec<Variance> = own.iter().map(|&g| squares[g]).collect();
+        let known =
+            |g: usize| Variance { freedom: squares[g].freedom / weights.rows_worth_one[g], ..squares[g] };
+        let seen: Vec<Variance> = own.iter().map(|&g| known(g)).collect();
         let prior = Prior::of_groups(&seen);
-        let freedom = seen.iter().map(|s| s.freedom).sum();
-        for &g in own {
-            let moderated = prior.map_or(0.0, |prior| prior.moderate(squares[g]).value);
+        let freedom = own.iter().map(|&g| squares[g].freedom).sum();
+        for (&g, &seen) in own.iter().zip(&seen) {
+            let moderated = prior.map_or(0.0, |prior| prior.moderate(seen).value);
             let variance = lent.completed(moderated, freedom, mean_square(g));
             let sigma = variance.sqrt().max(FLOOR * mean_square(g).sqrt());
             weights.sigma[g] = if sigma > 0.0 { sigma } else { 1.0 };

@@ -1,5 +1,6 @@
 //! Inner products of a series with itself some rows back: all that an autoregression is fitted to.
 
+use crate::diagnosis::rows::gram::dot;
 use nalgebra::DMatrix;
 use std::ops::Range;
 
@@ -34,27 +35,21 @@ impl LagProducts {
 
     /// Adds the products of another series on the same rows.
     pub fn add(&mut self, stretches: &[Range<usize>], values: &[f64]) {
-        let mut running = vec![Vec::new(); self.of_order.len()];
+        let mut sums = vec![RunningSums::default(); self.of_order.len()];
         for stretch in stretches {
             let x = &values[stretch.clone()];
             if x.iter().all(|x| *x == 0.0) {
                 continue;
             }
-            // Sums of products of values that are `lag` apart, over the first so many.
-            for (lag, running) in running.iter_mut().enumerate().take(x.len()) {
-                running.clear();
-                running.push(0.0);
-                let mut sum = 0.0;
-                running.extend(x.iter().zip(&x[lag..]).map(|(a, b)| {
-                    sum += a * b;
-                    sum
-                }));
+            let ends = self.of_order.len();
+            for (lag, sums) in sums.iter_mut().enumerate().take(x.len()) {
+                sums.fill(x, &x[lag..], ends);
             }
             for (m, of_order) in self.of_order.iter_mut().enumerate().take(x.len()) {
                 for a in 0..=m {
                     for b in 0..=a {
-                        let running = &running[a - b];
-                        of_order[(a, b)] += running[x.len() - a] - running[m - a];
+                        let sums = &sums[a - b];
+                        of_order[(a, b)] += sums.of_first(x.len() - a) - sums.of_first(m - a);
                     }
                 }
             }
@@ -88,6 +83,42 @@ impl LagProducts {
         };
         left.iter().enumerate().map(of_row).sum()
     }
+}
+
+/// Sums of the first so many products of two series, for numbers near none and near all.
+#[derive(Debug, Clone, Default)]
+struct RunningSums {
+    of_few: Vec<f64>,
+    /// From this many on.
+    many: usize,
+    of_many: Vec<f64>,
+}
+
+impl RunningSums {
+    /// Of `x` and the shorter `later`, for `ends` numbers at least from each end of `x`.
+    fn fill(&mut self, x: &[f64], later: &[f64], ends: usize) {
+        let few = ends.min(later.len());
+        self.many = x.len().saturating_sub(ends).max(few);
+        fill_from(&mut self.of_few, 0.0, &x[..few], &later[..few]);
+        let between = few..self.many.min(later.len());
+        let of_between = self.of_few[few] + dot(&x[between.clone()], &later[between.clone()]);
+        fill_from(&mut self.of_many, of_between, &x[between.end..], &later[between.end..]);
+    }
+
+    fn of_first(&self, count: usize) -> f64 {
+        self.of_few.get(count).copied().unwrap_or_else(|| self.of_many[count - self.many])
+    }
+}
+
+/// A first sum, and it with one product after the other.
+fn fill_from(sums: &mut Vec<f64>, first: f64, x: &[f64], later: &[f64]) {
+    sums.clear();
+    sums.push(first);
+    let mut sum = first;
+    sums.extend(x.iter().zip(later).map(|(a, b)| {
+        sum += a * b;
+        sum
+    }));
 }
 
 #[cfg(test)]

@@ -40,6 +40,7 @@ impl<'a> Both<'a> {
         let [mut all, loaded] = self.observations.map(from_own_fits);
         all.sigma.extend(loaded.sigma);
         all.freedom.extend(loaded.freedom);
+        all.rows_worth_one.extend(loaded.rows_worth_one);
         all
     }
 
