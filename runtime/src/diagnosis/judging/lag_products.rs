@@ -35,21 +35,36 @@ impl LagProducts {
 
     /// Adds the products of another series on the same rows.
     pub fn add(&mut self, stretches: &[Range<usize>], values: &[f64]) {
-        let mut sums = vec![RunningSums::default(); self.of_order.len()];
+        self.add_sums(stretches, |t, later| values[t] * values[later]);
+    }
+
+    /// Adds those of several series on the same rows, of which each column has the values of a row.
+    pub fn add_all(&mut self, stretches: &[Range<usize>], series: &DMatrix<f64>) {
+        let (values, count) = (series.as_slice(), series.nrows());
+        let at = |t: usize| &values[t * count..(t + 1) * count];
+        self.add_sums(stretches, |t, later| dot(at(t), at(later)));
+    }
+
+    /// Adds products of a row with a later one.
+    fn add_sums(&mut self, stretches: &[Range<usize>], product: impl Fn(usize, usize) -> f64) {
+        let mut running = vec![Vec::new(); self.of_order.len()];
         for stretch in stretches {
-            let x = &values[stretch.clone()];
-            if x.iter().all(|x| *x == 0.0) {
-                continue;
+            let length = stretch.len();
+            // Sums of products of values that are `lag` apart, over the first so many.
+            for (lag, running) in running.iter_mut().enumerate().take(length) {
+                running.clear();
+                running.push(0.0);
+                let mut sum = 0.0;
+                running.extend((stretch.start..stretch.end - lag).map(|t| {
+                    sum += product(t, t + lag);
+                    sum
+                }));
             }
-            let ends = self.of_order.len();
-            for (lag, sums) in sums.iter_mut().enumerate().take(x.len()) {
-                sums.fill(x, &x[lag..], ends);
-            }
-            for (m, of_order) in self.of_order.iter_mut().enumerate().take(x.len()) {
+            for (m, of_order) in self.of_order.iter_mut().enumerate().take(length) {
                 for a in 0..=m {
                     for b in 0..=a {
-                        let sums = &sums[a - b];
-                        of_order[(a, b)] += sums.of_first(x.len() - a) - sums.of_first(m - a);
+                        let running = &running[a - b];
+                        of_order[(a, b)] += running[length - a] - running[m - a];
                     }
                 }
             }
@@ -85,42 +100,6 @@ impl LagProducts {
     }
 }
 
-/// Sums of the first so many products of two series, for numbers near none and near all.
-#[derive(Debug, Clone, Default)]
-struct RunningSums {
-    of_few: Vec<f64>,
-    /// From this many on.
-    many: usize,
-    of_many: Vec<f64>,
-}
-
-impl RunningSums {
-    /// Of `x` and the shorter `later`, for `ends` numbers at least from each end of `x`.
-    fn fill(&mut self, x: &[f64], later: &[f64], ends: usize) {
-        let few = ends.min(later.len());
-        self.many = x.len().saturating_sub(ends).max(few);
-        fill_from(&mut self.of_few, 0.0, &x[..few], &later[..few]);
-        let between = few..self.many.min(later.len());
-        let of_between = self.of_few[few] + dot(&x[between.clone()], &later[between.clone()]);
-        fill_from(&mut self.of_many, of_between, &x[between.end..], &later[between.end..]);
-    }
-
-    fn of_first(&self, count: usize) -> f64 {
-        self.of_few.get(count).copied().unwrap_or_else(|| self.of_many[count - self.many])
-    }
-}
-
-/// A first sum, and it with one product after the other.
-fn fill_from(sums: &mut Vec<f64>, first: f64, x: &[f64], later: &[f64]) {
-    sums.clear();
-    sums.push(first);
-    let mut sum = first;
-    sums.extend(x.iter().zip(later).map(|(a, b)| {
-        sum += a * b;
-        sum
-    }));
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,6 +115,8 @@ mod tests {
         let stretches = [0..3, 5..6, 9..40, 40..44, 50..60];
         let mut products = LagProducts::of(&stretches, &values[0], 4);
         products.add(&stretches, &values[1]);
+        let mut of_both = LagProducts::zero(4);
+        of_both.add_all(&stretches, &DMatrix::from_fn(2, 60, |series, t| values[series][t]));
         let filters = [[1.0, -0.5, 0.2, 0.1], [0.0, 0.3, -0.7, 1.0]];
         for order in 3..=4 {
             let rows = || stretches.iter().flat_map(move |s| s.clone().skip(order));
@@ -148,6 +129,8 @@ mod tests {
             let sum = of(&values[0]) + of(&values[1]);
             let found = products.between(order, &filters[0], &filters[1]);
             assert_relative_eq!(found, sum, max_relative = 1e-10);
+            let at_once = of_both.between(order, &filters[0], &filters[1]);
+            assert_relative_eq!(at_once, sum, max_relative = 1e-10);
             assert_eq!(products.rows(order), rows().count());
         }
     }

@@ -28,10 +28,7 @@ pub(super) fn by_fit(
         regressors.shared.iter().chain(law).map(|c| c[range.clone()].to_vec()).collect();
     add_free(&mut taken, &mut columns, (units, regressors, j), whitening);
     let table = DMatrix::from_fn(columns.len(), range.len(), |i, t| columns[i][t]);
-    let table = model.white(&table, 0, range.len()).transpose();
-    for series in table.column_iter() {
-        taken.add(&whitening.stretches, series.as_slice());
-    }
+    taken.add_all(&whitening.stretches, &model.white(&table, 0, range.len()));
     taken
 }
 
@@ -49,26 +46,25 @@ fn add_free(
     }
     let white: Vec<Vec<f64>> = columns.iter().map(|c| ar.whitened(stretches, c)).collect();
     let both: Vec<&[f64]> = white_free.iter().chain(&white).map(Vec::as_slice).collect();
-    let mut of_free = vec![vec![0.0; range.len()]; f];
+    let mut of_free = DMatrix::zeros(f, range.len());
     for file in 0..units.files() {
         let rows: Vec<_> = rows_of_motion(units, j, file, range).collect();
         let zero = DMatrix::zeros(both.len(), both.len());
         let products = rows.iter().fold(zero, |sum, rows| sum + inner_products(&both, rows.clone()));
         let Some(model) = Projection::of(&products, f) else { continue };
         let made = model.white(&products, f, columns.len());
-        for t in rows.into_iter().flatten() {
-            let row = model.white(&DMatrix::from_fn(f, 1, |i, _| free[i][t]), 0, 1);
-            for (series, value) in of_free.iter_mut().zip(row.iter()) {
-                series[t] = *value;
-            }
-            for (column, made) in columns.iter_mut().zip(made.column_iter()) {
-                column[t] -= made.dot(&row.column(0));
+        let rows: Vec<usize> = rows.into_iter().flatten().collect();
+        let of_rows = model.white(&DMatrix::from_fn(f, rows.len(), |i, k| free[i][rows[k]]), 0, rows.len());
+        for (&t, row) in rows.iter().zip(of_rows.column_iter()) {
+            of_free.set_column(t, &row);
+        }
+        for (column, made) in columns.iter_mut().zip(made.column_iter()) {
+            for (&t, row) in rows.iter().zip(of_rows.column_iter()) {
+                column[t] -= made.dot(&row);
             }
         }
     }
-    for series in &of_free {
-        taken.add(stretches, series);
-    }
+    taken.add_all(stretches, &of_free);
 }
 
 #[cfg(test)]
