@@ -4,6 +4,8 @@ use super::observe::{Observation, Rows};
 
 /// A correlation of noise that has ended is within so many standard errors of zero.
 const STANDARD_ERRORS: f64 = 2.0;
+/// Rows that a memory is followed for: some seconds.
+const LONGEST: usize = 200;
 
 /// Of each equation the rows that are worth one, 1 at least, given the unknowns that fit it.
 ///
@@ -40,7 +42,7 @@ fn of_series(all: &[Vec<f64>]) -> f64 {
     };
     let squares = product(0);
     // In units of their size the squares of used rows are as many as the rows.
-    let longest = all.iter().map(Vec::len).max().unwrap_or(0);
+    let longest = all.iter().map(Vec::len).max().unwrap_or(0).min(LONGEST);
     let mut worth = 1.0;
     for lag in 1..longest {
         let correlation = product(lag) / squares;
