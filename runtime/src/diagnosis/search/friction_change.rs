@@ -128,12 +128,13 @@ impl Search<'_> {
         self.small.clear();
         for found in changed {
             let joint = found.joint;
-            let size = self.friction_change(joint);
+            let before = self.friction_of_baseline(joint);
+            let size = self.friction_change(joint, before);
             if size.law < size.needed {
                 let (effect, place) = (EffectKind::FrictionLevelChange, Place::Joint(joint));
                 self.small.push(SmallLaw { effect, place, own: vec![joint], size });
             } else {
-                self.take(&found)?;
+                self.take(&found, before)?;
             }
         }
         Ok(())
@@ -144,11 +145,14 @@ impl Search<'_> {
     /// # Errors
     /// As [`Self::name_friction_changes`].
     pub(in crate::diagnosis) fn take_friction_change(&mut self, joint: usize) -> Result<(), SingularDesign> {
-        self.take(&Changed { joint, change: Change::Friction, significance: 0.0, confidence: 0.5 })
+        let before = self.friction_of_baseline(joint);
+        let found = Changed { joint, change: Change::Friction, significance: 0.0, confidence: 0.5 };
+        self.take(&found, before)
     }
 
-    /// Makes what has changed on a joint a term of the model, in the place of friction that is free in the recording.
-    fn take(&mut self, found: &Changed) -> Result<(), SingularDesign> {
+    /// Makes what has changed on a joint a term of the model, in the place of friction that is free in the recording; `before` are
+    /// the viscous and Coulomb coefficients of the baseline.
+    fn take(&mut self, found: &Changed, before: [f64; 2]) -> Result<(), SingularDesign> {
         let &Changed { joint, change, significance, confidence } = found;
         let variances = self.model.slow.fit.variances();
         let chi = &self.model.slow.fit.chi;
@@ -170,7 +174,7 @@ impl Search<'_> {
             explained_fraction: 0.0,
             difference_p_value: 1.0,
         };
-        let before = self.friction_of_baseline(joint).to_vec();
+        let before = before.to_vec();
         let (effect, shape, rivals) = match change {
             Change::Friction => (EffectKind::FrictionLevelChange, before, Vec::new()),
             Change::Either => (EffectKind::FrictionLevelChange, before, vec![rival(DRIVE_GAIN)]),
@@ -236,11 +240,10 @@ impl Search<'_> {
         Some((evidence, change))
     }
 
-    /// Change of a joint's friction torque in the recording, and what of its friction torque is worth a name.
-    fn friction_change(&self, joint: usize) -> Size {
+    /// Change of a joint's friction torque in the recording, and what of its friction torque in the baseline is worth a name.
+    fn friction_change(&self, joint: usize, [viscous, coulomb]: [f64; 2]) -> Size {
         let regression = &self.model.slow;
         let design = &regression.design;
-        let [viscous, coulomb] = self.friction_of_baseline(joint);
         let own: Vec<f64> = self.own_friction(joint).map(|k| regression.fit.chi[k]).collect();
         let [by_speed, level] = own[..] else { return Size { law: 0.0, needed: 0.0 } };
         let columns = &self.model.bench(SmoothingWindow::Slow).friction[joint];
@@ -256,7 +259,8 @@ impl Search<'_> {
         Size { law: rms(changed), needed: LEAST_FRICTION_CHANGE * rms(whole) }
     }
 
-    /// Viscous and Coulomb coefficients that a joint had in the baseline, where those of the recording are free or a term.
+    /// Viscous and Coulomb coefficients that a joint had in the baseline, where those of the recording are free or a term. The
+    /// model is asked, as parameters whose values are known have no columns in a design.
     fn friction_of_baseline(&self, joint: usize) -> [f64; 2] {
         let Regression { design, fit, .. } = &self.model.slow;
         let mut friction = Vec::new();
