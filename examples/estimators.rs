@@ -188,7 +188,7 @@ fn write_table(text: &mut String, noise: f64, all: &[Vec<Outcome>], truth: &[f64
             let Some(s) = spread(outcomes.iter().map(|o| o.chi[k] - truth[k])) else { continue };
             bias += (s.mean / scale[k]).powi(2);
             deviation += (s.deviation / scale[k]).powi(2);
-            for outcome in &outcomes {
+            for outcome in outcomes.iter().filter(|o| o.sigma[k].is_finite()) {
                 counted += 1;
                 within += usize::from((outcome.chi[k] - truth[k]).abs() <= 3.0 * outcome.sigma[k]);
             }
@@ -209,10 +209,10 @@ fn write_table(text: &mut String, noise: f64, all: &[Vec<Outcome>], truth: &[f64
             outcomes.len(),
             root(bias),
             root(deviation),
-            if exact {
+            if exact || counted == 0 {
                 "-".to_owned()
             } else {
-                significant(100.0 * within as f64 / counted.max(1) as f64, 3)
+                significant(100.0 * within as f64 / counted as f64, 3)
             },
             error.map_or_else(String::new, words),
         );
