@@ -11,12 +11,13 @@ use std::time::Instant;
 
 use dynid::models;
 use dynid::output::write_page;
-use dynid_runtime::estimation::observe::{Equations, ObserveSettings, observe};
-use dynid_runtime::estimation::{EstimateSettings, ParameterEstimate, choose_bandwidth, estimate};
+use dynid_runtime::estimation::observe::Equations;
+use dynid_runtime::estimation::{
+    EstimateSettings, ParameterEstimate, RecordedSettings, estimate, observe_trajectories,
+};
 use dynid_runtime::model::{Model, ParameterKind};
 use dynid_runtime::paper::Campaign;
 use dynid_runtime::report::significant;
-use dynid_runtime::signal::{Preparation, prepare};
 use dynid_runtime::simulation::excitation::{
     ExcitationSettings, ExcitingMotion, MotionKind, Profile, excite,
 };
@@ -248,11 +249,10 @@ fn within_three_sigma(model: &dyn Model, chi: &[f64], evaluations: usize, seed: 
     let mut settings = LoopSettings::nominal(model, chi, motion, 2000.0, seed);
     settings.record_every = 2;
     let recorded = simulate(&mut Plant::new(model, chi)?, motion, &settings, &mut |_| {})?.recorded;
-    let chosen = choose_bandwidth(std::slice::from_ref(&recorded))?;
-    let prepared = prepare(&recorded, &Preparation { cutoff: Some(chosen.cutoff), ..Default::default() })?;
-    let rows = ObserveSettings { band: chosen.band, ..Default::default() };
-    let observation = observe(model, &[prepared], Equations::Torque, None, &rows, None)?;
-    let found = estimate(&observation, &EstimateSettings { block_sigmas: false, ..Default::default() });
+    let settings = RecordedSettings::default();
+    let observed = observe_trajectories(&[recorded], model, &[Equations::Torque], &settings, None)?;
+    let observation = observed.observations.first().ok_or("there are no equations")?;
+    let found = estimate(observation, &EstimateSettings { block_sigmas: false, ..Default::default() });
     let back = |(p, truth): &(&ParameterEstimate, &f64)| {
         p.sigma.is_some_and(|sigma| (p.value - *truth).abs() <= 3.0 * sigma)
     };
