@@ -26,10 +26,7 @@ pub(super) fn rows_worth_one(observation: &Observation, chi: &[Vec<f64>]) -> Vec
 
 /// Y - W chi in units of its root mean square, zero at rows that are not used; `None` where nothing is left.
 fn residual(rows: &Rows, chi: &[f64]) -> Option<Vec<f64>> {
-    let mut left = rows.y.clone();
-    for (&unknown, column) in rows.columns.iter().zip(rows.w.chunks_exact(rows.y.len().max(1))) {
-        left.iter_mut().zip(column).for_each(|(e, w)| *e -= chi[unknown] * w);
-    }
+    let mut left = rows.residual(chi);
     left.iter_mut().zip(&rows.used).filter(|(_, used)| !**used).for_each(|(e, _)| *e = 0.0);
     let used = rows.used.iter().filter(|used| **used).count().max(1) as f64;
     let size = (left.iter().map(|e| e * e).sum::<f64>() / used).sqrt();
