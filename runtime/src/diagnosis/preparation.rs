@@ -121,11 +121,27 @@ impl Prepared {
         Ok(context.on(settings.threads).beside(settings.reference.clone()))
     }
 
+    /// Takes out the skew of the torques: of a baseline, which a reference knows, and of the recording, which may have another.
+    fn take_out_skew(&mut self, model: &dyn Model) -> Result<(), DiagnosisError> {
+        let of_reference = self.motions.settings().reference.as_ref().map(|r| r.delay());
+        if of_reference.is_none() && self.motions.signals.iter().any(|s| !s.is_target) {
+            self.take_out_skew_of(model, false, 0.0)?;
+        }
+        self.delay = self.take_out_skew_of(model, true, of_reference.unwrap_or(0.0))?;
+        Ok(())
+    }
+
     /// A skew of more than a part of a sample is taken out of the motions themselves: what is to be expected of it, as one
     /// from noise would be wrong for other motion. The robot may carry more than a reference knows of, and the torque of
-    /// that is no skew: every parameter is free to be another one.
-    fn take_out_skew(&mut self, model: &dyn Model) -> Result<(), DiagnosisError> {
-        let of_reference = self.delay;
+    /// that is no skew: every parameter is free to be another one. `before` has been taken out of them, s; returns all that
+    /// then is.
+    fn take_out_skew_of(
+        &mut self,
+        model: &dyn Model,
+        of_target: bool,
+        before: f64,
+    ) -> Result<f64, DiagnosisError> {
+        let mut delay = before;
         for _ in 0..rules::DELAY_ROUNDS {
             let (mut rows, mut context) = (self.aligned.clone(), self.context(model)?);
             if let Some(prior) = rows.prior.take() {
@@ -134,19 +150,20 @@ impl Prepared {
                 let chi = fit.chi.iter().take(rows.parameters).copied().collect();
                 context.update(chi);
             }
+            let wanted = |k: usize| context.signals[k].is_target == of_target;
             let found =
-                Skew::of(&context, rows)?.expected(self.delay - of_reference, usual_deviation(&context));
-            let more = of_reference + found - self.delay;
+                Skew::of(&context, rows, wanted)?.expected(delay - before, usual_deviation(&context));
+            let more = before + found - delay;
             if more.abs() * context.rate() < rules::DELAY_TAKEN_OUT {
                 break;
             }
-            self.delay += more;
-            for motion in &mut self.motions.signals {
-                motion.set_delay(self.delay)?;
+            delay += more;
+            for motion in self.motions.signals.iter_mut().filter(|s| s.is_target == of_target) {
+                motion.set_delay(delay)?;
             }
             self.aligned = self.motions.aligned(model);
         }
-        Ok(())
+        Ok(delay)
     }
 }
 

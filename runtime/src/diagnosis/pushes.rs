@@ -30,6 +30,8 @@ pub(super) struct Pushes {
     of_single_joints: Option<Contacts>,
     /// Whether those have been looked for.
     scanned: bool,
+    /// What they were before a law took the place of some.
+    explained: Option<Box<Pushes>>,
 }
 
 impl Pushes {
@@ -37,7 +39,7 @@ impl Pushes {
     pub fn found(model: &dyn Model, prepared: &Prepared, change: bool) -> Result<Self, DiagnosisError> {
         let signals = &prepared.motions.signals;
         let contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
-        Ok(Self { contacts, set_aside: !change, of_single_joints: None, scanned: false })
+        Ok(Self { contacts, set_aside: !change, of_single_joints: None, scanned: false, explained: None })
     }
 
     /// Those whose rows are not used.
@@ -48,6 +50,21 @@ impl Pushes {
     /// How many were seen by single joints.
     pub fn of_single_joints(&self) -> usize {
         self.of_single_joints.as_ref().map_or(0, |contacts| contacts.wrenches.len())
+    }
+
+    /// A law takes the place of some of them: these are left beside it.
+    pub fn give_way(&mut self, left: Self) {
+        let found = std::mem::replace(self, left);
+        self.explained = Some(Box::new(found));
+    }
+
+    /// What they were before a law took the place of some, now that it has proved to be none; whether one had.
+    pub fn come_back(&mut self) -> bool {
+        let found = self.explained.take();
+        found.is_some_and(|found| {
+            *self = *found;
+            true
+        })
     }
 
     /// Looks at what a model with effects leaves; whether other rows are to be set aside than were.

@@ -144,16 +144,19 @@ impl<'a> Course<'a> {
             if objected.is_empty() {
                 objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
             }
-            match &without_effects {
-                Some(model) if !objected.is_empty() => {
-                    begun.search.go_on_without(&objected, model.clone())?;
-                }
-                _ => return Ok(Some(diagnosis)),
-            }
-            for Objection { effect, place, still_possible } in objected {
+            let Some(model) = without_effects.as_ref().filter(|_| !objected.is_empty()) else {
+                return Ok(Some(diagnosis));
+            };
+            for objection in &objected {
+                let Objection { effect, place, still_possible } = *objection;
                 let list = if still_possible { &mut settings.only_rivals } else { &mut settings.excluded };
                 list.push((effect, place));
             }
+            // What such a law explained instead of pushes is pushes again.
+            if objected.iter().any(|o| o.effect.form().is_curve()) && pushes.come_back() {
+                return Ok(None);
+            }
+            begun.search.go_on_without(&objected, model.clone())?;
         }
     }
 
@@ -213,7 +216,7 @@ impl<'a> Course<'a> {
         if left.of_single_joints() > pushes.of_single_joints() / RECURRING {
             return Ok(None);
         }
-        *pushes = left;
+        pushes.give_way(left);
         Ok((!differ).then_some(report))
     }
 

@@ -119,14 +119,20 @@ pub(super) fn term_columns_in(
     out
 }
 
-/// The skew of the torques behind the positions, which is always fitted along: nothing where a single joint moves. Viscous
-/// friction that comes later is that joint's inertia, and what is left of its skew is how its torque changes with the
+/// The skew of the torques behind the positions in the motions that are wanted: nothing where a single joint moves in them.
+/// Viscous friction that comes later is that joint's inertia, and what is left of its skew is how its torque changes with the
 /// jerk, as that of a spring or of a friction that no law has; only what all joints have in common is the recording's.
-pub(in crate::diagnosis) fn delay_columns(context: &Context<'_>, design: &Design) -> Vec<Vec<f64>> {
-    if (0..design.joints).filter(|&j| !design.of_joint(j).is_empty()).count() < 2 {
+pub(in crate::diagnosis) fn delay_columns(
+    context: &Context<'_>,
+    design: &Design,
+    wanted: impl Fn(usize) -> bool,
+) -> Vec<Vec<f64>> {
+    let moves = |j: &usize| design.rows[design.of_joint(*j)].iter().any(|r| wanted(r.signal));
+    if (0..design.joints).filter(moves).count() < 2 {
         return vec![vec![0.0; design.rows.len()]];
     }
-    dense_columns(context, design, EffectKind::TimeDelay, Place::Variant(0), &[], false)
+    let delay = |k| context.series(k, EffectKind::TimeDelay, Place::Variant(0), &[]);
+    gathered(context, design, |k| !wanted(k), delay).iter().map(|column| dense(design, column)).collect()
 }
 
 /// A column on all rows.

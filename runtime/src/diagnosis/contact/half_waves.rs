@@ -118,6 +118,11 @@ impl HalfWaves {
         Self { white, widths: Widths { lengths: lengths.to_vec(), wider }, windows, step }
     }
 
+    /// The residual that they are in.
+    pub fn white(&self) -> &White {
+        &self.white
+    }
+
     /// Places of the recording that is diagnosed.
     pub fn targets(&self) -> usize {
         self.white.motions.iter().filter(|m| m.is_target).map(Motion::length).sum()

@@ -257,13 +257,15 @@ impl<'a> Scan<'a> {
         self.joints.iter().flat_map(of_joint).collect()
     }
 
-    /// What the residuals do by themselves away from candidates, with half waves beside the model alone.
+    /// What the residuals do by themselves away from candidates, with half waves beside the model alone: the size of their noise
+    /// is what is left beside the candidates, too, as a fit spreads a push over all rows.
     fn noise(self, tracks: &[Track]) -> Noise {
         let mut joints: Vec<Option<Own>> = tracks.iter().map(|_| None).collect();
         let (whites, _) = self.whites(&[]);
         for (joint, white) in self.joints.iter().zip(whites) {
             let own = |spread| {
                 let law = joint.law.unwrap_or(Law::NORMAL);
+                let white = white.in_noise_of(joint.waves.white());
                 Own { spread, white, widths: joint.waves.widths.clone(), law }
             };
             if let Some(place) = joints.get_mut(joint.track.joint) {

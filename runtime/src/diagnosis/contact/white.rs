@@ -106,6 +106,14 @@ impl White {
         has_spread
     }
 
+    /// With noise of the size that another residual of these rows has.
+    pub(super) fn in_noise_of(mut self, other: &Self) -> Self {
+        let ratio = self.sigma / other.sigma;
+        self.residual.iter_mut().for_each(|x| *x *= ratio);
+        self.sigma = other.sigma;
+        self
+    }
+
     /// A column over all rows, white, orthogonal to the curves, in standard deviations of the residual.
     pub(super) fn column(&self, x: &[f64]) -> Vec<f64> {
         let even: Vec<f64> = x.iter().zip(&self.deviations).map(|(x, d)| x / d).collect();

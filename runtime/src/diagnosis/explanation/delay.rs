@@ -5,7 +5,7 @@ use crate::diagnosis::explanation::finding::{told, unit_term};
 use crate::diagnosis::explanation::words;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::judging::regression::Regression;
-use crate::diagnosis::judging::skew::Skew;
+use crate::diagnosis::judging::skew::{BetweenMotions, Skew};
 use crate::diagnosis::outcome::{Finding, ParameterValue};
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{NAMED_DELAY, NAMED_DELAY_SAMPLES};
@@ -13,7 +13,8 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::settings::Settings;
 use crate::effects::{EffectKind, EffectTerm, Place};
 
-/// The delay as a finding, where it is more than sampling, certainly there, and explains enough. `skew` is all of it, s.
+/// The delay as a finding, where it is more than sampling, certainly there, more than motions of a baseline differ in, and
+/// explains enough. `skew` is all of it that was not there before, s.
 ///
 /// # Errors
 /// [`SingularDesign`] where a split has no fit.
@@ -26,7 +27,10 @@ pub(in crate::diagnosis) fn finding(
         return Ok(None);
     }
     let slow = &model.slow;
-    let known = Skew::known(skew, (&slow.design, &slow.fit), slow.design.parameters);
+    let mut known = Skew::known(skew, (&slow.design, &slow.fit), slow.design.parameters);
+    if !model.context.is_alone() {
+        known = known.beside(BetweenMotions::of_baseline(&model.context, &slow.design, &slow.sigma)?);
+    }
     if known.confidence() < settings.confidence_of_one_search() {
         return Ok(None);
     }

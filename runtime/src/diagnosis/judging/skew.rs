@@ -15,15 +15,29 @@ pub(in crate::diagnosis) struct Skew {
     /// Its standard deviation, s: that of the fit, or as blocks of motion differ, whichever is larger.
     pub sigma: f64,
     pub evidence: Evidence,
+    /// Degrees of freedom of that standard deviation.
+    freedom: f64,
+}
+
+/// How much skews differ between motions, beyond their own errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::diagnosis) struct BetweenMotions {
+    /// s².
+    pub variance: f64,
+    pub motions: usize,
 }
 
 impl Skew {
-    /// Of a design without a column for it.
+    /// Of the motions that are wanted, in a design without a column for it.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
-    pub fn of(context: &Context<'_>, mut design: Design) -> Result<Self, SingularDesign> {
-        for column in delay_columns(context, &design) {
+    pub fn of(
+        context: &Context<'_>,
+        mut design: Design,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Result<Self, SingularDesign> {
+        for column in delay_columns(context, &design, wanted) {
             design.push(column);
         }
         design.refresh();
@@ -42,7 +56,22 @@ impl Skew {
             None => (white, white, f64::INFINITY),
         };
         let evidence = Evidence::student(value.abs() / variance.sqrt().max(1e-300), freedom);
-        Self { value, sigma: widened.sqrt(), evidence }
+        Self { value, sigma: widened.sqrt(), evidence, freedom }
+    }
+
+    /// The same as the difference from motions whose own skews differ so much: another motion of that kind would have another
+    /// one too, and the mean of few is not known better. Degrees of freedom by Satterthwaite (1946).
+    pub fn beside(self, others: BetweenMotions) -> Self {
+        let n = others.motions as f64;
+        let (own, between) = (self.sigma * self.sigma, others.variance * (1.0 + 1.0 / n));
+        if others.motions < 2 || between <= 0.0 {
+            return self;
+        }
+        let variance = own + between;
+        let freedom = variance * variance / (own * own / self.freedom + between * between / (n - 1.0));
+        let sigma = variance.sqrt();
+        let evidence = Evidence::student(self.value.abs() / sigma.max(1e-300), freedom);
+        Self { sigma, evidence, freedom, ..self }
     }
 
     /// One minus the probability that there is none and it comes as far, in one direction or the other.
@@ -55,6 +84,39 @@ impl Skew {
     pub fn expected(&self, before: f64, deviation: f64) -> f64 {
         let known = deviation * deviation / (deviation * deviation + self.sigma * self.sigma);
         known * (before + self.value)
+    }
+}
+
+impl BetweenMotions {
+    /// Of the motions of a baseline, on a design that has everything but skews of theirs.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn of_baseline(context: &Context<'_>, design: &Design, sigma: &[f64]) -> Result<Self, SingularDesign> {
+        let baseline = (0..context.signals.len()).filter(|&k| !context.signals[k].is_target);
+        let mut design = design.clone();
+        let first = design.columns.len();
+        for k in baseline {
+            for column in delay_columns(context, &design, |motion| motion == k) {
+                design.push(column);
+            }
+        }
+        design.refresh();
+        let fit = Fit::weighted(&design, sigma)?;
+        let seen = (first..design.columns.len()).filter(|&c| design.columns[c].iter().any(|x| *x != 0.0));
+        let skews: Vec<Skew> = seen.map(|c| Skew::known(fit.chi[c], (&design, &fit), c)).collect();
+        Ok(Self::of(&skews))
+    }
+
+    /// Of skews with their own errors, by moments (DerSimonian and Laird 1986).
+    fn of(skews: &[Skew]) -> Self {
+        let motions = skews.len();
+        let n = motions as f64;
+        let mean = skews.iter().map(|s| s.value).sum::<f64>() / n;
+        let spread = skews.iter().map(|s| (s.value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        let own = skews.iter().map(|s| s.sigma * s.sigma).sum::<f64>() / n;
+        let variance = if motions < 2 { 0.0 } else { (spread - own).max(0.0) };
+        Self { variance, motions }
     }
 }
 
@@ -90,9 +152,24 @@ mod tests {
 
     #[test]
     fn of_a_skew_that_is_hardly_known_next_to_nothing_is_expected() {
-        let known = |sigma| Skew { value: 0.02, sigma, evidence: Evidence::NONE };
+        let known = |sigma| Skew { value: 0.02, sigma, evidence: Evidence::NONE, freedom: 30.0 };
         approx::assert_relative_eq!(known(1e-6).expected(0.01, 0.01), 0.03, max_relative = 1e-6);
         approx::assert_relative_eq!(known(0.01).expected(0.0, 0.01), 0.01, max_relative = 1e-12);
         assert!(known(1.0).expected(0.0, 0.01) < 1e-5);
+    }
+    #[test]
+    fn a_skew_is_news_only_beyond_how_skews_differ_between_motions() {
+        let one = |value: f64| {
+            let evidence = Evidence::student(value / 1e-4, 30.0);
+            Skew { value, sigma: 1e-4, evidence, freedom: 30.0 }
+        };
+        let alike = BetweenMotions::of(&[one(0.001), one(0.001), one(0.001), one(0.001)]);
+        assert_eq!(one(0.004).beside(alike).sigma, 1e-4);
+        let differing = BetweenMotions::of(&[one(-0.002), one(0.001), one(0.003), one(-0.002)]);
+        let told = one(0.004).beside(differing);
+        assert!(one(0.004).confidence() > 0.999 && told.confidence() < 0.9, "{}", told.confidence());
+        assert!(one(0.1).beside(differing).confidence() > 0.999);
+        // A single motion says nothing of how motions differ.
+        assert_eq!(one(0.004).beside(BetweenMotions::of(&[one(0.001)])).sigma, 1e-4);
     }
 }
