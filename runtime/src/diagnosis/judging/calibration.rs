@@ -129,10 +129,13 @@ pub(in crate::diagnosis) fn calibrate(
         value: mean(&own).max(if levels.is_empty() { 0.0 } else { walk(mean(&levels)) }),
         freedom: own.len().saturating_sub(1).max(1) as f64,
     };
-    if variance.value > 0.0
+    // A torque that no unit reaches says nothing of how a law of it differs between them: those of its kind do.
+    let unseen = own.is_empty() && levels.is_empty();
+    if (unseen || variance.value > 0.0)
         && let Some(prior) = prior(&compared[0], &others, p + k)
     {
-        variance = prior.moderate(variance);
+        let freedom = if unseen { 0.0 } else { variance.freedom };
+        variance = prior.moderate(Variance { freedom, ..variance });
     }
     // What differs between units is constant within one: it grows with the motion that is looked at.
     let longer = if change { (units.target_duration / units.duration.max(1e-9)).max(1.0) } else { 1.0 };
