@@ -149,7 +149,7 @@ pub fn distances(question: &Question<'_>, motion: &Motion) -> Result<Distances, 
 
 /// Speeds of standstill of the fast rows, as a diagnosis has them; joints that do not move have no rows.
 fn standstills(signals: &[Signals], joints: usize) -> Vec<f64> {
-    let top = top_speeds(signals, joints);
+    let top = top_speeds(signals.iter(), joints);
     let of = |v: f64| if v > 0.0 { STANDSTILL * v / FAST_STANDSTILL_DIVISOR } else { f64::INFINITY };
     top.into_iter().map(of).collect()
 }

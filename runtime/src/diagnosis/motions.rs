@@ -75,7 +75,7 @@ impl Motions {
             Some(speeds) => (speeds.clone(), speeds),
             None => {
                 let mut slow: Vec<f64> =
-                    top_speeds(&signals, n).iter().map(|v| settings.standstill * v).collect();
+                    top_speeds(signals.iter(), n).iter().map(|v| settings.standstill * v).collect();
                 // Where nothing moves, the reference knows what is slow.
                 let before = settings.reference.as_ref().and_then(|r| r.standstill()).unwrap_or_default();
                 slow.iter_mut().zip(before).for_each(|(slow, before)| *slow = slow.max(*before));

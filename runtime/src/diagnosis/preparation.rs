@@ -9,7 +9,7 @@ use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rows::motion::{Moving, left_over};
-use super::rows::scales::scales;
+use super::rows::scales::scales_of_target;
 use super::rules;
 use super::settings::Settings;
 use crate::model::{JointIndex, Model};
@@ -116,7 +116,8 @@ impl Prepared {
     /// [`DiagnosisError::Model`] where the recursive model cannot be built.
     pub fn context<'a>(&'a self, model: &'a dyn Model) -> Result<Context<'a>, DiagnosisError> {
         let signals = &self.motions.signals;
-        let context = Context::new(model, signals, scales(model, signals, &self.chi), self.chi.clone())?;
+        let scales = scales_of_target(model, signals, &self.chi, &self.motions.slowest);
+        let context = Context::new(model, signals, scales, self.chi.clone())?;
         let settings = self.motions.settings();
         Ok(context.on(settings.threads).beside(settings.reference.clone()))
     }
