@@ -37,7 +37,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use dynid::models;
-use dynid_runtime::effects::EffectKind;
+use dynid_runtime::effects::{EffectKind, Sought};
 
 use case::Case;
 use failure::Failure;
@@ -116,7 +116,11 @@ fn cases(options: &Options) -> Result<Vec<Case>, Failure> {
         effects.push(known.into_iter().collect());
     }
     if effects.is_empty() {
-        effects = EffectKind::ALL.into_iter().map(|e| vec![e]).chain([Vec::new()]).collect();
+        // What is the same before and after is not hidden as a change.
+        let is_hidden =
+            |e: &EffectKind| !options.baseline || e.properties().sought != Sought::NeverAgainstBaseline;
+        let all = EffectKind::ALL.into_iter().filter(is_hidden);
+        effects = all.map(|e| vec![e]).chain([Vec::new()]).collect();
     }
     let push_seconds = match options.push_seconds[..] {
         [least, most] if 0.0 < least && least <= most => [least, most],

@@ -258,6 +258,25 @@ fn torques_that_are_late_are_named_a_delay() {
 }
 
 #[test]
+fn torques_that_have_become_late_since_the_baseline_are_named_a_delay() {
+    let robot = planar();
+    let late = |motion: &mut Trajectory| {
+        for torque in &mut motion.torque {
+            torque.rotate_right(4);
+        }
+    };
+    let hidden = Hidden::in_recording(late);
+    let diagnosis = diagnosed_against_baseline(robot, &hidden);
+    assert_only(&diagnosis, EffectKind::TimeDelay, &[]);
+    assert_within_four_sigma(&diagnosis, "delay", 0.008);
+    // Those that were as late before are no news.
+    let before =
+        robot.robot.record(&robot.robot.motions(MOTIONS, LENGTH, BASELINE_SEED), &hidden, BASELINE_SEED);
+    let diagnosis = run(robot, &hidden, &before);
+    assert!(diagnosis.findings.is_empty(), "{:?}", diagnosis.verdict);
+}
+
+#[test]
 fn a_body_at_the_flange_is_weighed_against_the_baseline() {
     let robot = planar();
     let (mass, x) = (0.15, 0.4);

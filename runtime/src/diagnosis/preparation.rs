@@ -133,9 +133,9 @@ impl Prepared {
     }
 
     /// A skew of more than a part of a sample is taken out of the motions themselves: what is to be expected of it, as one
-    /// from noise would be wrong for other motion. The robot may carry more than a reference knows of, and the torque of
-    /// that is no skew: every parameter is free to be another one. `before` has been taken out of them, s; returns all that
-    /// then is.
+    /// from noise would be wrong for other motion. The robot may carry more than a reference knows of, or than it did in its
+    /// baseline, and the torque of that is no skew: every parameter is free to be another one. `before` has been taken out of
+    /// them, s; returns all that then is.
     fn take_out_skew_of(
         &mut self,
         model: &dyn Model,
@@ -152,8 +152,10 @@ impl Prepared {
                 context.update(chi);
             }
             let wanted = |k: usize| context.signals[k].is_target == of_target;
-            let found =
-                Skew::of(&context, rows, wanted)?.expected(delay - before, usual_deviation(&context));
+            if of_target && !context.is_alone() {
+                rows.free_in(wanted);
+            }
+            let found = Skew::of(&context, rows, wanted)?.expected(delay - before, usual_deviation(&context));
             let more = before + found - delay;
             if more.abs() * context.rate() < rules::DELAY_TAKEN_OUT {
                 break;

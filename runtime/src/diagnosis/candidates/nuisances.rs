@@ -27,8 +27,7 @@ pub(in crate::diagnosis) fn always_there(
     design: &Design,
     change: bool,
 ) -> Vec<Vec<f64>> {
-    // What a baseline's torques lag behind has been taken out of its motions.
-    let mut out = delay_columns(context, design, |k| context.signals[k].is_target);
+    let mut out = delay_columns(context, design, |_| true);
     out.extend(nuisance_columns(context, design));
     out.extend(standing_columns(context, design));
     if change {

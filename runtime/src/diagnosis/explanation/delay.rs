@@ -27,10 +27,12 @@ pub(in crate::diagnosis) fn finding(
         return Ok(None);
     }
     let slow = &model.slow;
-    let mut known = Skew::known(skew, (&slow.design, &slow.fit), slow.design.parameters);
-    if !model.context.is_alone() {
-        known = known.beside(BetweenMotions::of_baseline(&model.context, &slow.design, &slow.sigma)?);
-    }
+    let known = if model.context.is_alone() {
+        Skew::known(skew, (&slow.design, &slow.fit), slow.design.parameters)
+    } else {
+        let of_target = Skew::of_target(&model.context, (&slow.design, &slow.sigma), skew)?;
+        of_target.beside(BetweenMotions::of_baseline(&model.context, (&slow.design, &slow.sigma))?)
+    };
     if known.confidence() < settings.confidence_of_one_search() {
         return Ok(None);
     }
@@ -44,7 +46,7 @@ pub(in crate::diagnosis) fn finding(
     if share < settings.least_share {
         return Ok(None);
     }
-    let delay = ParameterValue { value: skew, sigma: known.sigma, unit: "s".into() };
+    let delay = ParameterValue { value: known.value, sigma: known.sigma, unit: "s".into() };
     let mut finding = Finding {
         confidence: told(known.confidence()),
         significance: known.evidence.significance,
@@ -53,7 +55,7 @@ pub(in crate::diagnosis) fn finding(
         held_out_after: with.error_on(&all),
         share,
         ..Finding::of(EffectTerm {
-            amplitude: vec![skew],
+            amplitude: vec![known.value],
             sigma: vec![known.sigma],
             ..unit_term(EffectKind::TimeDelay, Place::Variant(0), Vec::new())
         })
@@ -75,14 +77,18 @@ pub(in crate::diagnosis) fn unaware(
     Ok(HeldOutSquares::of(&with_skew(fast, skew), &fast.sigma, model.change, &seen)?)
 }
 
-/// The rows as they would be with the skew left in the torques: the torque's own rate of change, as much of it as the
-/// skew moved, and no column for it.
+/// The rows as they would be with the skew left in the torques of the recording: the torque's own rate of change, as much of
+/// it as the skew moved, and no column for it.
 fn with_skew(regression: &Regression, skew: f64) -> Design {
     let p = regression.design.parameters;
     let taken = skew - regression.fit.chi[p];
     let mut design = regression.design.clone();
     let column = std::mem::replace(&mut design.columns[p], vec![0.0; design.rows.len()]);
-    design.y = regression.design.y.iter().zip(&column).map(|(y, c)| y + taken * c).collect();
+    for g in design.target_segments() {
+        for r in (0..design.joints).flat_map(|j| design.ranges[j][g].clone()) {
+            design.y[r] += taken * column[r];
+        }
+    }
     design.refresh();
     design
 }

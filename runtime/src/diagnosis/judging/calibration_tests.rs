@@ -147,6 +147,41 @@ fn a_change_that_stands_out_of_the_variation_is_found_at_a_level_over_many_candi
     assert!(alone > 0.9, "{alone}");
 }
 
+/// Evidence for a law that acts in the target alone, as one of torques that the baseline does not reach, of `amplitude`, where
+/// laws of its kind differ by `spread` from one motion to the next.
+fn unreached(rng: &mut Pcg64, amplitude: f64, spread: f64) -> Evidence {
+    let (files, rows) = (12, 12 * ROWS);
+    let companions: Vec<Vec<f64>> = (0..6).map(|_| wave(rng, rows)).collect();
+    let mut law = wave(rng, rows);
+    law[..rows - ROWS].fill(0.0);
+    let mut y = noise(rng, rows);
+    for f in 0..files {
+        let levels: Vec<f64> = companions.iter().map(|_| spread * normal(rng)).collect();
+        let of_law = amplitude + spread * normal(rng);
+        for t in f * ROWS..(f + 1) * ROWS {
+            y[t] += of_law * law[t] + levels.iter().zip(&companions).map(|(a, c)| a * c[t]).sum::<f64>();
+        }
+    }
+    let residual: Vec<f64> = y.iter().zip(&law).map(|(y, law)| y - amplitude * law).collect();
+    let (all, companions) = (0..rows, [companions]);
+    let regressors = Regressors { companions: &companions, ..plain(&y, &all) };
+    alone(&units(files, true), &regressors, &[law], &residual, false).expect("determined").evidence()
+}
+
+#[test]
+fn a_law_that_the_baseline_does_not_reach_is_judged_by_how_laws_of_its_kind_differ() {
+    let mut rng = Pcg64::seed_from_u64(12);
+    let mut share = |amplitude: f64, level: f64| {
+        let runs = 400;
+        (0..runs).filter(|_| unreached(&mut rng, amplitude, 0.3).p_value < level).count() as f64
+            / f64::from(runs)
+    };
+    let (by_accident, found) = (share(0.0, 0.01), share(5.0, 1e-4));
+    println!("{by_accident}, {found}");
+    assert!(by_accident < 0.025, "{by_accident}");
+    assert!(found > 0.8, "{found}");
+}
+
 #[test]
 fn a_law_that_is_in_both_recordings_is_no_change() {
     let mut rng = Pcg64::seed_from_u64(10);

@@ -46,6 +46,26 @@ impl Skew {
         Ok(Self::known(fit.chi[column], (&design, &fit), column))
     }
 
+    /// Of the recording beside its baseline, as well known as what its motions say beyond all others: `before` has been taken out
+    /// of them, on a design that has everything but a skew of theirs.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where there is no fit.
+    pub fn of_target(
+        context: &Context<'_>,
+        (design, sigma): (&Design, &[f64]),
+        before: f64,
+    ) -> Result<Self, SingularDesign> {
+        let mut design = design.clone();
+        let column = design.columns.len();
+        for own in delay_columns(context, &design, |k| context.signals[k].is_target) {
+            design.push(own);
+        }
+        design.refresh();
+        let fit = Fit::weighted(&design, sigma)?;
+        Ok(Self::known(before + fit.chi[column], (&design, &fit), column))
+    }
+
     /// A skew that is known as well as the parameter of a column is.
     pub fn known(value: f64, (design, fit): (&Design, &Fit), column: usize) -> Self {
         let white = fit.variances()[column].max(0.0);
@@ -92,7 +112,10 @@ impl BetweenMotions {
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
-    pub fn of_baseline(context: &Context<'_>, design: &Design, sigma: &[f64]) -> Result<Self, SingularDesign> {
+    pub fn of_baseline(
+        context: &Context<'_>,
+        (design, sigma): (&Design, &[f64]),
+    ) -> Result<Self, SingularDesign> {
         let baseline = (0..context.signals.len()).filter(|&k| !context.signals[k].is_target);
         let mut design = design.clone();
         let first = design.columns.len();

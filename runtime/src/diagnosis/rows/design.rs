@@ -306,6 +306,15 @@ impl Design {
         self.columns.push(column);
     }
 
+    /// Lets every base parameter be another one in the motions that are wanted; inner products are not recomputed.
+    pub fn free_in(&mut self, wanted: impl Fn(usize) -> bool) {
+        for c in 0..self.parameters {
+            let at = |(x, row): (&f64, &RowAt)| if wanted(row.signal) { *x } else { 0.0 };
+            let own = self.columns[c].iter().zip(&self.rows).map(at).collect();
+            self.push(own);
+        }
+    }
+
     /// Recomputes the inner products.
     pub fn refresh(&mut self) {
         self.refresh_from(0);

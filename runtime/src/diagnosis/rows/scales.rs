@@ -97,3 +97,49 @@ pub(in crate::diagnosis) fn top_speeds<'a>(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::Motion;
+    use crate::simulation::testing::arm;
+
+    /// A motion of the arm in which every joint swings by its reach, once a second.
+    fn swinging(reach: &[f64], seconds: f64, target: bool) -> Signals {
+        let samples = (200.0 * seconds) as usize;
+        let over_time = |of: &dyn Fn(f64) -> f64| (0..samples).map(|t| of(t as f64 / 200.0)).collect();
+        let w = std::f64::consts::TAU;
+        let series = |order: i32| -> Vec<Vec<f64>> {
+            let phase = f64::from(order) * std::f64::consts::FRAC_PI_2;
+            reach.iter().map(|r| over_time(&|t| r * w.powi(order) * (w * t + phase).sin())).collect()
+        };
+        let motion = Motion {
+            name: "m".into(),
+            rate: 200.0,
+            start: 0.0,
+            q: series(0),
+            dq: series(1),
+            ddq: series(2),
+            torque: series(0),
+            fixed: vec![],
+            edge_samples: 10,
+        };
+        let mut signals = Signals::of_motion(&motion);
+        signals.is_target = target;
+        signals
+    }
+
+    #[test]
+    fn what_has_changed_is_measured_by_the_recording_and_not_by_its_baseline() {
+        let (model, standard) = arm();
+        let chi = model.robot().base_from_standard(&standard);
+        let n = model.robot().joints();
+        let mut near = vec![0.2; n];
+        near[1] = 0.0;
+        let both = [swinging(&vec![1.0; n], 20.0, false), swinging(&near, 5.0, true)];
+        let scales = scales_of_target(&model, &both, &chi, &vec![0.1; n]);
+        assert!((scales[0].range - 0.4).abs() < 1e-3 && (scales[0].duration - 5.0).abs() < 0.1);
+        // One that holds still is as it was before.
+        assert!((scales[1].range - 2.0).abs() < 1e-3, "{}", scales[1].range);
+    }
+}
