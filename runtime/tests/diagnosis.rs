@@ -277,6 +277,15 @@ fn torques_that_have_become_late_since_the_baseline_are_named_a_delay() {
 }
 
 #[test]
+fn times_that_run_at_half_the_rate_since_the_baseline_are_told_by_their_factor() {
+    let robot = planar();
+    let stretched = |motion: &mut Trajectory| motion.time.iter_mut().for_each(|t| *t *= 2.0);
+    let diagnosis = diagnosed_against_baseline(robot, &Hidden::in_recording(stretched));
+    assert_only(&diagnosis, EffectKind::WrongSampleRate, &[]);
+    assert_within_four_sigma(&diagnosis, "rate_error", 1.0);
+}
+
+#[test]
 fn a_body_at_the_flange_is_weighed_against_the_baseline() {
     let robot = planar();
     let (mass, x) = (0.15, 0.4);

@@ -2,7 +2,8 @@
 //! show on motion that was held out that the fit got better.
 //!
 //! 1. The band is chosen, the motions are filtered, recordings that cannot be diagnosed are refused, times that run
-//!    at another rate are corrected, and a skew between torques and positions is taken out.
+//!    at another rate are corrected, and a skew between torques and positions is taken out: that of a baseline, and that
+//!    of the recording, which may have another.
 //! 2. Windows in which something outside pushed the robot are found and set aside.
 //! 3. Every effect of the catalogue, at every place and with a grid of shapes, is tried together with all standard
 //!    parameters, and judged on motion that was held out; the best that holds becomes part of the model; then again.
@@ -14,7 +15,7 @@
 //! 5. Against a baseline, friction is free in the recording from the start; where it has changed it is named last.
 //! 6. What was accepted is reconsidered, pruned and explained.
 //!
-//! Every threshold is in `rules.rs`, with the reason for its value.
+//! Every threshold is in `rules/`, with the reason for its value.
 //!
 //! A pendulum of two links whose second joint has a spring that the model does not know:
 //!

@@ -120,6 +120,12 @@ impl Motions {
         design
     }
 
+    /// Those of the recording that is diagnosed, without its baseline.
+    pub fn of_target(&self) -> Self {
+        let targets = self.signals.iter().filter(|s| s.is_target);
+        Self { signals: targets.cloned().collect(), ..self.clone() }
+    }
+
     /// The same motions in a time that runs so many times faster.
     pub fn faster(&self, factor: f64) -> Self {
         let speeds = |slowest: &[f64]| slowest.iter().map(|v| factor * v).collect();

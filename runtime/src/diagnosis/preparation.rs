@@ -63,13 +63,13 @@ impl Prepared {
             return Err(DiagnosisError::OtherBaseline { given: other.position.len(), joints });
         }
         let fitted = Fitted::new(model, trajectories, baseline, settings)?;
-        if baseline.is_empty()
-            && fitted.moving.judged.contains(&true)
+        if fitted.moving.judged.contains(&true)
             && let Some(factor) = factor(model, &fitted.motions, (&fitted.aligned, &fitted.fit))?
         {
             let wrong = WrongRate::new(factor, &fitted.aligned, &fitted.fit)?;
             // A rate at which nothing can be made of the motion is not the right one.
-            if let Ok(corrected) = Self::at_the_right_rate(model, trajectories, settings, wrong) {
+            let recordings = (trajectories, baseline);
+            if let Ok(corrected) = Self::at_the_right_rate(model, recordings, settings, wrong) {
                 return Ok(corrected);
             }
         }
@@ -79,13 +79,13 @@ impl Prepared {
     /// With times that run as the robot did; the factor is refined on the way.
     fn at_the_right_rate(
         model: &dyn Model,
-        trajectories: &[Trajectory],
+        (trajectories, baseline): (&[Trajectory], &[Trajectory]),
         settings: &Settings,
         mut wrong: WrongRate,
     ) -> Result<Self, DiagnosisError> {
         loop {
             let faster = corrected(trajectories, wrong.logarithm.exp());
-            let mut prepared = Self::judged(model, Fitted::new(model, &faster, &[], settings)?)?;
+            let mut prepared = Self::judged(model, Fitted::new(model, &faster, baseline, settings)?)?;
             let right = wrong.refine(&prepared.context(model)?, prepared.aligned.clone())?;
             if right {
                 prepared.rate = Some(wrong);

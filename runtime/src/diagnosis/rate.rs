@@ -49,7 +49,8 @@ impl WrongRate {
             chi: fit.chi.iter().take(p).copied().collect(),
             sigma: fit.variances().iter().take(p).map(|v| v.max(0.0).sqrt()).collect(),
         };
-        let errors = HeldOutSquares::of(design, &fit.sigma, false, &[])?.errors();
+        let beside_baseline = design.segments.iter().any(|s| !s.is_target);
+        let errors = HeldOutSquares::of(design, &fit.sigma, beside_baseline, &[])?.errors();
         Ok(Self { logarithm: factor.ln(), sigma: 0.0, declared, errors, refined: 0 })
     }
 
@@ -60,7 +61,7 @@ impl WrongRate {
     /// [`SingularDesign`] where there is no fit.
     pub fn refine(&mut self, context: &Context<'_>, mut design: Design) -> Result<bool, SingularDesign> {
         let (effect, place) = LAW;
-        for column in dense_columns(context, &design, effect, place, &[], false) {
+        for column in dense_columns(context, &design, effect, place, &[], !context.is_alone()) {
             design.push(column);
         }
         design.refresh();
@@ -89,7 +90,7 @@ pub(super) fn corrected(trajectories: &[Trajectory], factor: f64) -> Vec<Traject
 }
 
 /// The factor by which the robot moved faster than the times say, where one other than 1 leaves less than half of what
-/// the standard model leaves, on no joint more.
+/// the standard model leaves, on no joint more. Beside a baseline that model is known.
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit.
@@ -103,11 +104,21 @@ pub(super) fn factor(
     if (0..design.joints).all(|j| design.of_joint(j).is_empty() || noise(j).powi(2) > RATE_LEAVES) {
         return Ok(None);
     }
+    let is_old: Vec<bool> = design.segments.iter().map(|s| !s.is_target).collect();
+    let before = if is_old.contains(&true) { Some(Fit::new(design, &fit.sigma, is_old)?) } else { None };
+    let targets = motions.of_target();
+    let spread = |logarithm: f64| -> Result<Vec<f64>, SingularDesign> {
+        let rows = targets.faster(logarithm.exp()).aligned(model);
+        match &before {
+            Some(before) => Ok(spread_beside(&rows, before.chi.as_slice())),
+            None => Ok(Fit::weighted(&rows, &fit.sigma)?.sigma),
+        }
+    };
+    let at_declared = if before.is_some() { spread(0.0)? } else { fit.sigma.clone() };
     // Squares of each joint relative to those at the declared rate.
     let left = |logarithm: f64| -> Result<Vec<f64>, SingularDesign> {
-        let rows = motions.faster(logarithm.exp()).aligned(model);
-        let sigma = Fit::weighted(&rows, &fit.sigma)?.sigma;
-        Ok(sigma.iter().zip(&fit.sigma).map(|(s, s0)| (s / s0.max(f64::MIN_POSITIVE)).powi(2)).collect())
+        let both = spread(logarithm)?.into_iter().zip(&at_declared);
+        Ok(both.map(|(s, s0)| if *s0 > 0.0 { (s / s0).powi(2) } else { 1.0 }).collect())
     };
     let mean = |squares: &[f64]| squares.iter().map(|s| s.ln()).sum::<f64>() / squares.len().max(1) as f64;
     let mut best = (0.0, 0.0);
@@ -133,4 +144,15 @@ pub(super) fn factor(
         && mean(&squares) < RATE_LEAVES.ln()
         && squares.iter().all(|s| *s < RATE_WORSENS);
     Ok(certain.then(|| found.exp()))
+}
+
+/// Standard deviation of what base parameters leave of the torques of each joint.
+fn spread_beside(rows: &Design, chi: &[f64]) -> Vec<f64> {
+    let left = |r: usize| rows.y[r] - rows.columns.iter().zip(chi).map(|(c, x)| c[r] * x).sum::<f64>();
+    let of_joint = |j: usize| {
+        let range = rows.of_joint(j);
+        let count = range.len().max(1) as f64;
+        (range.map(|r| left(r).powi(2)).sum::<f64>() / count).sqrt()
+    };
+    (0..rows.joints).map(of_joint).collect()
 }

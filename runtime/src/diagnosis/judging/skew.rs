@@ -180,6 +180,7 @@ mod tests {
         approx::assert_relative_eq!(known(0.01).expected(0.0, 0.01), 0.01, max_relative = 1e-12);
         assert!(known(1.0).expected(0.0, 0.01) < 1e-5);
     }
+
     #[test]
     fn a_skew_is_news_only_beyond_how_skews_differ_between_motions() {
         let one = |value: f64| {
