@@ -43,6 +43,7 @@ mod variable;
 pub use catalogue::EffectKind;
 pub use check::TermError;
 pub use closed_form::ClosedForm;
+#[cfg(feature = "diagnosis")]
 pub(crate) use compliance::PLAY;
 pub use compliance::{Compliance, LinkSide, Stretch, Transmission, deflection, stretch_at_start};
 pub use contact::{ContactForce, JointTorque, unit_force_torques};

@@ -7,9 +7,9 @@
 pub(in crate::diagnosis) const OWN_FRACTION: f64 = 2e-4;
 /// The same of a derivative of the model, which is wrong in the same way as the model's own columns: what an error of the
 /// table or of the time adds is nearly that of other inertias, and shows by a thousandth of its torque. Mechanics: ten
-/// thousand times [`FIT_RIDGE`], below which the part of its own is what the ridge leaves.
+/// thousand times `FIT_RIDGE`, below which the part of its own is what the ridge leaves.
 pub(in crate::diagnosis) const OWN_FRACTION_OF_DERIVATIVE: f64 = 1e-6;
-/// Relative ridge of a candidate's amplitudes. Mechanics, as [`FIT_RIDGE`], for columns that nearly agree.
+/// Relative ridge of a candidate's amplitudes. Mechanics, as `FIT_RIDGE`, for columns that nearly agree.
 pub(in crate::diagnosis) const AMPLITUDE_RIDGE: f64 = 1e-7;
 /// What one more number must gain to be worth it, in units of the noise variance (Akaike 1974). Statistics.
 pub(in crate::diagnosis) const AIC_PENALTY: f64 = 2.0;
