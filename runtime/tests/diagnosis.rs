@@ -42,10 +42,12 @@ impl Bench {
 
     /// Other motions of the robot before anything was hidden in it.
     fn baseline(&self) -> &[Trajectory] {
-        self.baseline.get_or_init(|| {
-            let motions = self.robot.motions(MOTIONS, LENGTH, BASELINE_SEED);
-            self.robot.record(&motions, &Hidden::nothing(), BASELINE_SEED)
-        })
+        self.baseline.get_or_init(|| self.baseline_with(&Hidden::nothing()))
+    }
+
+    /// The same of a robot in which something was hidden already.
+    fn baseline_with(&self, hidden: &Hidden) -> Vec<Trajectory> {
+        self.robot.record(&self.robot.motions(MOTIONS, LENGTH, BASELINE_SEED), hidden, BASELINE_SEED)
     }
 }
 
@@ -243,36 +245,30 @@ fn a_ripple_once_a_motor_turn_is_named_with_its_order() {
     assert_within_four_sigma(&diagnosis, "order_per_motor_turn", 1.0);
 }
 
+/// Torques that come four samples later, 8 ms.
+fn late(motion: &mut Trajectory) {
+    for torque in &mut motion.torque {
+        torque.rotate_right(4);
+    }
+}
+
 #[test]
 fn torques_that_are_late_are_named_a_delay() {
     let robot = planar();
-    let late = |motion: &mut Trajectory| {
-        for torque in &mut motion.torque {
-            torque.rotate_right(4);
-        }
-    };
     let diagnosis = diagnosed(robot, &Hidden::in_recording(late));
     assert_only(&diagnosis, EffectKind::TimeDelay, &[]);
-    // Four samples of 2 ms.
     assert_within_four_sigma(&diagnosis, "delay", 0.008);
 }
 
 #[test]
 fn torques_that_have_become_late_since_the_baseline_are_named_a_delay() {
     let robot = planar();
-    let late = |motion: &mut Trajectory| {
-        for torque in &mut motion.torque {
-            torque.rotate_right(4);
-        }
-    };
     let hidden = Hidden::in_recording(late);
     let diagnosis = diagnosed_against_baseline(robot, &hidden);
     assert_only(&diagnosis, EffectKind::TimeDelay, &[]);
     assert_within_four_sigma(&diagnosis, "delay", 0.008);
     // Those that were as late before are no news.
-    let before =
-        robot.robot.record(&robot.robot.motions(MOTIONS, LENGTH, BASELINE_SEED), &hidden, BASELINE_SEED);
-    let diagnosis = run(robot, &hidden, &before);
+    let diagnosis = run(robot, &hidden, &robot.baseline_with(&hidden));
     assert!(diagnosis.findings.is_empty(), "{:?}", diagnosis.verdict);
 }
 
@@ -335,8 +331,7 @@ fn what_was_missing_before_is_listed_once_and_is_no_change() {
     let robot = planar();
     let friction = || common::term(EffectKind::LoadDependentFriction, Place::Joint(0), &[], &[0.15]);
     let before = Hidden::in_robot(move |world| world.put(&friction()));
-    let baseline =
-        robot.robot.record(&robot.robot.motions(MOTIONS, LENGTH, BASELINE_SEED), &before, BASELINE_SEED);
+    let baseline = robot.baseline_with(&before);
     let spring = || common::term(EffectKind::Spring, Place::Joint(1), &[], &[3.0]);
     let now = Hidden::in_robot(move |world| {
         world.put(&friction());

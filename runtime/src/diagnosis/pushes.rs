@@ -60,11 +60,9 @@ impl Pushes {
 
     /// What they were before a law took the place of some, now that it has proved to be none; whether one had.
     pub fn come_back(&mut self) -> bool {
-        let found = self.explained.take();
-        found.is_some_and(|found| {
-            *self = *found;
-            true
-        })
+        let Some(found) = self.explained.take() else { return false };
+        *self = *found;
+        true
     }
 
     /// Looks at what a model with effects leaves; whether other rows are to be set aside than were.

@@ -14,6 +14,7 @@ use super::outcome::{Errors, Estimated};
 use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
+use super::rows::gram::dot;
 use super::rules::{
     RATE_FACTORS, RATE_LEAST, RATE_LEAVES, RATE_REFINED, RATE_ROUNDS, RATE_SPAN, RATE_WORSENS,
 };
@@ -110,7 +111,7 @@ pub(super) fn factor(
     let spread = |logarithm: f64| -> Result<Vec<f64>, SingularDesign> {
         let rows = targets.faster(logarithm.exp()).aligned(model);
         match &before {
-            Some(before) => Ok(spread_beside(&rows, before.chi.as_slice())),
+            Some(before) => Ok(spread_beside(before, &rows)),
             None => Ok(Fit::weighted(&rows, &fit.sigma)?.sigma),
         }
     };
@@ -146,13 +147,12 @@ pub(super) fn factor(
     Ok(certain.then(|| found.exp()))
 }
 
-/// Standard deviation of what base parameters leave of the torques of each joint.
-fn spread_beside(rows: &Design, chi: &[f64]) -> Vec<f64> {
-    let left = |r: usize| rows.y[r] - rows.columns.iter().zip(chi).map(|(c, x)| c[r] * x).sum::<f64>();
+/// Root mean square of what a fit to other motions leaves of the torques of each joint.
+fn spread_beside(before: &Fit, rows: &Design) -> Vec<f64> {
+    let residual = before.residual(rows);
     let of_joint = |j: usize| {
-        let range = rows.of_joint(j);
-        let count = range.len().max(1) as f64;
-        (range.map(|r| left(r).powi(2)).sum::<f64>() / count).sqrt()
+        let left = &residual[rows.of_joint(j)];
+        (dot(left, left) / left.len().max(1) as f64).sqrt()
     };
     (0..rows.joints).map(of_joint).collect()
 }

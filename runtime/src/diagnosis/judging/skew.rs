@@ -34,16 +34,11 @@ impl Skew {
     /// [`SingularDesign`] where there is no fit.
     pub fn of(
         context: &Context<'_>,
-        mut design: Design,
+        design: Design,
         wanted: impl Fn(usize) -> bool,
     ) -> Result<Self, SingularDesign> {
-        for column in delay_columns(context, &design, wanted) {
-            design.push(column);
-        }
-        design.refresh();
-        let fit = Fit::weighted(&design, &vec![1.0; design.joints])?;
-        let column = design.columns.len() - 1;
-        Ok(Self::known(fit.chi[column], (&design, &fit), column))
+        let alike = vec![1.0; design.joints];
+        Self::beyond(0.0, context, (design, &alike), wanted)
     }
 
     /// Of the recording beside its baseline, as well known as what its motions say beyond all others: `before` has been taken out
@@ -56,13 +51,22 @@ impl Skew {
         (design, sigma): (&Design, &[f64]),
         before: f64,
     ) -> Result<Self, SingularDesign> {
-        let mut design = design.clone();
-        let column = design.columns.len();
-        for own in delay_columns(context, &design, |k| context.signals[k].is_target) {
-            design.push(own);
+        Self::beyond(before, context, (design.clone(), sigma), |k| context.signals[k].is_target)
+    }
+
+    /// All of a skew of which so much has been taken out of the motions that are wanted.
+    fn beyond(
+        before: f64,
+        context: &Context<'_>,
+        (mut design, sigma): (Design, &[f64]),
+        wanted: impl Fn(usize) -> bool,
+    ) -> Result<Self, SingularDesign> {
+        for column in delay_columns(context, &design, wanted) {
+            design.push(column);
         }
         design.refresh();
         let fit = Fit::weighted(&design, sigma)?;
+        let column = design.columns.len() - 1;
         Ok(Self::known(before + fit.chi[column], (&design, &fit), column))
     }
 
