@@ -9,7 +9,7 @@
 
 mod common;
 
-use common::{Hidden, SimulatedRobot, planar, scara};
+use common::{Hidden, Loop, SimulatedRobot, planar, scara};
 use dynid_runtime::diagnosis::{Settings, Silent, diagnose};
 use dynid_runtime::effects::{EffectKind, Place};
 
@@ -91,8 +91,8 @@ const CASES: [Case; 9] = [
         robot: planar,
         place: Place::Joint(0),
         shape: &[1.0],
-        amplitude: &[0.15, 0.1],
-        truth: &[("efficiency_driving", 1.0 / 1.15), ("efficiency_driven", 0.9)],
+        amplitude: &[0.2, 0.05],
+        truth: &[("efficiency_driving", 1.0 / 1.2), ("efficiency_driven", 0.95)],
     },
     Case {
         effect: EffectKind::TorqueCrosstalk,
@@ -120,7 +120,7 @@ fn intervals_of_effects_contain_the_truth_as_often_as_they_say() {
         let robot = (case.robot)();
         let hidden = Hidden::effect(case.effect, case.place, case.shape, case.amplitude);
         for seed in 1..=seeds {
-            let recorded = robot.record(&robot.motions(MOTIONS, LENGTH, seed), &hidden, seed);
+            let recorded = robot.record_in(&Loop::FINE, &robot.motions(MOTIONS, LENGTH, seed), &hidden, seed);
             let diagnosis = diagnose(&robot.model, &recorded, &[], &Settings::default(), &Silent).unwrap();
             let mut findings = diagnosis.findings.iter();
             let own = findings.find(|f| f.term.effect == case.effect && f.term.place == case.place);

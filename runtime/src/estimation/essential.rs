@@ -18,8 +18,14 @@ pub(super) struct Elimination {
     pub cancelled: Vec<usize>,
 }
 
+/// Largest relative standard deviation with which a parameter stays whatever the smallest is: one that data show to a tenth
+/// is no guess. Where friction is known to a few parts in ten thousand, the ratio alone would cancel what is known to a
+/// hundredth, and the simplified model would no longer make the torques.
+const WELL_KNOWN: f64 = 0.1;
+
 /// Cancels the parameter with the largest relative standard deviation and solves again, until the largest is less
-/// than `r_sigma` times the smallest (the paper's V.B, after Gautier 1991 and Pham and Gautier 1991).
+/// than `r_sigma` times the smallest (the paper's V.B, after Gautier 1991 and Pham and Gautier 1991), or below
+/// [`WELL_KNOWN`] with the noise that all of them leave.
 ///
 /// `factor` has the unknowns `active`, whose columns are independent; `inflation` is by how much the standard deviation of
 /// each is larger than (18) has it.
@@ -28,21 +34,24 @@ pub(super) fn eliminate(factor: &Factor, active: &[usize], r_sigma: f64, inflati
     let mut cancelled = Vec::new();
     let mut inflation = inflation.to_vec();
     let mut reduced = factor.clone();
+    let noise = {
+        let (chi, _) = back_substitute(factor);
+        factor.residual_norm(&chi) / (factor.rows().saturating_sub(chi.len()).max(1) as f64).sqrt()
+    };
     while kept.len() > 1 {
         let (chi, variance) = back_substitute(&reduced);
-        // The common factor sigma_rho does not change ratios.
         let relative: Vec<f64> = chi
             .iter()
             .zip(&variance)
             .zip(&inflation)
-            .map(|((x, v), i)| if *x == 0.0 { f64::INFINITY } else { i * v.sqrt() / x.abs() })
+            .map(|((x, v), i)| if *x == 0.0 { f64::INFINITY } else { noise * i * v.sqrt() / x.abs() })
             .collect();
         let smallest = relative.iter().copied().fold(f64::INFINITY, f64::min);
         let Some((worst, largest)) = relative.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
         else {
             break;
         };
-        if largest < r_sigma * smallest {
+        if largest < r_sigma * smallest || largest < WELL_KNOWN {
             break;
         }
         cancelled.push(kept.remove(worst));

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::estimation::Factor;
+use crate::estimation::{Essential, Factor};
 use crate::estimation::observe::{EquationFactor, LeftOut, TimeBlock};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -301,23 +301,37 @@ fn an_equation_on_which_iterated_weights_give_up_is_reported_and_kept() {
     assert_eq!(estimate.iterations, 0);
 }
 
-#[test]
-fn essential_parameters_are_those_within_the_ratio_of_the_best() {
-    // Orthogonal columns of equal length: relative sigmas are inversely proportional to the values.
+/// The essential parameters of orthogonal columns of equal length, whose relative standard deviations are inversely
+/// proportional to the values: that of c is 25 times that of a.
+fn essential_beside(noise: f64) -> Essential {
     let w = DMatrix::<f64>::identity(40, 5) * 10.0;
     let values = [100.0, 10.0, 4.0, 6.0, 0.5];
     let mut rng = Pcg64::seed_from_u64(2);
-    let y = DVector::from_fn(40, |i, _| if i < 5 { 10.0 * values[i] } else { rng.random_range(-1.0..1.0) });
+    let y =
+        DVector::from_fn(40, |i, _| if i < 5 { 10.0 * values[i] } else { rng.random_range(-noise..noise) });
     let dense = [Dense { trajectory: 0, equation: 0, columns: (0..5).collect(), w, y }];
     let settings = EstimateSettings { r_sigma: Some(20.0), ..EstimateSettings::default() };
     let essential = estimate(&observation(&NAMES, &dense, 1), &settings).essential.unwrap();
-    assert_eq!(essential.cancelled, ["e", "c"]);
-    let kept: Vec<&str> = essential.parameters.iter().map(|p| p.name.as_str()).collect();
-    assert_eq!(kept, ["a", "b", "d"]);
     for p in &essential.parameters {
         let l = NAMES.iter().position(|n| *n == p.name).unwrap();
         assert!((p.value - values[l]).abs() < 1e-9);
     }
+    essential
+}
+
+#[test]
+fn essential_parameters_are_those_within_the_ratio_of_the_best() {
+    let essential = essential_beside(10.0);
+    assert_eq!(essential.cancelled, ["e", "c"]);
+    let kept: Vec<&str> = essential.parameters.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(kept, ["a", "b", "d"]);
+}
+
+#[test]
+fn a_parameter_that_is_known_to_a_hundredth_is_essential_whatever_the_best_is_known_to() {
+    let essential = essential_beside(1.0);
+    assert_eq!(essential.cancelled, ["e"]);
+    assert!(essential.parameters.iter().any(|p| p.name == "c"));
 }
 
 #[test]

@@ -7,4 +7,4 @@ mod hidden;
 mod robots;
 
 pub use hidden::{Hidden, term};
-pub use robots::{SimulatedRobot, planar, planar_that_knows, planar_with, scara};
+pub use robots::{Loop, SimulatedRobot, planar, planar_that_knows, planar_with, scara};

@@ -61,9 +61,20 @@ nominal:
   noise: {position: [2e-5, 2e-5, 2e-6], torque: [0.4, 0.2, 0.4]}
 ";
 
-/// Control rate, Hz, and control samples for each recorded row.
-const RATE: f64 = 1000.0;
-const RECORD_EVERY: usize = 2;
+/// The closed loop that a robot is recorded in.
+pub struct Loop {
+    /// Control rate, Hz.
+    pub rate: f64,
+    /// Control samples for each recorded row.
+    pub record_every: usize,
+}
+
+impl Loop {
+    /// What is fast enough to simulate: torques that follow the load are those of one sample before.
+    pub const COARSE: Self = Self { rate: 1000.0, record_every: 2 };
+    /// The same rows of a loop in which a sample is as good as none.
+    pub const FINE: Self = Self { rate: 5000.0, record_every: 10 };
+}
 
 /// A robot that exists only as numbers.
 pub struct SimulatedRobot {
@@ -116,14 +127,25 @@ impl SimulatedRobot {
 
     /// Records motions in closed loop at 500 Hz with the nominal noise. The controller knows nothing of effects.
     pub fn record(&self, motions: &[ExcitingMotion], hidden: &Hidden, seed: u64) -> Vec<Trajectory> {
+        self.record_in(&Loop::COARSE, motions, hidden, seed)
+    }
+
+    /// The same in another loop.
+    pub fn record_in(
+        &self,
+        of: &Loop,
+        motions: &[ExcitingMotion],
+        hidden: &Hidden,
+        seed: u64,
+    ) -> Vec<Trajectory> {
         let mut world = World::from_standard(&self.model, &self.standard);
         (hidden.put)(&mut world);
         assert_eq!(world.left_out(), [], "the simulation has to have what is hidden");
         let record = |(k, motion): (usize, &ExcitingMotion)| {
             let name = format!("motion {}", k + 1);
             let noise = 100 * seed + k as u64;
-            let mut settings = LoopSettings::nominal(world.model(), &world.chi(), motion, RATE, noise);
-            settings.record_every = RECORD_EVERY;
+            let mut settings = LoopSettings::nominal(world.model(), &world.chi(), motion, of.rate, noise);
+            settings.record_every = of.record_every;
             let mut plant = world.plant(&name).expect("the robot can exist");
             settings.name = name;
             let run = simulate(&mut plant, motion, &settings, &mut |_| {}).expect("the loop is stable");

@@ -6,7 +6,8 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rules::{DELAY_DEVIATION, LONGEST_BLOCK};
+use crate::diagnosis::rules::{DELAY_DEVIATION, LONGEST_BLOCK, SKEW_FREEDOM};
+use crate::statistics::moderation::{Prior, Variance};
 
 /// Skew of the torques behind the positions.
 pub(in crate::diagnosis) struct Skew {
@@ -23,8 +24,9 @@ pub(in crate::diagnosis) struct Skew {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::diagnosis) struct BetweenMotions {
     /// s².
-    pub variance: f64,
-    pub motions: usize,
+    variance: Variance,
+    /// That tell a mean.
+    motions: usize,
 }
 
 impl Skew {
@@ -86,13 +88,11 @@ impl Skew {
     /// The same as the difference from motions whose own skews differ so much: another motion of that kind would have another
     /// one too, and the mean of few is not known better. Degrees of freedom by Satterthwaite (1946).
     pub fn beside(self, others: BetweenMotions) -> Self {
-        let n = others.motions as f64;
-        let (own, between) = (self.sigma * self.sigma, others.variance * (1.0 + 1.0 / n));
-        if others.motions < 2 || between <= 0.0 {
-            return self;
-        }
+        let own = self.sigma * self.sigma;
+        let between = others.variance.value * (1.0 + 1.0 / others.motions.max(1) as f64);
         let variance = own + between;
-        let freedom = variance * variance / (own * own / self.freedom + between * between / (n - 1.0));
+        let uncertain = own * own / self.freedom + between * between / others.variance.freedom;
+        let freedom = variance * variance / uncertain;
         let sigma = variance.sqrt();
         let evidence = Evidence::student(self.value.abs() / sigma.max(1e-300), freedom);
         Self { sigma, evidence, freedom, ..self }
@@ -132,18 +132,24 @@ impl BetweenMotions {
         let fit = Fit::weighted(&design, sigma)?;
         let seen = (first..design.columns.len()).filter(|&c| design.columns[c].iter().any(|x| *x != 0.0));
         let skews: Vec<Skew> = seen.map(|c| Skew::known(fit.chi[c], (&design, &fit), c)).collect();
-        Ok(Self::of(&skews))
+        Ok(Self::of(&skews, 1.0 / context.rate()))
     }
 
-    /// Of skews with their own errors, by moments (DerSimonian and Laird 1986).
-    fn of(skews: &[Skew]) -> Self {
+    /// Of skews with their own errors, by moments (DerSimonian and Laird 1986), moderated by what is known before: a motion
+    /// begins anywhere within a `sample`, s, of the clock of the torques.
+    fn of(skews: &[Skew], sample: f64) -> Self {
         let motions = skews.len();
         let n = motions as f64;
-        let mean = skews.iter().map(|s| s.value).sum::<f64>() / n;
-        let spread = skews.iter().map(|s| (s.value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        let own = skews.iter().map(|s| s.sigma * s.sigma).sum::<f64>() / n;
-        let variance = if motions < 2 { 0.0 } else { (spread - own).max(0.0) };
-        Self { variance, motions }
+        let before = Prior { variance: sample * sample / 12.0, freedom: SKEW_FREEDOM };
+        let seen = if motions < 2 {
+            Variance { value: 0.0, freedom: 0.0 }
+        } else {
+            let mean = skews.iter().map(|s| s.value).sum::<f64>() / n;
+            let spread = skews.iter().map(|s| (s.value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+            let own = skews.iter().map(|s| s.sigma * s.sigma).sum::<f64>() / n;
+            Variance { value: (spread - own).max(0.0), freedom: n - 1.0 }
+        };
+        Self { variance: before.moderate(seen), motions }
     }
 }
 
@@ -156,7 +162,7 @@ pub(in crate::diagnosis) fn usual_deviation(context: &Context<'_>) -> f64 {
 mod tests {
     use super::*;
     use crate::diagnosis::judging::testing::correlated;
-    use rand::SeedableRng;
+    use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
     /// A skew of noise that lasts as long as a block, of which the column has the same memory.
@@ -191,13 +197,40 @@ mod tests {
             let evidence = Evidence::student(value / 1e-4, 30.0);
             Skew { value, sigma: 1e-4, evidence, freedom: 30.0 }
         };
-        let alike = BetweenMotions::of(&[one(0.001), one(0.001), one(0.001), one(0.001)]);
-        assert_eq!(one(0.004).beside(alike).sigma, 1e-4);
-        let differing = BetweenMotions::of(&[one(-0.002), one(0.001), one(0.003), one(-0.002)]);
+        const SAMPLE: f64 = 1e-3;
+        let alike = BetweenMotions::of(&[one(0.001), one(0.001), one(0.001), one(0.001)], SAMPLE);
+        assert!(one(0.004).beside(alike).sigma < 0.5 * SAMPLE);
+        let differing = BetweenMotions::of(&[one(-0.002), one(0.001), one(0.003), one(-0.002)], SAMPLE);
         let told = one(0.004).beside(differing);
-        assert!(one(0.004).confidence() > 0.999 && told.confidence() < 0.9, "{}", told.confidence());
+        assert!(one(0.004).confidence() > 0.999 && told.confidence() < 0.95, "{}", told.confidence());
         assert!(one(0.1).beside(differing).confidence() > 0.999);
-        // A single motion says nothing of how motions differ.
-        assert_eq!(one(0.004).beside(BetweenMotions::of(&[one(0.001)])).sigma, 1e-4);
+        // What one motion, or two, do not say of how motions differ is known before.
+        for few in [&[one(0.001)][..], &[one(0.001), one(0.0012)]] {
+            let few = BetweenMotions::of(few, SAMPLE);
+            assert!(one(0.007).beside(few).confidence() > 0.999);
+            assert!(one(0.001).beside(few).confidence() < 0.95);
+        }
+    }
+
+    #[test]
+    fn skews_that_differ_as_motions_begin_within_a_sample_are_no_news() {
+        let mut rng = Pcg64::seed_from_u64(42);
+        let (runs, level) = (20_000, 1e-3);
+        let mut told_beside = |motions: usize| -> bool {
+            let mut one = || {
+                let value = rng.random_range(-0.5e-3..0.5e-3);
+                Skew { value, sigma: 1e-5, evidence: Evidence::student(value.abs() / 1e-5, 30.0), freedom: 30.0 }
+            };
+            let baseline: Vec<Skew> = (0..motions).map(|_| one()).collect();
+            let mean = baseline.iter().map(|s| s.value).sum::<f64>() / motions as f64;
+            let new = one();
+            let new = Skew { value: new.value - mean, ..new };
+            new.beside(BetweenMotions::of(&baseline, 1e-3)).confidence() > 1.0 - level
+        };
+        for motions in [1, 2, 3, 10] {
+            let told = (0..runs).filter(|_| told_beside(motions)).count();
+            println!("{told} of {runs} beside {motions}");
+            assert!(told as f64 <= level * f64::from(runs), "{told} of {runs} beside {motions}");
+        }
     }
 }
