@@ -14,8 +14,10 @@ use common::{Hidden, SimulatedRobot};
 use dynid_runtime::diagnosis::{Diagnosis, DiagnosisError, Settings, Silent, diagnose};
 use dynid_runtime::effects::{EffectKind, Place};
 use dynid_runtime::model::Robot;
+use dynid_runtime::prediction::{Comparison, Predictor, evaluate};
 use dynid_runtime::recording::Trajectory;
 use dynid_runtime::simulation::excitation::ExcitingMotion;
+use dynid_runtime::simulation::replay::replay;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -105,6 +107,24 @@ fn assert_only(diagnosis: &Diagnosis, effect: EffectKind, joints: &[usize]) {
 /// Asserts that a quantity of the one finding is within four of its standard deviations of the truth.
 fn assert_within_four_sigma(diagnosis: &Diagnosis, quantity: &str, truth: f64) {
     assert_close(diagnosis, quantity, truth, 0.0);
+}
+
+/// Asserts that the model that is saved predicts motion of other seeds, and follows it in a simulation, with a fifth of the error
+/// at most.
+fn assert_follows(bench: &Bench, hidden: &Hidden, diagnosis: &Diagnosis) {
+    let robot = &bench.robot;
+    let others = robot.record(&robot.motions(2, LENGTH, SEED + 7), hidden, SEED + 7);
+    let terms = diagnosis.terms();
+    let prepared = Comparison::default().prepare(&others).unwrap();
+    let predictors = Predictor::before_and_after(diagnosis, &terms);
+    let predicted =
+        evaluate(&robot.model, &predictors, &prepared.motions, &prepared.settings, &[]).unwrap();
+    let forward = replay(&robot.model, "others", &others, diagnosis, &|_| ()).unwrap();
+    assert_eq!(forward.left_out, Vec::<String>::new());
+    let [before, after] = [0, 1].map(|k| predicted.predictions[k].errors.relative_error.unwrap());
+    eprintln!("  others: predicted {before:.4} -> {after:.4}, simulated {:.4} -> {:.4}", forward.before, forward.after);
+    assert!(after < 0.2 * before, "{before} {after}");
+    assert!(forward.after < 0.2 * forward.before, "{forward:?}");
 }
 
 fn assert_close(diagnosis: &Diagnosis, quantity: &str, truth: f64, more: f64) {
@@ -253,6 +273,15 @@ fn late(motion: &mut Trajectory) {
 }
 
 #[test]
+fn an_encoder_whose_zero_is_off_by_a_large_angle_is_told_whole() {
+    let off = Hidden::in_recording(|motion| motion.position[0].iter_mut().for_each(|q| *q += 0.8));
+    let diagnosis = diagnosed(planar(), &off);
+    assert_only(&diagnosis, EffectKind::PositionOffset, &[1]);
+    assert_within_four_sigma(&diagnosis, "offset", -0.8);
+    assert_follows(planar(), &off, &diagnosis);
+}
+
+#[test]
 fn torques_that_are_late_are_named_a_delay() {
     let robot = planar();
     let diagnosis = diagnosed(robot, &Hidden::in_recording(late));
@@ -276,9 +305,11 @@ fn torques_that_have_become_late_since_the_baseline_are_named_a_delay() {
 fn times_that_run_at_half_the_rate_since_the_baseline_are_told_by_their_factor() {
     let robot = planar();
     let stretched = |motion: &mut Trajectory| motion.time.iter_mut().for_each(|t| *t *= 2.0);
-    let diagnosis = diagnosed_against_baseline(robot, &Hidden::in_recording(stretched));
+    let stretched = Hidden::in_recording(stretched);
+    let diagnosis = diagnosed_against_baseline(robot, &stretched);
     assert_only(&diagnosis, EffectKind::WrongSampleRate, &[]);
     assert_within_four_sigma(&diagnosis, "rate_error", 1.0);
+    assert_follows(robot, &stretched, &diagnosis);
 }
 
 #[test]
@@ -314,6 +345,7 @@ fn a_base_that_was_tilted_is_named_with_both_angles() {
     assert_only(&diagnosis, EffectKind::BaseTilt, &[]);
     assert_within_four_sigma(&diagnosis, "tilt_1", about_x);
     assert_within_four_sigma(&diagnosis, "tilt_2", about_y);
+    assert_follows(robot, &hidden, &diagnosis);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::rows::scales::scales;
 use super::rows::signals::Signals;
 use crate::effects::{
     BodyEstimate, CoupledRotor, EffectKind, EffectTerm, Form, HEARD_JOINT, Parameter, Place, Quantities,
-    Transmission,
+    Transmission, numbers_at,
 };
 use crate::model::{JointIndex, Model};
 use crate::signal::Motion;
@@ -247,9 +247,7 @@ fn quantities(
             list
         }
         Form::Sensitivity(law) => {
-            let variants = law.variants(robot);
-            let v = place.variant().unwrap_or(0);
-            let wanted = if law.together() { &variants[..] } else { variants.get(v..=v).unwrap_or_default() };
+            let wanted = numbers_at(law, robot, place.variant().unwrap_or(0));
             wanted.iter().zip(amplitude).map(|(variant, a)| law.quantity(variant, *a, 0.0)).collect()
         }
         Form::Compliance(law) => {

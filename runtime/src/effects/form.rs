@@ -221,6 +221,21 @@ impl Form {
         }
     }
 
+    /// The largest error along the way to which its columns are taken; 0 where its shape is not its amplitude.
+    pub fn largest_error(self) -> f64 {
+        match self {
+            Self::Sensitivity(law) => law.largest_error(),
+            Self::Joint(_)
+            | Self::Heard(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free
+            | Self::User => 0.0,
+        }
+    }
+
     /// Joints (0-based) that such an effect at a place is named on; empty for the whole robot.
     pub fn named_joints(self, robot: &Robot, place: Place) -> Vec<usize> {
         match self {

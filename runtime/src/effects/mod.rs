@@ -55,7 +55,9 @@ pub use joint_law::{At, AtRest, HEARD_JOINT, JointLaw, Scale};
 pub use place::Place;
 pub use quantity::{Parameter, Quantities, unit_behind};
 pub use rigid_body::{BODY_SYMBOLS, BodyEstimate, BodyOnLink, body_columns, body_detail};
-pub use sensitivity::{Direction, Distortion, Seeds, Sensitivity, Variant, derivable, derivative};
+pub use sensitivity::{
+    Corrected, Direction, Distortion, Seeds, Sensitivity, Variant, corrected, derivable, derivative, numbers_at,
+};
 pub use shape::{Move, ShapeSearch, Step};
 #[cfg(feature = "diagnosis")]
 pub(crate) use term::named;

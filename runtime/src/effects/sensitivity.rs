@@ -69,6 +69,12 @@ pub trait Sensitivity: Sync {
         Vec::new()
     }
 
+    /// The largest error, in units of its number, along the way to which derivatives are taken: an exponential factor of two, and
+    /// more than a base tilts or a length is off.
+    fn largest_error(&self) -> f64 {
+        0.7
+    }
+
     /// What an error of this length is, where it is in how the motion was recorded and not in the robot.
     fn in_recording(&self, amplitude: &[f64]) -> Option<Distortion> {
         let _ = amplitude;
@@ -77,6 +83,49 @@ pub trait Sensitivity: Sync {
 
     /// Sets the slopes for one number.
     fn seed(&self, variant: &Variant, seeds: &mut Seeds<'_>);
+}
+
+/// The numbers of an effect that are wrong at a place: all of them, or the variant `v`; none beyond the last.
+pub fn numbers_at(effect: &dyn Sensitivity, robot: &crate::model::Robot, v: usize) -> Vec<Variant> {
+    let all = effect.variants(robot);
+    if effect.together() { all } else { all.into_iter().skip(v).take(1).collect() }
+}
+
+/// A robot with errors of its numbers in it.
+#[derive(Debug, Clone)]
+pub struct Corrected {
+    /// The table and gravity as they are; its base parameters are those of the table as it is written.
+    pub robot: crate::model::Robot,
+    /// How far each joint is from where its encoder sees it, rad or m.
+    pub beyond_encoder: Vec<f64>,
+}
+
+/// A robot whose numbers are wrong by so much: where the [`Direction`] along the same errors ends.
+pub fn corrected(
+    robot: &crate::model::Robot,
+    effect: &dyn Sensitivity,
+    errors: impl IntoIterator<Item = (Variant, f64)>,
+) -> Corrected {
+    let n = robot.joints();
+    let still = vec![Dual::default(); n];
+    let (mut q, mut dq, mut ddq, jerk) = (still.clone(), still.clone(), still, vec![0.0; n]);
+    let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
+    let mut gravity = robot.gravity.map(|g| Dual::new(g, 0.0));
+    for (variant, error) in errors {
+        let [q, dq, ddq] = [&mut q, &mut dq, &mut ddq].map(|x| &mut x[..]);
+        let (rows, gravity) = (&mut rows[..], &mut gravity);
+        effect.seed(&variant, &mut Seeds { q, dq, ddq, jerk: &jerk, rows, gravity });
+        let lengths = rows.iter_mut().flat_map(|row| [&mut row.d, &mut row.r]);
+        for x in q.iter_mut().chain(gravity.iter_mut()).chain(lengths) {
+            *x = Dual::new(x.value + error * x.slope, 0.0);
+        }
+    }
+    let mut robot = robot.clone();
+    robot.gravity = gravity.map(|g| g.value);
+    for (frame, row) in robot.frames.to_mut().iter_mut().zip(&rows) {
+        (frame.d, frame.r) = (row.d.value, row.r.value);
+    }
+    Corrected { robot, beyond_encoder: q.iter().map(|q| q.value).collect() }
 }
 
 /// A model whose derivatives have no entry left out: entries that vanish only because gravity is vertical count.
@@ -106,7 +155,7 @@ pub struct Direction<'a> {
 }
 
 /// Most points of the path that a mean is taken over (midpoint rule).
-const MOST_POINTS: usize = 4;
+const MOST_POINTS: usize = 16;
 
 /// Way from one point to the next, rad or a part of what is wrong: over it derivatives, which are sines and cosines of angles
 /// and polynomials of lengths, bend so little that their mean is that in the middle to one in ten thousand.

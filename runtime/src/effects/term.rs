@@ -7,9 +7,9 @@ use super::form::Form;
 use super::free_law::{Axis, FreeLaw};
 use super::joint_law::Scale;
 use super::place::Place;
-use super::sensitivity::Distortion;
+use super::sensitivity::{Corrected, Distortion, corrected, numbers_at};
 use super::variable::Variable;
-use crate::model::JointKind;
+use crate::model::{JointKind, Robot};
 use serde::{Deserialize, Serialize};
 
 /// An effect that has become part of a model.
@@ -84,6 +84,19 @@ impl EffectTerm {
             | Form::Free
             | Form::User => None,
         }
+    }
+
+    /// The robot with the errors of the term in it, where it is one of the robot's own numbers.
+    pub fn corrected(&self, robot: &Robot) -> Option<Corrected> {
+        let (Form::Sensitivity(law), None, Some(v)) =
+            (self.effect.form(), self.distortion(), self.place.variant())
+        else {
+            return None;
+        };
+        let numbers = numbers_at(law, robot, v);
+        (!numbers.is_empty()).then(|| {
+            corrected(robot, law, numbers.into_iter().zip(self.amplitude.iter().copied()))
+        })
     }
 
     /// The joint and the transmission of a compliant joint; `None` for every other effect.

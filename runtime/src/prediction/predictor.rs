@@ -66,7 +66,7 @@ impl<'a> Predictor<'a> {
         if self.chi.len() != expected {
             return Err(PredictionError::Parameters { found: self.chi.len(), expected });
         }
-        let factor: f64 = self.effects.iter().filter_map(EffectTerm::distortion).map(times_faster).product();
+        let factor = times_faster(self.effects);
         let corrected = (factor != 1.0).then(|| motion.faster(factor));
         let motion = corrected.as_ref().unwrap_or(motion);
         let mut all = torques(model, self.chi, motion.state_slices().states());
@@ -83,11 +83,13 @@ impl<'a> Predictor<'a> {
     }
 }
 
-fn times_faster(distortion: Distortion) -> f64 {
-    match distortion {
+/// How many times faster a robot with these effects moved than the times of its recording say.
+pub(crate) fn times_faster(effects: &[EffectTerm]) -> f64 {
+    let factor = |distortion| match distortion {
         Distortion::Skew => 1.0,
         Distortion::Faster(factor) => factor,
-    }
+    };
+    effects.iter().filter_map(EffectTerm::distortion).map(factor).product()
 }
 
 /// A signal `samples` later: linear interpolation, the ends held.

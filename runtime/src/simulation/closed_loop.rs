@@ -54,7 +54,7 @@ pub struct Simulation {
     pub truth: Motion,
     /// Control samples at which each joint's torque was at its limit.
     pub limited: Vec<usize>,
-    /// Largest |planned - actual| position of each joint, rad or m.
+    /// Largest |planned - actual| position of each joint, as its encoder would see it without noise, rad or m.
     pub tracking_error: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ pub fn simulate(
     let rows = samples.div_ceil(settings.record_every);
     let (mut q, mut dq, mut ddq) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     reference.at(0.0, &mut q, &mut dq, &mut ddq);
-    let mut state = plant.state(&q, &dq);
+    let mut state = plant.state_seen_at(&q, &dq);
     let mut here = state.clone();
     let mut log = Log::new(n, rows);
     let mut reading = vec![0.0; n];
@@ -95,7 +95,7 @@ pub fn simulate(
         state.time = t;
         reference.at(t, &mut q, &mut dq, &mut ddq);
         for j in 0..n {
-            let position = plant.motor_position(&state, j);
+            let position = plant.encoder(&state, j);
             reading[j] = sensors.position(j, position);
             tracking_error[j] = tracking_error[j].max((q[j] - position).abs());
         }

@@ -58,6 +58,7 @@ mod state;
 mod steps;
 mod stiction;
 mod stiff;
+mod uncovered;
 mod user;
 mod work;
 mod world;

@@ -24,6 +24,8 @@ pub struct Plant<'m> {
     /// What the rotors whose inertias are parameters of their own add to the mass matrix of chi, n x n.
     pub(super) rotor_in_chi: Vec<f64>,
     pub(super) effects: Vec<Box<dyn ExtraTorque + 'm>>,
+    /// How far each joint is from where its encoder sees it.
+    pub(super) beyond_encoder: Vec<f64>,
     pub(super) scheme: Scheme,
     pub(super) work: Work,
 }
@@ -144,9 +146,26 @@ impl<'m> Plant<'m> {
             rotor,
             rotor_in_chi,
             effects,
+            beyond_encoder: vec![0.0; n],
             scheme: Scheme::default(),
             work,
         })
+    }
+
+    /// With encoders whose zeros are off: each joint is so much beyond where its encoder sees it, rad or m.
+    ///
+    /// # Errors
+    /// Another number of joints, a number that is not finite.
+    pub fn with_encoders_off(mut self, beyond: &[f64]) -> Result<Self, SimulationError> {
+        let (expected, found) = (self.joints, beyond.len());
+        if expected != found {
+            return Err(SimulationError::Length { what: "encoder zeros", expected, found });
+        }
+        if let Some(&found) = beyond.iter().find(|x| !x.is_finite()) {
+            return Err(SimulationError::Setting { what: "encoder zero", expected: "finite", found });
+        }
+        self.beyond_encoder = beyond.to_vec();
+        Ok(self)
     }
 
     /// Number of joints n.
@@ -185,7 +204,19 @@ impl<'m> Plant<'m> {
         state
     }
 
-    /// Motor-side position of joint j in `state`: what its encoder sees, in units of the joint.
+    /// What the encoder of joint j sees in `state`, in units of the joint.
+    #[inline]
+    pub fn encoder(&self, state: &State, j: usize) -> f64 {
+        self.motor_position(state, j) - self.beyond_encoder[j]
+    }
+
+    /// The robot where its encoders see it at positions `q` (n), with joint velocities `dq` (n).
+    pub fn state_seen_at(&self, q: &[f64], dq: &[f64]) -> State {
+        let there: Vec<f64> = q.iter().zip(&self.beyond_encoder).map(|(q, beyond)| q + beyond).collect();
+        self.state(&there, dq)
+    }
+
+    /// Motor-side position of joint j in `state`, in units of the joint.
     #[inline]
     pub fn motor_position(&self, state: &State, j: usize) -> f64 {
         state.q[self.motor[j]]

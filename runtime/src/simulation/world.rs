@@ -9,8 +9,11 @@ use super::free::FreeTorque;
 use super::less_friction::LessFriction;
 use super::plant::Plant;
 use super::push::Push;
+use super::uncovered::UncoveredTorque;
 use super::user::UserTorque;
-use crate::effects::{ContactForce, EffectKind, EffectTerm, Form, FreeLaw, JointLaw, Place};
+use crate::effects::{
+    ContactForce, Corrected, EffectKind, EffectTerm, Form, FreeLaw, JointLaw, Place, Sensitivity, numbers_at,
+};
 use crate::model::{Model, ParameterKind, RecursiveModel, RecursiveModelError, Robot};
 
 /// What is known of the robot's numbers.
@@ -50,6 +53,10 @@ pub struct World<'m> {
     nominal: &'m dyn Model,
     /// The robot with another table or another gravity.
     table: Option<RecursiveModel>,
+    /// How far each joint is from where its encoder sees it, rad or m.
+    beyond_encoder: Vec<f64>,
+    /// What an error of the table uncovers: amplitudes of columns beyond its numbers.
+    uncovered: Vec<(&'static dyn Sensitivity, Vec<f64>)>,
     parameters: Parameters,
     /// Laws of a joint: the joint that each is a torque of, and the one whose state it is made from.
     laws: Vec<(&'static dyn JointLaw, [usize; 2], EffectTerm)>,
@@ -81,6 +88,8 @@ impl<'m> World<'m> {
         Self {
             nominal,
             table: None,
+            beyond_encoder: vec![0.0; nominal.robot().joints()],
+            uncovered: Vec::new(),
             parameters,
             laws: Vec::new(),
             free: Vec::new(),
@@ -110,8 +119,9 @@ impl<'m> World<'m> {
     }
 
     /// Puts an effect in. Bodies become part of the parameters, laws of a joint torques; transmissions become elastic
-    /// joints. What a plant does not have (errors of the table, skews of the recording, the inertia of a coupled rotor,
-    /// contacts, which belong to the recording they were seen in, laws of a user over accelerations) or what does not fit the robot is left out and named.
+    /// joints, errors of the table another table, and encoders see joints elsewhere. What a plant does not have (skews and
+    /// rates of a recording, the inertia of a coupled rotor, contacts, which belong to the recording they were seen in, laws of
+    /// a user over accelerations) or what does not fit the robot is left out and named.
     pub fn put(&mut self, term: &EffectTerm) {
         let n = self.nominal.robot().joints();
         let is_in = match term.effect.form() {
@@ -151,7 +161,8 @@ impl<'m> World<'m> {
                 self.of_user.extend(sound.then(|| term.clone()));
                 sound
             }
-            Form::Sensitivity(_) | Form::Window => false,
+            Form::Sensitivity(law) => self.put_error(law, term),
+            Form::Window => false,
         };
         if !is_in {
             self.left_out.push(term.effect);
@@ -165,6 +176,28 @@ impl<'m> World<'m> {
         let joints = joints.filter(|both| both.iter().all(|j| *j < n) && term.scale.is_some());
         self.laws.extend(joints.map(|joints| (law, joints, term.clone())));
         joints.is_some()
+    }
+
+    /// Puts an error of the robot's own numbers in.
+    fn put_error(&mut self, law: &'static dyn Sensitivity, term: &EffectTerm) -> bool {
+        let robot = self.model().robot();
+        let Some(Corrected { robot: changed, beyond_encoder }) = term.corrected(robot) else { return false };
+        let same_table = changed.gravity == robot.gravity && changed.frames == robot.frames;
+        let changed = if same_table {
+            Ok(())
+        } else if let Parameters::Base(_) = self.parameters {
+            // What was fitted beside the error are parameters of the regrouped table.
+            RecursiveModel::new(changed).map(|table| self.table = Some(table))
+        } else {
+            self.change_table(|robot| (robot.gravity, robot.frames) = (changed.gravity, changed.frames))
+        };
+        let numbers = term.place.variant().map_or(0, |v| numbers_at(law, self.nominal.robot(), v).len());
+        if changed.is_ok() {
+            self.beyond_encoder.iter_mut().zip(beyond_encoder).for_each(|(all, more)| *all += more);
+            let more = term.amplitude.get(numbers..).unwrap_or_default();
+            self.uncovered.extend((!more.is_empty()).then(|| (law, more.to_vec())));
+        }
+        changed.is_ok()
     }
 
     /// Adds a joint's spring; its rotor is the one of the parameters.
@@ -251,16 +284,15 @@ impl<'m> World<'m> {
         if self.less_friction {
             torques.push(Box::new(LessFriction::taken_from(robot, &mut chi)));
         }
-        if self.elastic.is_empty() {
-            return Plant::with_torques(model, &chi, torques);
-        }
         let joints: Vec<ElasticJoint> = self.elastic.iter().map(|(joint, _)| *joint).collect();
-        match &self.parameters {
+        let plant = match &self.parameters {
+            _ if joints.is_empty() => Plant::with_torques(model, &chi, torques),
             Parameters::Standard(standard) => Plant::with_effects(model, standard, &joints, torques),
             Parameters::Base(_) => {
                 Plant::with_effects(model, &self.with_rotors_apart(robot, &chi), &joints, torques)
             }
-        }
+        };
+        plant?.with_encoders_off(&self.beyond_encoder)
     }
 
     /// Torques of what is in the robot, in a motion.
@@ -282,6 +314,9 @@ impl<'m> World<'m> {
         }
         for coupled in &self.coupled {
             torques.push(Box::new(*coupled));
+        }
+        for (law, amplitude) in &self.uncovered {
+            torques.push(Box::new(UncoveredTorque { law: *law, robot: self.nominal.robot(), amplitude }));
         }
         for force in self.pushes.iter().filter(|p| p.motion == motion) {
             if let Some(push) = Push::new(robot, force) {

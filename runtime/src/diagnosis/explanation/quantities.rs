@@ -7,7 +7,9 @@ use crate::diagnosis::rules::QUANTITY_STEP;
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::{Accepted, Mode};
-use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter};
+use crate::effects::{
+    BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter, numbers_at,
+};
 use crate::model::JointIndex;
 
 /// What a finding and a model keep of an accepted effect.
@@ -47,8 +49,7 @@ pub(in crate::diagnosis) fn quantified(
             None
         }
         Form::Sensitivity(law) => term.place.variant().map(|v| {
-            let variants = law.variants(context.model.robot());
-            let wanted = if law.together() { &variants[..] } else { variants.get(v..=v).unwrap_or_default() };
+            let wanted = numbers_at(law, context.model.robot(), v);
             let of = wanted.iter().zip(amplitude.iter().zip(&sigma));
             of.map(|(variant, (a, s))| law.quantity(variant, *a, *s)).collect()
         }),

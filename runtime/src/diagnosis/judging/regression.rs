@@ -33,6 +33,10 @@ pub(in crate::diagnosis) struct Regression {
     pub gains: Range<usize>,
     /// y without any term of fixed amplitude.
     measured: Vec<f64>,
+    /// The whole torques of the rows.
+    torque: Vec<f64>,
+    /// Columns of the base parameters of the robot as it is in its table, where those of the design are others.
+    plain: Option<Vec<Vec<f64>>>,
     /// Columns that are always there: base parameters and nuisances.
     fixed_columns: usize,
     /// What is known of these beforehand.
@@ -53,6 +57,10 @@ pub(in crate::diagnosis) struct Besides {
     /// Columns that are zero within a standard deviation.
     pub gains: Vec<Vec<f64>>,
     pub deviation: f64,
+    /// Of each term that is a large error of the robot's numbers, the columns of the base parameters with it.
+    pub bent: Vec<Vec<Vec<f64>>>,
+    /// The base parameters that the columns of terms are made with.
+    pub chi: Vec<f64>,
 }
 
 /// The columns of a term on the rows, and its amplitude where the law leaves none free.
@@ -77,6 +85,7 @@ impl Regression {
         design.refresh();
         let fit = Fit::weighted(&design, &vec![1.0; design.joints])?;
         let (measured, fixed_columns) = (design.y.clone(), design.columns.len());
+        let torque = (0..design.rows.len()).map(|r| design.torque(r)).collect();
         let sigma = fit.sigma.clone();
         let (known, curves) = (design.prior.clone(), design.shrunk.clone());
         let mut regression = Self {
@@ -90,6 +99,8 @@ impl Regression {
             term_columns: Vec::new(),
             gains: fixed_columns..fixed_columns,
             measured,
+            torque,
+            plain: None,
             fixed_columns,
             known,
             curves,
@@ -107,8 +118,9 @@ impl Regression {
     pub fn set_terms(&mut self, terms: Vec<TermColumns>, besides: Besides) -> Result<(), SingularDesign> {
         self.design.columns.truncate(self.fixed_columns);
         self.design.y.clone_from(&self.measured);
-        let known = besides.known.unwrap_or_default();
+        let known = besides.known.as_deref().unwrap_or_default();
         self.design.y.iter_mut().zip(known).for_each(|(y, known)| *y -= known);
+        let first = if self.bend(&besides) { 0 } else { self.fixed_columns };
         self.design.shrunk.clone_from(&self.curves);
         self.term_columns.clear();
         self.bounded.clear();
@@ -133,10 +145,36 @@ impl Regression {
             }
             self.bounded.extend(term.curve_on.map(|joint| (joint, start..self.design.columns.len())));
         }
-        self.design.refresh_from(self.fixed_columns);
+        self.design.is_part_of(&self.torque);
+        self.design.refresh_from(first);
         self.fit = Fit::weighted(&self.design, &self.sigma)?;
         self.sigma.clone_from(&self.fit.sigma);
         Ok(())
+    }
+
+    /// Puts the columns of the base parameters beside large errors into the design, and what the columns of these have of the
+    /// parameters that they are made with into y; says whether any column became another one.
+    fn bend(&mut self, besides: &Besides) -> bool {
+        let before = self.plain.take();
+        let was_bent = before.is_some();
+        for (column, plain) in self.design.columns.iter_mut().zip(before.into_iter().flatten()) {
+            *column = plain;
+        }
+        if besides.bent.is_empty() {
+            return was_bent;
+        }
+        let plain = self.design.columns[..self.design.parameters].to_vec();
+        let is_known = |i: usize| self.design.known.iter().any(|(k, _)| *k == i);
+        for (i, &chi) in besides.chi.iter().enumerate().filter(|(i, _)| !is_known(*i)) {
+            let rows = self.design.columns[i].iter_mut().zip(&mut self.design.y).zip(&plain[i]).enumerate();
+            for (r, ((column, y), plain)) in rows {
+                let more: f64 = besides.bent.iter().map(|bent| bent[i][r] - plain).sum();
+                *column += more;
+                *y += more * chi;
+            }
+        }
+        self.plain = Some(plain);
+        true
     }
 
     /// Fits the folds of the design as it is, and works out what each leaves of the motion that it holds out.

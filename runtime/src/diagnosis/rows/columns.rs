@@ -8,7 +8,7 @@ use crate::diagnosis::rows::signals::ModelTorques;
 use crate::diagnosis::rows::user::user_columns;
 use crate::effects::{
     At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
-    TermScale, Transmission, body_columns, derivative,
+    TermScale, Transmission, body_columns, derivative, numbers_at,
 };
 
 impl Context<'_> {
@@ -117,8 +117,7 @@ impl Context<'_> {
     /// Derivatives with respect to the variant `v`, or to all together, on the way to the error `at`.
     fn derivatives(&self, signal: usize, law: &dyn Sensitivity, v: usize, at: &[f64]) -> Vec<Series> {
         let robot = self.model.robot();
-        let variants = law.variants(robot);
-        let wanted = if law.together() { &variants[..] } else { variants.get(v..=v).unwrap_or_default() };
+        let wanted = numbers_at(law, robot, v);
         let (s, chi) = (&self.signals[signal], self.chi_in(signal));
         let mut columns: Vec<Series> = (0..wanted.len())
             .map(|which| {
@@ -127,7 +126,7 @@ impl Context<'_> {
                     &self.engine,
                     robot.gravity,
                     &chi,
-                    &Direction { effect: law, variants: wanted, which, at },
+                    &Direction { effect: law, variants: &wanted, which, at },
                     [&s.q, &s.dq, &s.ddq, &s.jerk],
                     &mut out,
                 );

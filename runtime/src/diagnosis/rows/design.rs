@@ -43,12 +43,12 @@ pub(in crate::diagnosis) struct Design {
     pub columns: Vec<Vec<f64>>,
     /// Columns of curves, whose amplitudes are kept from what no motion determines.
     pub shrunk: Vec<Range<usize>>,
-    /// Torques, less those of parameters whose values are known.
+    /// Torques, less those of parameters whose values are known, and of what terms have taken out of them.
     pub y: Vec<f64>,
     /// Base parameters whose values are known beforehand, ascending: their columns are zero, and a fit has these values.
     pub known: Vec<(usize, f64)>,
-    /// Torques of these, in the order of the rows; empty where nothing is known.
-    of_known: Vec<f64>,
+    /// The whole torques, in the order of the rows; empty where `y` has all of them.
+    whole: Vec<f64>,
     /// What is known of columns beforehand.
     pub prior: Option<Arc<Prior>>,
     kernels: Vec<Vec<f64>>,
@@ -80,7 +80,7 @@ impl Design {
             shrunk: Vec::new(),
             y: Vec::new(),
             known: model.robot().fixed_base(),
-            of_known: Vec::new(),
+            whole: Vec::new(),
             prior: None,
             kernels: signals.iter().map(kernel).collect(),
             step: selection.half,
@@ -130,11 +130,22 @@ impl Design {
 
     /// Torques and columns of the standard model at the rows.
     fn fill(&mut self, model: &dyn Model, signals: &[Signals]) {
-        let m = self.rows.len();
-        self.y = vec![0.0; m];
-        for column in &mut self.columns {
-            *column = vec![0.0; m];
+        self.columns = self.columns_of(model, signals);
+        self.y = vec![0.0; self.rows.len()];
+        for (k, s) in signals.iter().enumerate() {
+            for j in 0..self.joints {
+                for r in self.of_signal(j, k).into_iter().flat_map(|(range, _)| range) {
+                    self.y[r] = self.smooth(k, &s.torque[j], self.rows[r].centre);
+                }
+            }
         }
+        self.take_out_known();
+        self.refresh();
+    }
+
+    /// Columns of a model's base parameters at the rows, with these signals of the motions.
+    pub fn columns_of(&self, model: &dyn Model, signals: &[Signals]) -> Vec<Vec<f64>> {
+        let mut columns = vec![vec![0.0; self.rows.len()]; self.parameters];
         let pattern = model.pattern().clone();
         for (k, s) in signals.iter().enumerate() {
             // The full-rate rows of one motion, entry by entry.
@@ -149,17 +160,14 @@ impl Design {
                 for (range, _) in self.of_signal(j, k) {
                     for r in range {
                         let centre = self.rows[r].centre;
-                        self.y[r] = self.smooth(k, &s.torque[j], centre);
                         for e in pattern.rows[j]..pattern.rows[j + 1] {
-                            let value = self.smooth(k, &full[e], centre);
-                            self.columns[pattern.columns[e]][r] = value;
+                            columns[pattern.columns[e]][r] = self.smooth(k, &full[e], centre);
                         }
                     }
                 }
             }
         }
-        self.take_out_known();
-        self.refresh();
+        columns
     }
 
     /// Takes the torques of known parameters from the torques, and their columns from the unknowns.
@@ -167,23 +175,27 @@ impl Design {
         if self.known.is_empty() {
             return;
         }
-        self.of_known = vec![0.0; self.rows.len()];
+        self.whole.clone_from(&self.y);
         for &(k, value) in &self.known {
-            for (sum, x) in self.of_known.iter_mut().zip(&mut self.columns[k]) {
-                *sum += value * std::mem::take(x);
+            for (y, x) in self.y.iter_mut().zip(&mut self.columns[k]) {
+                *y -= value * std::mem::take(x);
             }
         }
-        self.y.iter_mut().zip(&self.of_known).for_each(|(y, known)| *y -= known);
+    }
+
+    /// Takes these for the whole torques, of which `y` may be a part.
+    pub fn is_part_of(&mut self, whole: &[f64]) {
+        self.whole = if self.y == whole { Vec::new() } else { whole.to_vec() };
     }
 
     /// The whole torque of a row, that of known parameters with it: what errors are relative to.
     pub fn torque(&self, row: usize) -> f64 {
-        self.y[row] + self.of_known.get(row).copied().unwrap_or(0.0)
+        self.whole.get(row).copied().unwrap_or(self.y[row])
     }
 
     /// Squares of the whole torques of a joint in one segment.
     pub fn torque_squares(&self, joint: usize, segment: usize) -> f64 {
-        match self.of_known.is_empty() {
+        match self.whole.is_empty() {
             true => self.gram(joint, segment).y_squares(),
             false => self.ranges[joint][segment].clone().map(|r| self.torque(r).powi(2)).sum(),
         }
@@ -362,7 +374,7 @@ impl Design {
             shrunk: Vec::new(),
             y,
             known: Vec::new(),
-            of_known: Vec::new(),
+            whole: Vec::new(),
             prior: None,
             kernels: vec![hann(1); signals],
             step: 0.02,

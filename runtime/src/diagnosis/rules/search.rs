@@ -40,13 +40,13 @@ pub(in crate::diagnosis) const RATE_SPAN: f64 = 1.6;
 pub(in crate::diagnosis) const RATE_REFINED: usize = 16;
 /// Most rounds in which it is then refined by its law. Numerics: one is enough where the rest fits.
 pub(in crate::diagnosis) const RATE_ROUNDS: usize = 3;
-/// Largest error, in units of its number, along the way to which derivatives are taken: an exponential factor of two.
-/// Judgement.
-pub(in crate::diagnosis) const LARGEST_ERROR: f64 = 0.7;
+/// From this error on, in units of its number, the columns of the base parameters are those of the robot that has it. Numerics:
+/// below, parameters that follow it one refit later have converged to a thousandth after three.
+pub(in crate::diagnosis) const LARGE_ERROR: f64 = 0.1;
 /// Refits after which columns that follow the standard parameters have converged. Judgement; not measured.
 pub(in crate::diagnosis) const REFITS: usize = 2;
 /// Most of them where a term changes the number that its own column is the derivative by. Judgement; not measured.
-pub(in crate::diagnosis) const REFITS_OF_BENT_COLUMNS: usize = 4;
+pub(in crate::diagnosis) const REFITS_OF_BENT_COLUMNS: usize = 8;
 /// Errors that change by no more than this part of themselves have converged. Statistics: a tenth of a standard deviation of one
 /// that is known to a hundredth.
 pub(in crate::diagnosis) const SETTLED_ERROR: f64 = 1e-3;

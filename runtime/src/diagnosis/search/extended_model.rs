@@ -13,7 +13,7 @@ use crate::diagnosis::rows::additions::Additions;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
-use crate::diagnosis::rules::{GAIN_DEVIATION, LARGEST_ERROR, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR};
+use crate::diagnosis::rules::{GAIN_DEVIATION, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::SmoothingWindow;
@@ -110,7 +110,8 @@ impl<'a> ExtendedModel<'a> {
         let mut settled = true;
         for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
             if term.effect.form().shape_is_amplitude() {
-                let error = |c: usize| self.slow.fit.chi[c].clamp(-LARGEST_ERROR, LARGEST_ERROR);
+                let most = term.effect.form().largest_error();
+                let error = |c: usize| self.slow.fit.chi[c].clamp(-most, most);
                 let shape: Vec<f64> = columns.clone().map(error).collect();
                 let stays = |(new, old): (&f64, &f64)| (new - old).abs() <= SETTLED_ERROR * new.abs();
                 settled &= shape.len() == term.shape.len() && shape.iter().zip(&term.shape).all(stays);
@@ -237,7 +238,12 @@ fn put_terms(
 ) -> Result<(), SingularDesign> {
     let design = &regression.design;
     let known = more_of_standing_laws(context, design);
-    let besides = Besides { known, gains: gain_columns(context, design), deviation };
+    let bent = terms.iter().filter_map(|term| {
+        let errors = if term.effect.form().shape_is_amplitude() { &term.shape[..] } else { &[] };
+        context.bent_columns(design, (term.effect, term.place), errors, change)
+    });
+    let (bent, chi) = (bent.collect(), context.chi.clone());
+    let besides = Besides { known, gains: gain_columns(context, design), deviation, bent, chi };
     let columns = parallel::map(context.threads, terms.len(), |k| {
         let term = &terms[k];
         TermColumns {

@@ -66,6 +66,11 @@ impl Sensitivity for PositionOffset {
         false
     }
 
+    /// Half a turn.
+    fn largest_error(&self) -> f64 {
+        std::f64::consts::PI
+    }
+
     fn seed(&self, variant: &Variant, seeds: &mut Seeds<'_>) {
         seeds.q[variant.index].slope = 1.0;
     }

@@ -2,6 +2,7 @@
 
 use crate::effects::EffectTerm;
 use crate::model::Model;
+use crate::prediction::times_faster;
 use crate::signal::Motion;
 use crate::simulation::closed_loop::{LoopSettings, simulate};
 use crate::simulation::error::SimulationError;
@@ -22,7 +23,8 @@ pub(super) struct Followed {
     pub(super) tracking_error: Vec<f64>,
 }
 
-/// Lets the robot with base parameters `chi` and `terms` follow a motion; the controller knows `known`.
+/// Lets the robot with base parameters `chi` and `terms` follow a motion; the controller knows `known`. Where the times are
+/// wrong, it is as much faster, sample for sample.
 ///
 /// # Errors
 /// Parameters that are no robot.
@@ -33,6 +35,9 @@ pub(super) fn follow(
     chi: &[f64],
     terms: &[EffectTerm],
 ) -> Result<Followed, SimulationError> {
+    let factor = times_faster(terms);
+    let faster = (factor != 1.0).then(|| motion.faster(factor));
+    let motion = faster.as_ref().unwrap_or(motion);
     let reference = SampledReference {
         step: 1.0 / motion.rate,
         q: motion.q.clone(),
@@ -59,8 +64,10 @@ pub(super) fn follow(
     Ok(Followed { torque, tracking_error: run.tracking_error })
 }
 
-/// Names of the effects that such a simulation does not have.
+/// Names of the effects that such a simulation does not have. Skews and rates are no part of the robot, and the comparison has
+/// them.
 pub(super) fn left_out(model: &dyn Model, chi: &[f64], terms: &[EffectTerm]) -> Vec<String> {
-    let world = World::from_base(model, chi).with(terms);
+    let mut world = World::from_base(model, chi);
+    terms.iter().filter(|term| term.distortion().is_none()).for_each(|term| world.put(term));
     world.left_out_ids().iter().map(|id| (*id).to_owned()).collect()
 }
