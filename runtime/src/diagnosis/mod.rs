@@ -102,6 +102,7 @@ pub mod scoring;
 mod search;
 mod settings;
 mod stages;
+mod zero;
 
 pub use error::{DiagnosisError, SingularDesign};
 pub use experiment::{Distances, Question, distances, typical_laws};

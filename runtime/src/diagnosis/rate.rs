@@ -90,8 +90,15 @@ pub(super) fn corrected(trajectories: &[Trajectory], factor: f64) -> Vec<Traject
     corrected
 }
 
+/// Whether half of what the standard model leaves of every joint is noise: no error of a large factor or angle leaves so little.
+pub(super) fn is_explained((design, fit): (&Design, &Fit)) -> bool {
+    let noise = |j: usize| noise_floor(design, fit, j) / fit.sigma[j].max(f64::MIN_POSITIVE);
+    (0..design.joints).all(|j| design.of_joint(j).is_empty() || noise(j).powi(2) > RATE_LEAVES)
+}
+
 /// The factor by which the robot moved faster than the times say, where one other than 1 leaves less than half of what
-/// the standard model leaves, on no joint more. Beside a baseline that model is known.
+/// the standard model leaves, on no joint more, with the logarithm of the part that it leaves in the mean over joints. Beside a
+/// baseline that model is known.
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit.
@@ -99,12 +106,8 @@ pub(super) fn factor(
     model: &dyn Model,
     motions: &Motions,
     declared: (&Design, &Fit),
-) -> Result<Option<f64>, SingularDesign> {
+) -> Result<Option<(f64, f64)>, SingularDesign> {
     let (design, fit) = declared;
-    let noise = |j: usize| noise_floor(design, fit, j) / fit.sigma[j].max(f64::MIN_POSITIVE);
-    if (0..design.joints).all(|j| design.of_joint(j).is_empty() || noise(j).powi(2) > RATE_LEAVES) {
-        return Ok(None);
-    }
     let is_old: Vec<bool> = design.segments.iter().map(|s| !s.is_target).collect();
     let before = if is_old.contains(&true) { Some(Fit::new(design, &fit.sigma, is_old)?) } else { None };
     let targets = motions.of_target();
@@ -144,7 +147,7 @@ pub(super) fn factor(
     let certain = found.abs() > RATE_LEAST
         && mean(&squares) < RATE_LEAVES.ln()
         && squares.iter().all(|s| *s < RATE_WORSENS);
-    Ok(certain.then(|| found.exp()))
+    Ok(certain.then(|| (found.exp(), mean(&squares))))
 }
 
 /// Root mean square of what a fit to other motions leaves of the torques of each joint.

@@ -131,6 +131,9 @@ impl<'a> Course<'a> {
         let mut begun = self.begin(pushes.set_aside().as_ref(), settings)?;
         // Where something is said against what was found, the search goes on from here.
         let without_effects = self.known.is_none().then(|| begun.search.model.clone());
+        if let Some(zero) = self.prepared.zero.filter(|_| self.known.is_none()) {
+            begun.search.take_zero(zero)?;
+        }
         loop {
             // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
             let Some(report) = self.searched(&mut begun.search, pushes, settings)? else { return Ok(None) };

@@ -1,7 +1,9 @@
 //! Errors of the model's own numbers: columns that are exact derivatives of the model, by dual numbers.
 
 use super::quantity::Parameter;
-use crate::model::{Dual, LANES, Lanes, Link, Model, RecursiveModel, RecursiveModelError, Row};
+use crate::model::{
+    Dual, LANES, Lanes, Link, Model, RecursiveModel, RecursiveModelError, Row, StateSlices, torques,
+};
 
 /// Which of an effect's numbers is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -227,6 +229,12 @@ pub fn derivative(
         series.clear();
         series.resize(samples, 0.0);
     }
+    if let Some(whole) = secant(robot, gravity, chi, direction, states) {
+        for (series, whole) in out.iter_mut().zip(whole) {
+            *series = whole;
+        }
+        return;
+    }
     let points = direction.points();
     let variant = &direction.variants[direction.which];
     let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
@@ -263,6 +271,37 @@ pub fn derivative(
             }
         }
     }
+}
+
+/// The same of a single number of the robot that is far off: the mean along the way is the whole change over its length. `None`
+/// where the way is short or several numbers share it.
+fn secant(
+    robot: &crate::model::Robot,
+    gravity: [f64; 3],
+    chi: &[f64],
+    direction: &Direction<'_>,
+    states: [&[Vec<f64>]; 4],
+) -> Option<Vec<Vec<f64>>> {
+    let (&[variant], &[error, ..]) = (direction.variants, direction.at) else { return None };
+    if direction.points() == 1 || direction.effect.in_recording(direction.at).is_some() {
+        return None;
+    }
+    let written = crate::model::Robot { gravity, ..robot.clone() };
+    let there = corrected(&written, direction.effect, [(variant, error)]);
+    let [q, dq, ddq, _] = states;
+    let mut q_there = q.to_vec();
+    for (q, beyond) in q_there.iter_mut().zip(&there.beyond_encoder) {
+        q.iter_mut().for_each(|q| *q += beyond);
+    }
+    let torques_of = |robot, q: &[Vec<f64>]| -> Option<Vec<Vec<f64>>> {
+        let model = RecursiveModel::new(robot).ok()?;
+        Some(torques(&model, chi, StateSlices::new(q, dq, ddq).states()))
+    };
+    let (here, mut whole) = (torques_of(written, q)?, torques_of(there.robot, &q_there)?);
+    for (whole, here) in whole.iter_mut().flatten().zip(here.iter().flatten()) {
+        *whole = (*whole - here) / error;
+    }
+    Some(whole)
 }
 
 /// Links and gravity of the robot at a point of the path.

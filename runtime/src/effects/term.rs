@@ -94,9 +94,8 @@ impl EffectTerm {
             return None;
         };
         let numbers = numbers_at(law, robot, v);
-        (!numbers.is_empty()).then(|| {
-            corrected(robot, law, numbers.into_iter().zip(self.amplitude.iter().copied()))
-        })
+        (!numbers.is_empty())
+            .then(|| corrected(robot, law, numbers.into_iter().zip(self.amplitude.iter().copied())))
     }
 
     /// The joint and the transmission of a compliant joint; `None` for every other effect.

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::estimation::{Essential, Factor};
 use crate::estimation::observe::{EquationFactor, LeftOut, TimeBlock};
+use crate::estimation::{Essential, Factor};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};

@@ -7,9 +7,7 @@ use crate::diagnosis::rules::QUANTITY_STEP;
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::{Accepted, Mode};
-use crate::effects::{
-    BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter, numbers_at,
-};
+use crate::effects::{BodyEstimate, Compliance, CoupledRotor, Form, HEARD_JOINT, Parameter, numbers_at};
 use crate::model::JointIndex;
 
 /// What a finding and a model keep of an accepted effect.

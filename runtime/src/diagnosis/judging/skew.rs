@@ -219,7 +219,12 @@ mod tests {
         let mut told_beside = |motions: usize| -> bool {
             let mut one = || {
                 let value = rng.random_range(-0.5e-3..0.5e-3);
-                Skew { value, sigma: 1e-5, evidence: Evidence::student(value.abs() / 1e-5, 30.0), freedom: 30.0 }
+                Skew {
+                    value,
+                    sigma: 1e-5,
+                    evidence: Evidence::student(value.abs() / 1e-5, 30.0),
+                    freedom: 30.0,
+                }
             };
             let baseline: Vec<Skew> = (0..motions).map(|_| one()).collect();
             let mean = baseline.iter().map(|s| s.value).sum::<f64>() / motions as f64;

@@ -31,7 +31,8 @@ impl Context<'_> {
         let model = RecursiveModel::new(there.robot).ok()?;
         let mut columns = design.columns_of(&model, &self.seen_beyond(&there.beyond_encoder));
         if change {
-            let before = design.rows.iter().enumerate().filter(|(_, row)| !self.signals[row.signal].is_target);
+            let before =
+                design.rows.iter().enumerate().filter(|(_, row)| !self.signals[row.signal].is_target);
             let before: Vec<usize> = before.map(|(r, _)| r).collect();
             let plain = design.columns_of(self.model, self.signals);
             for (bent, plain) in columns.iter_mut().zip(&plain) {

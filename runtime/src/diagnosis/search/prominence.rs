@@ -8,8 +8,9 @@
 
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::search::bench::Size;
-use crate::diagnosis::search::gate::own_part;
+use crate::diagnosis::search::gate::{OwnPart, own_part};
 use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
@@ -41,15 +42,21 @@ impl Search<'_> {
 
     /// How large a term is beside all others, and what it gains in units of the noise variance.
     fn size_of(&mut self, k: usize) -> Result<Option<(Size, f64)>, SingularDesign> {
+        let window = self.model.terms[k].effect.properties().window;
+        let with = self.model.terms[k].is_large_error().then(|| self.model.regression(window).clone());
         let term = self.model.terms.remove(k);
         self.model.refit()?;
-        let window = term.effect.properties().window;
         let (context, change) = (&self.model.context, self.model.change);
         let regression = self.model.regression(window);
         let design = &regression.design;
         let shape = std::slice::from_ref(&term.shape);
         let candidate = make(context, design, term.effect, term.place, shape, change);
-        let size = own_part(regression, &candidate, 0).and_then(|part| {
+        let part = match &with {
+            // Parameters that were fitted without it make something else of it.
+            Some(with) => Some(part_of_large_error(regression, with)?),
+            None => own_part(regression, &candidate, 0),
+        };
+        let size = part.and_then(|part| {
             let bench = self.model.bench(window);
             Some((bench.largest_size(design, &term.shows_on, &part.change, &part.left)?, part.gain))
         });
@@ -57,4 +64,11 @@ impl Search<'_> {
         self.model.refit()?;
         Ok(size)
     }
+}
+
+/// What changes between regressions without and with a large error of the robot's numbers.
+fn part_of_large_error(without: &Regression, with: &Regression) -> Result<OwnPart, SingularDesign> {
+    let left = with.residual();
+    let change = without.residual().iter().zip(&left).map(|(without, with)| without - with).collect();
+    Ok(OwnPart { gain: without.gain_against(with)?, change, left })
 }

@@ -6,7 +6,7 @@ use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::outcome::StopReason;
-use crate::diagnosis::rules::KEPT_FRACTION;
+use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, KEPT_FRACTION};
 use crate::diagnosis::search::body;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
@@ -14,7 +14,8 @@ use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::effects::EffectKind;
+use crate::diagnosis::zero::ZeroOff;
+use crate::effects::{EffectKind, Place};
 use crate::parallel;
 
 impl Search<'_> {
@@ -165,6 +166,25 @@ impl Search<'_> {
         Ok(SearchReport { stop: StopReason::Given, removed: Vec::new() })
     }
 
+    /// Takes an encoder for one whose zero is off by a large angle. It has to earn its place beside all else, and its rivals are
+    /// found beside it.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn take_zero(&mut self, zero: ZeroOff) -> Result<(), SingularDesign> {
+        let law = (EffectKind::PositionOffset, Place::Variant(zero.joint));
+        let Some(candidate) = self.slow.iter().find(|c| (c.effect, c.place) == law) else { return Ok(()) };
+        let shows_on = (0..self.model.slow.design.joints).collect();
+        let term = Accepted::tried(candidate, vec![zero.angle]);
+        self.model.terms.push(Accepted {
+            shows_on,
+            confidence: HIGHEST_CONFIDENCE,
+            explained_fraction: 1.0 - zero.left.exp(),
+            ..term
+        });
+        self.refit_and_update()
+    }
+
     /// Takes out what no longer earns its place beside the others, one after the other, and returns it.
     fn prune(&mut self, settings: &Settings) -> Result<Vec<Accepted>, SingularDesign> {
         let mut rejected = Vec::new();
@@ -199,6 +219,10 @@ impl Search<'_> {
         let curves = self.model.regression(window).curves();
         let (with, model) = (held_out_error(&self.model, term, &curves)?, self.model.without(k)?);
         let (without, regression) = (held_out_error(&model, term, &curves)?, model.regression(window));
+        if term.is_large_error() {
+            // What the parameters beside it make of it is not what they make of it where they are fitted without.
+            return Ok(with * with < (1.0 - KEPT_FRACTION * settings.least_share) * without * without);
+        }
         let shape = std::slice::from_ref(&term.shape);
         let candidate =
             make(&model.context, &regression.design, term.effect, term.place, shape, model.change);

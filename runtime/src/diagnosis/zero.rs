@@ -1,0 +1,174 @@
+//! Encoder zeros that are off by a large angle, as where a table has another convention, scanned over angles before anything
+//! else.
+//!
+//! The derivative by an angle says where a small one leads, and of a quarter of a turn next to nothing. The model is linear in its
+//! parameters at every angle, so that each is one fit. A scan needs neither all instants nor the mean of a column over a window:
+//! over the width of a window a column bends far less than it differs from that of another angle.
+
+use super::error::SingularDesign;
+use super::motions::Motions;
+use super::rows::design::Design;
+use super::rows::fit::Fit;
+use super::rules::{
+    FIT_RIDGE, ZERO_ANGLES, ZERO_INSTANTS, ZERO_LEAST, ZERO_LEAVES, ZERO_REFINED, ZERO_WORSENS,
+};
+use crate::model::{JointKind, Model, States};
+use crate::parallel;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// An encoder whose zero is off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ZeroOff {
+    /// 0-based.
+    pub joint: usize,
+    /// How far the joint is beyond where its encoder sees it, rad.
+    pub angle: f64,
+    /// Logarithm of the part of the squares that the standard model leaves with it, in the mean over joints.
+    pub left: f64,
+}
+
+/// The angle of one joint with which the standard model leaves least, where that is less than half of what it leaves of any joint
+/// without, and of no joint more. Beside a baseline, and where a reference knows them, the parameters are known.
+///
+/// # Errors
+/// [`SingularDesign`] where the baseline has no fit.
+pub(super) fn encoder_off(
+    model: &dyn Model,
+    motions: &Motions,
+    (design, fit): (&Design, &Fit),
+) -> Result<Option<ZeroOff>, SingularDesign> {
+    let is_old: Vec<bool> = design.segments.iter().map(|s| !s.is_target).collect();
+    let reference = motions.settings().reference.as_ref();
+    let known = if is_old.contains(&true) {
+        let before = Fit::new(design, &fit.sigma, is_old)?;
+        Some(before.chi.iter().take(design.parameters).copied().collect())
+    } else {
+        reference.map(|reference| reference.chi().to_vec())
+    };
+    let instants = Instants::of(motions, design, known);
+    let Some(plain) = instants.left(model, fit, 0, 0.0) else { return Ok(None) };
+    let gain = |joint: usize, angle: f64| -> (f64, bool) {
+        let Some(left) = instants.left(model, fit, joint, angle) else { return (0.0, false) };
+        let ratios: Vec<f64> =
+            left.iter().zip(&plain).filter(|(_, p)| **p > 0.0).map(|(l, p)| l / p).collect();
+        let sum: f64 = ratios.iter().map(|r| r.max(f64::MIN_POSITIVE).ln()).sum();
+        (sum, ratios.iter().all(|r| *r < ZERO_WORSENS))
+    };
+    let kinds = model.robot().frames.iter().zip(model.robot().joint_of_frame());
+    let revolute: Vec<usize> =
+        kinds.filter(|(f, _)| f.kind == JointKind::Revolute).filter_map(|(_, joint)| joint).collect();
+    let step = TAU / ZERO_ANGLES as f64;
+    let threads = motions.settings().threads;
+    let best_of = parallel::map(threads, revolute.len(), |k| {
+        let joint = revolute[k];
+        let angles = (1..ZERO_ANGLES).map(|i| step * i as f64);
+        let each = angles.map(|angle| (joint, angle, gain(joint, angle).0));
+        each.min_by(|a, b| a.2.total_cmp(&b.2))
+    });
+    let Some((joint, near, _)) = best_of.into_iter().flatten().min_by(|a, b| a.2.total_cmp(&b.2)) else {
+        return Ok(None);
+    };
+    let angle = golden(near - step, near + step, |angle| gain(joint, angle).0);
+    let (sum, no_joint_worse) = gain(joint, angle);
+    let angle = if angle > 0.5 * TAU { angle - TAU } else { angle };
+    let certain = sum < ZERO_LEAVES.ln() && no_joint_worse && angle.abs() > ZERO_LEAST;
+    let left = sum / plain.len().max(1) as f64;
+    Ok(certain.then_some(ZeroOff { joint, angle, left }))
+}
+
+/// Where a function of one number is least between two values, by golden sections.
+fn golden(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    for _ in 0..ZERO_REFINED {
+        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+        if value(a) < value(b) { high = b } else { low = a }
+    }
+    0.5 * (low + high)
+}
+
+/// Some instants of the recording that is diagnosed.
+struct Instants {
+    /// q, dq and ddq, `[j][instant]`.
+    states: [Vec<Vec<f64>>; 3],
+    /// For each instant the joints that have a row there, with their torques.
+    torques: Vec<Vec<(usize, f64)>>,
+    joints: usize,
+    parameters: usize,
+    /// Base parameters whose values are known, all of them where the robot is.
+    known: Vec<(usize, f64)>,
+}
+
+impl Instants {
+    /// `chi` are the base parameters where they are known.
+    fn of(motions: &Motions, design: &Design, chi: Option<Vec<f64>>) -> Self {
+        let mut rows: BTreeMap<(usize, usize), Vec<(usize, f64)>> = BTreeMap::new();
+        for joint in 0..design.joints {
+            let own = design.of_joint(joint).map(|r| (design.rows[r], design.torque(r)));
+            for (row, torque) in own.filter(|(row, _)| motions.signals[row.signal].is_target) {
+                rows.entry((row.signal, row.centre)).or_default().push((joint, torque));
+            }
+        }
+        let every = rows.len().div_ceil(ZERO_INSTANTS).max(1);
+        let kept: Vec<_> = rows.into_iter().step_by(every).collect();
+        let of = |k: usize, j: usize| -> Vec<f64> {
+            let at = |&((signal, centre), _): &((usize, usize), _)| {
+                let s = &motions.signals[signal];
+                design.smooth(signal, [&s.q, &s.dq, &s.ddq][k][j].as_slice(), centre)
+            };
+            kept.iter().map(at).collect()
+        };
+        let states = [0, 1, 2].map(|k| (0..design.joints).map(|j| of(k, j)).collect());
+        let known = chi.map_or_else(|| design.known.clone(), |chi| chi.into_iter().enumerate().collect());
+        let (joints, parameters) = (design.joints, design.parameters);
+        Self { states, torques: kept.into_iter().map(|(_, t)| t).collect(), joints, parameters, known }
+    }
+
+    /// Mean squares of what is left of each joint's torques, where a joint is so far beyond its encoder; 0 for a joint without
+    /// rows, `None` where there is no fit.
+    fn left(&self, model: &dyn Model, fit: &Fit, joint: usize, angle: f64) -> Option<Vec<f64>> {
+        let (x, mut y) = self.rows(model, fit, joint, angle);
+        let mut chi = DVector::zeros(self.parameters);
+        self.known.iter().for_each(|&(k, value)| chi[k] = value);
+        y -= &x * &chi;
+        let free: Vec<usize> =
+            (0..self.parameters).filter(|k| !self.known.iter().any(|(known, _)| known == k)).collect();
+        if !free.is_empty() {
+            let x = x.select_columns(&free);
+            let mut squares = x.tr_mul(&x);
+            for i in 0..free.len() {
+                squares[(i, i)] += FIT_RIDGE * squares[(i, i)] + f64::MIN_POSITIVE;
+            }
+            y -= &x * squares.cholesky()?.solve(&x.tr_mul(&y));
+        }
+        let mut left = vec![(0.0, 0.0); self.joints];
+        for (r, (j, _)) in self.torques.iter().flatten().enumerate() {
+            left[*j] = (left[*j].0 + y[r] * y[r], left[*j].1 + 1.0);
+        }
+        Some(left.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { 0.0 }).collect())
+    }
+
+    /// Columns and torques in units of the noise of each joint.
+    fn rows(&self, model: &dyn Model, fit: &Fit, joint: usize, angle: f64) -> (DMatrix<f64>, DVector<f64>) {
+        let pattern = model.pattern();
+        let count = self.torques.len();
+        let mut states = self.states.clone();
+        states[0][joint].iter_mut().for_each(|q| *q += angle);
+        let mut entries = vec![0.0; pattern.columns.len() * count];
+        let [q, dq, ddq] = [0, 1, 2].map(|k| states[k].iter().map(Vec::as_slice).collect::<Vec<_>>());
+        model.idm_block(States { q: &q, dq: &dq, ddq: &ddq }, count, &mut entries);
+        let rows = self.torques.iter().map(Vec::len).sum();
+        let (mut x, mut y) = (DMatrix::zeros(rows, self.parameters), DVector::zeros(rows));
+        let at =
+            self.torques.iter().enumerate().flat_map(|(t, torques)| torques.iter().map(move |own| (t, own)));
+        for (r, (t, &(j, torque))) in at.enumerate() {
+            let weight = 1.0 / fit.sigma[j].max(f64::MIN_POSITIVE);
+            y[r] = weight * torque;
+            for e in pattern.rows[j]..pattern.rows[j + 1] {
+                x[(r, pattern.columns[e])] = weight * entries[e * count + t];
+            }
+        }
+        (x, y)
+    }
+}
