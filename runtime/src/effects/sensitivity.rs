@@ -102,24 +102,31 @@ pub struct Corrected {
     pub beyond_encoder: Vec<f64>,
 }
 
+/// Longest step along the way to errors, rad or m, and most of them: beyond, gravity is longer by a ten thousandth.
+const STEP: f64 = 0.01;
+const MOST_STEPS: f64 = 200.0;
+
 /// A robot whose numbers are wrong by so much: where the [`Direction`] along the same errors ends.
 pub fn corrected(
     robot: &crate::model::Robot,
     effect: &dyn Sensitivity,
-    errors: impl IntoIterator<Item = (Variant, f64)>,
+    errors: &[(Variant, f64)],
 ) -> Corrected {
     let n = robot.joints();
     let still = vec![Dual::default(); n];
     let (mut q, mut dq, mut ddq, jerk) = (still.clone(), still.clone(), still, vec![0.0; n]);
     let mut rows: Vec<Row<Dual>> = robot.frames.iter().map(Row::new).collect();
     let mut gravity = robot.gravity.map(|g| Dual::new(g, 0.0));
-    for (variant, error) in errors {
+    // Angles that are wrong together turn gravity along their common axis: in steps along the way.
+    let steps =
+        errors.iter().map(|(_, error)| (error.abs() / STEP).ceil()).fold(1.0, f64::max).min(MOST_STEPS);
+    for (variant, error) in (0..steps as usize).flat_map(|_| errors) {
         let [q, dq, ddq] = [&mut q, &mut dq, &mut ddq].map(|x| &mut x[..]);
         let (rows, gravity) = (&mut rows[..], &mut gravity);
-        effect.seed(&variant, &mut Seeds { q, dq, ddq, jerk: &jerk, rows, gravity });
+        effect.seed(variant, &mut Seeds { q, dq, ddq, jerk: &jerk, rows, gravity });
         let lengths = rows.iter_mut().flat_map(|row| [&mut row.d, &mut row.r]);
         for x in q.iter_mut().chain(gravity.iter_mut()).chain(lengths) {
-            *x = Dual::new(x.value + error * x.slope, 0.0);
+            *x = Dual::new(x.value + error / steps * x.slope, 0.0);
         }
     }
     let mut robot = robot.clone();
@@ -287,7 +294,7 @@ fn secant(
         return None;
     }
     let written = crate::model::Robot { gravity, ..robot.clone() };
-    let there = corrected(&written, direction.effect, [(variant, error)]);
+    let there = corrected(&written, direction.effect, &[(variant, error)]);
     let [q, dq, ddq, _] = states;
     let mut q_there = q.to_vec();
     for (q, beyond) in q_there.iter_mut().zip(&there.beyond_encoder) {

@@ -167,6 +167,7 @@ fn means_along_the_path_add_up_to_the_whole_change_of_a_large_error() {
         }
     };
     close(whole(EffectKind::PositionOffset, &[0.4]), torque(&robot, &chi, &[0.3, -0.4, 1.1], &dq, &ddq));
+    close(whole(EffectKind::PositionOffset, &[-2.9]), torque(&robot, &chi, &[0.3, -3.7, 1.1], &dq, &ddq));
     let (x, y) = (0.15, -0.2);
     let angle = f64::hypot(x, y);
     let axis = [x / angle, y / angle];
@@ -174,4 +175,36 @@ fn means_along_the_path_add_up_to_the_whole_change_of_a_large_error() {
     tilted.gravity = [axis[1], -axis[0], 0.0].map(|u| u * -9.81 * angle.sin());
     tilted.gravity[2] = -9.81 * angle.cos();
     close(whole(EffectKind::BaseTilt, &[x, y]), torque(&tilted, &chi, &q, &dq, &ddq));
+}
+
+#[test]
+fn a_corrected_robot_is_where_the_way_of_its_errors_ends() {
+    let robot = arm();
+    let with = |effect: EffectKind, variant: usize, amplitude: &[f64]| {
+        let term = EffectTerm {
+            effect,
+            place: Place::Variant(variant),
+            joints: Vec::new(),
+            shape: Vec::new(),
+            amplitude: amplitude.to_vec(),
+            sigma: vec![0.0; amplitude.len()],
+            scale: None,
+            wrenches: Vec::new(),
+        };
+        term.corrected(&robot)
+    };
+    let off = with(EffectKind::PositionOffset, 1, &[0.7]).unwrap();
+    assert_eq!((off.robot.gravity, off.robot.frames), (robot.gravity, robot.frames.clone()));
+    assert!((off.beyond_encoder[1] - 0.7).abs() < 1e-12 && off.beyond_encoder[0] == 0.0);
+    let tilted = with(EffectKind::BaseTilt, 0, &[0.3, 0.0]).unwrap().robot.gravity;
+    let expected = [0.0, 9.81 * 0.3_f64.sin(), -9.81 * 0.3_f64.cos()];
+    assert!(tilted.iter().zip(expected).all(|(g, e)| (g - e).abs() < 0.02), "{tilted:?} {expected:?}");
+    let longer = with(EffectKind::GeometryError, 0, &[0.02]).unwrap().robot;
+    let change = |of: fn(&dynid_description::Frame) -> f64| -> f64 {
+        longer.frames.iter().zip(robot.frames.iter()).map(|(a, b)| of(a) - of(b)).sum()
+    };
+    assert!((change(|f| f.d) + change(|f| f.r) - 0.02).abs() < 1e-12);
+    // Of a recording nothing is in the robot.
+    assert!(with(EffectKind::TimeDelay, 0, &[0.01]).is_none());
+    assert!(with(EffectKind::WrongSampleRate, 0, &[0.5]).is_none());
 }

@@ -94,8 +94,8 @@ impl EffectTerm {
             return None;
         };
         let numbers = numbers_at(law, robot, v);
-        (!numbers.is_empty())
-            .then(|| corrected(robot, law, numbers.into_iter().zip(self.amplitude.iter().copied())))
+        let errors: Vec<_> = numbers.into_iter().zip(self.amplitude.iter().copied()).collect();
+        (!errors.is_empty()).then(|| corrected(robot, law, &errors))
     }
 
     /// The joint and the transmission of a compliant joint; `None` for every other effect.

@@ -26,8 +26,8 @@ impl Context<'_> {
             return None;
         }
         let robot = self.model.robot();
-        let numbers = numbers_at(law, robot, v);
-        let there = corrected(robot, law, numbers.into_iter().zip(errors.iter().copied()));
+        let errors: Vec<_> = numbers_at(law, robot, v).into_iter().zip(errors.iter().copied()).collect();
+        let there = corrected(robot, law, &errors);
         let model = RecursiveModel::new(there.robot).ok()?;
         let mut columns = design.columns_of(&model, &self.seen_beyond(&there.beyond_encoder));
         if change {

@@ -10,7 +10,7 @@ use crate::model::Robot;
 const WORDS: Words = Words {
     id: "position_offset",
     name: "position offset",
-    what: "The zero of an encoder is off: the joint is not where the recording says.",
+    what: "The zero of an encoder, or of the table, is off: the joint is not where the recording says.",
     looks_like: "gravity and coupling torques of several joints that are turned by a constant angle",
     revealed_by: "joint position",
     experiment: "slow motion of the joints below and above it, with the arm stretched out",
@@ -49,7 +49,7 @@ impl Effect for PositionOffset {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("the encoder zero is off by {}", q.text("offset"))
+        format!("its real position is the recorded one plus {}", q.text("offset"))
     }
 
     fn formula(&self, q: &Quantities) -> String {
@@ -59,7 +59,8 @@ impl Effect for PositionOffset {
 
 impl Sensitivity for PositionOffset {
     fn variants(&self, robot: &Robot) -> Vec<Variant> {
-        (0..robot.joints()).map(|j| Variant::joint(j, "offset", "rad or m")).collect()
+        let units = robot.joint_kinds().into_iter().map(|kind| kind.position_unit());
+        units.enumerate().map(|(j, unit)| Variant::joint(j, "offset", unit)).collect()
     }
 
     fn together(&self) -> bool {

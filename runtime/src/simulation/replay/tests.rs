@@ -2,7 +2,7 @@
 
 use super::follow::{follow, left_out};
 use crate::effects::{EffectKind, EffectTerm, Place, TermScale};
-use crate::model::{Model, torques_at};
+use crate::model::{Model, RecursiveModel, torques_at};
 use crate::signal::Motion;
 use crate::simulation::testing::tx40;
 
@@ -53,6 +53,44 @@ fn viscous_friction_below_zero_is_simulated_as_it_was_identified() {
     let fast = (200..900).filter(|&t| motion.dq[0][t].abs() > 0.08);
     let worst = fast.map(|t| (torque[0][t] - inverse(&model, &chi, &motion, t)[0]).abs()).fold(0.0, f64::max);
     assert!(worst < 0.1, "{worst} N.m");
+}
+
+#[test]
+fn errors_of_the_table_and_of_encoders_are_in_the_robot_that_follows() {
+    let (model, standard) = tx40();
+    let chi = model.robot().base_from_standard(&standard);
+    let motion = motion(6);
+    let of = |effect: EffectKind, variant: usize, amplitude: &[f64]| EffectTerm {
+        effect,
+        place: Place::Variant(variant),
+        joints: Vec::new(),
+        shape: amplitude.to_vec(),
+        amplitude: amplitude.to_vec(),
+        sigma: vec![0.0; amplitude.len()],
+        scale: None,
+        wrenches: Vec::new(),
+    };
+    for term in [
+        of(EffectKind::PositionOffset, 1, &[-1.2]),
+        of(EffectKind::BaseTilt, 0, &[0.05, -0.1]),
+        of(EffectKind::GeometryError, 0, &[0.05]),
+    ] {
+        assert_eq!(left_out(&model, &chi, std::slice::from_ref(&term)), Vec::<String>::new());
+        let there = term.corrected(model.robot()).expect("an error of the robot");
+        let table = RecursiveModel::new(there.robot).expect("a robot");
+        let mut beyond = motion.clone();
+        for (q, by) in beyond.q.iter_mut().zip(&there.beyond_encoder) {
+            q.iter_mut().for_each(|q| *q += by);
+        }
+        let followed = follow(&model, &motion, &chi, &chi, &[term]).expect("it can be simulated");
+        let (mut left, mut change) = (0.0, 0.0);
+        for t in (200..900).filter(|&t| motion.dq[1][t].abs() > 0.08) {
+            let truth = inverse(&table, &chi, &beyond, t)[1];
+            left += (followed.torque[1][t] - truth).powi(2);
+            change += (inverse(&model, &chi, &motion, t)[1] - truth).powi(2);
+        }
+        assert!(left < 0.01 * change, "{left} {change}");
+    }
 }
 
 #[test]
