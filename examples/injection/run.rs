@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use dynid_runtime::confirmation::diagnose_and_confirm;
 use dynid_runtime::diagnosis::{Diagnosis, Settings, Silent, diagnose};
-use dynid_runtime::effects::{EffectKind, EffectTerm};
+use dynid_runtime::effects::{Distortion, EffectKind, EffectTerm};
 use dynid_runtime::model::Model;
 use dynid_runtime::prediction::{Comparison, Predictor};
 use dynid_runtime::recording::Trajectory;
@@ -234,7 +234,9 @@ fn added(
     let motion = fitted.motions.first().ok_or("the motion is too short for the filters")?;
     let effects = std::slice::from_ref(term);
     let without = Predictor { chi: &fitted.chi, effects: &[], delay: 0.0 }.torques(model, motion)?;
-    let with = Predictor { chi: &fitted.chi, effects, delay: 0.0 }.torques(model, motion)?;
+    let is_skew = term.distortion() == Some(Distortion::Skew);
+    let delay = if is_skew { term.amplitude.iter().sum() } else { 0.0 };
+    let with = Predictor { chi: &fitted.chi, effects, delay }.torques(model, motion)?;
     let mut out = plain.clone();
     for (j, torque) in out.torque.iter_mut().enumerate() {
         for (t, value) in plain.time.iter().zip(torque) {

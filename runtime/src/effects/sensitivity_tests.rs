@@ -200,7 +200,7 @@ fn a_corrected_robot_is_where_the_way_of_its_errors_ends() {
     let expected = [0.0, 9.81 * 0.3_f64.sin(), -9.81 * 0.3_f64.cos()];
     assert!(tilted.iter().zip(expected).all(|(g, e)| (g - e).abs() < 0.02), "{tilted:?} {expected:?}");
     let longer = with(EffectKind::GeometryError, 0, &[0.02]).unwrap().robot;
-    let change = |of: fn(&dynid_description::Frame) -> f64| -> f64 {
+    let change = |of: fn(&Frame) -> f64| -> f64 {
         longer.frames.iter().zip(robot.frames.iter()).map(|(a, b)| of(a) - of(b)).sum()
     };
     assert!((change(|f| f.d) + change(|f| f.r) - 0.02).abs() < 1e-12);

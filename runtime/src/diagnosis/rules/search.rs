@@ -56,10 +56,13 @@ pub(in crate::diagnosis) const ZERO_LEAST: f64 = 0.35;
 /// From this error on, in units of its number, the columns of the base parameters are those of the robot that has it. Numerics:
 /// below, parameters that follow it one refit later have converged to a thousandth after three.
 pub(in crate::diagnosis) const LARGE_ERROR: f64 = 0.1;
-/// Refits after which columns that follow the standard parameters have converged. Judgement; not measured.
+/// Fewest refits where columns follow the standard parameters: candidates do, too. Judgement; not measured.
 pub(in crate::diagnosis) const REFITS: usize = 2;
-/// Most of them where a term changes the number that its own column is the derivative by. Judgement; not measured.
+/// Most of them, where parameters or the numbers that columns are derivatives by have not converged. Numerics: what is far off
+/// converges as Newton's steps do, everything else by a factor of ten each.
 pub(in crate::diagnosis) const REFITS_OF_BENT_COLUMNS: usize = 8;
+/// Parameters that change by no more than this part of their standard deviations have converged. Statistics.
+pub(in crate::diagnosis) const SETTLED_PARAMETER: f64 = 0.1;
 /// Errors that change by no more than this part of themselves have converged. Statistics: a tenth of a standard deviation of one
 /// that is known to a hundredth.
 pub(in crate::diagnosis) const SETTLED_ERROR: f64 = 1e-3;

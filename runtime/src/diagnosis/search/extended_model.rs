@@ -13,10 +13,12 @@ use crate::diagnosis::rows::additions::Additions;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
-use crate::diagnosis::rules::{GAIN_DEVIATION, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR};
+use crate::diagnosis::rules::{
+    GAIN_DEVIATION, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR, SETTLED_PARAMETER,
+};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::SmoothingWindow;
+use crate::effects::{EffectKind, SmoothingWindow};
 use crate::parallel;
 use std::sync::Arc;
 
@@ -86,22 +88,48 @@ impl<'a> ExtendedModel<'a> {
     /// [`SingularDesign`] where there is no fit.
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
         let mut deviation = GAIN_DEVIATION;
+        let mut factors = vec![0.0; self.terms.len()];
         for round in 1..=REFITS_OF_BENT_COLUMNS {
-            put_terms(&mut self.slow, (&self.context, self.change), &self.terms, deviation)?;
+            put_terms(&mut self.slow, (&self.context, self.change), (&self.terms, &factors), deviation)?;
             deviation = self.deviation_of_gains(deviation);
-            let chi = self.slow.fit.chi.iter().take(self.slow.design.parameters).copied().collect();
-            self.context.update(chi);
+            let settled = self.follow_parameters();
+            factors = self.factors();
             self.context.take(self.additions());
-            if self.follow_errors() && round >= REFITS {
+            if self.follow_errors() && settled && round >= REFITS {
                 break;
             }
         }
         let mut fits = [(&mut self.slow, Ok(())), (&mut self.fast, Ok(()))];
         parallel::for_each(self.context.threads, &mut fits, |(regression, outcome)| {
-            *outcome = put_terms(regression, (&self.context, self.change), &self.terms, deviation)
+            *outcome = put_terms(regression, (&self.context, self.change), (&self.terms, &factors), deviation)
                 .and_then(|()| regression.hold_out());
         });
         fits.into_iter().try_for_each(|(_, outcome)| outcome)
+    }
+
+    /// Takes the parameters that were fitted for those that columns are made of. Says whether these are what they were, within a
+    /// tenth of their standard deviations, where any column is made of them.
+    fn follow_parameters(&mut self) -> bool {
+        let Regression { design, fit, .. } = &self.slow;
+        let chi: Vec<f64> = fit.chi.iter().take(design.parameters).copied().collect();
+        let follows = |term: &Accepted| term.effect.properties().follows_parameters;
+        let settled = !self.terms.iter().any(follows) || {
+            let variances = fit.variances();
+            let both = chi.iter().zip(&self.context.chi).zip(variances.iter());
+            both.into_iter().all(|((new, old), v)| (new - old).abs() <= SETTLED_PARAMETER * v.max(0.0).sqrt())
+        };
+        self.context.update(chi);
+        settled
+    }
+
+    /// Of each term by how much it makes the torque of a drive larger, as a part of it.
+    fn factors(&self) -> Vec<f64> {
+        let columns = self.terms.iter().zip(&self.slow.term_columns);
+        let of_term = |(term, columns): (&Accepted, &std::ops::Range<usize>)| match term.effect {
+            EffectKind::TorqueConstantError => columns.clone().map(|c| self.slow.fit.chi[c]).sum(),
+            _ => 0.0,
+        };
+        columns.map(of_term).collect()
     }
 
     /// An error that is not small bends its own column: derivatives are taken along the way to it. Says whether all errors stay
@@ -233,13 +261,14 @@ impl<'a> ExtendedModel<'a> {
 fn put_terms(
     regression: &mut Regression,
     (context, change): (&Context<'_>, bool),
-    terms: &[Accepted],
+    (terms, factors): (&[Accepted], &[f64]),
     deviation: f64,
 ) -> Result<(), SingularDesign> {
     let design = &regression.design;
     let known = more_of_standing_laws(context, design);
-    let bent = terms.iter().filter_map(|term| {
-        let errors = if term.effect.form().shape_is_amplitude() { &term.shape[..] } else { &[] };
+    let bent = terms.iter().zip(factors).filter_map(|(term, factor)| {
+        let is_error = term.effect.form().shape_is_amplitude();
+        let errors = if is_error { &term.shape[..] } else { std::slice::from_ref(factor) };
         context.bent_columns(design, (term.effect, term.place), errors, change)
     });
     let (bent, chi) = (bent.collect(), context.chi.clone());
