@@ -87,6 +87,7 @@ mod error;
 mod experiment;
 mod explanation;
 mod judging;
+mod large_error;
 mod motions;
 mod objection;
 mod outcome;
@@ -102,7 +103,6 @@ pub mod scoring;
 mod search;
 mod settings;
 mod stages;
-mod zero;
 
 pub use error::{DiagnosisError, SingularDesign};
 pub use experiment::{Distances, Question, distances, typical_laws};

@@ -3,6 +3,7 @@
 
 use super::error::DiagnosisError;
 use super::judging::skew::{Skew, usual_deviation};
+use super::large_error::{LargeError, large_error};
 use super::motions::Motions;
 use super::rate::{WrongRate, corrected, factor, is_explained};
 use super::rows::context::Context;
@@ -12,7 +13,6 @@ use super::rows::motion::{Moving, left_over};
 use super::rows::scales::scales_of_target;
 use super::rules;
 use super::settings::Settings;
-use super::zero::{ZeroOff, encoder_off};
 use crate::model::{JointIndex, Model};
 use crate::recording::Trajectory;
 use std::sync::Arc;
@@ -34,8 +34,8 @@ pub(super) struct Prepared {
     pub moving: Moving,
     /// Times that were wrong by a factor, and were corrected before anything else.
     pub rate: Option<WrongRate>,
-    /// An encoder that is off by a large angle.
-    pub zero: Option<ZeroOff>,
+    /// A number of one joint that is far off.
+    pub large_error: Option<LargeError>,
 }
 
 /// The standard model on all rows, not yet judged.
@@ -70,11 +70,11 @@ impl Prepared {
         if !fitted.moving.judged.contains(&true) || is_explained(declared) {
             return Self::judged(model, fitted);
         }
-        let zero = encoder_off(model, &fitted.motions, declared)?;
+        let large_error = large_error(model, &fitted.motions, declared)?;
         let rate = factor(model, &fitted.motions, declared)?;
         // Each is the other one's rival.
         if let Some((factor, left)) = rate
-            && zero.is_none_or(|zero| left < zero.left)
+            && large_error.is_none_or(|other| left < other.left)
         {
             let wrong = WrongRate::new(factor, &fitted.aligned, &fitted.fit)?;
             // A rate at which nothing can be made of the motion is not the right one.
@@ -83,7 +83,7 @@ impl Prepared {
                 return Ok(corrected);
             }
         }
-        Ok(Self { zero, ..Self::judged(model, fitted)? })
+        Ok(Self { large_error, ..Self::judged(model, fitted)? })
     }
 
     /// With times that run as the robot did; the factor is refined on the way.
@@ -110,9 +110,9 @@ impl Prepared {
         check_fit(&aligned, &fit)?;
         let chi = fit.chi.iter().take(aligned.parameters).copied().collect();
         let chi_sigma = fit.variances().iter().take(aligned.parameters).map(|v| v.max(0.0).sqrt()).collect();
-        let (sigma, rate, zero) = (fit.sigma, None, None);
+        let (sigma, rate, large_error) = (fit.sigma, None, None);
         let delay = motions.settings().reference.as_ref().map_or(0.0, |r| r.delay());
-        let mut prepared = Self { motions, chi, sigma, delay, aligned, chi_sigma, moving, rate, zero };
+        let mut prepared = Self { motions, chi, sigma, delay, aligned, chi_sigma, moving, rate, large_error };
         // Without motion there is no skew to be seen.
         if prepared.moving.judged.contains(&true) {
             prepared.take_out_skew(model)?;

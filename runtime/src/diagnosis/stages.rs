@@ -6,6 +6,7 @@ use super::error::DiagnosisError;
 use super::explanation::explain::{Ended, explain, small};
 use super::explanation::standard_model::StandardModelFit;
 use super::explanation::standstill;
+use super::large_error::LargeError;
 use super::objection::Objection;
 use super::outcome::{Diagnosis, Finding, Sampling};
 use super::preparation::{Prepared, nothing_moves};
@@ -131,8 +132,9 @@ impl<'a> Course<'a> {
         let mut begun = self.begin(pushes.set_aside().as_ref(), settings)?;
         // Where something is said against what was found, the search goes on from here.
         let without_effects = self.known.is_none().then(|| begun.search.model.clone());
-        if let Some(zero) = self.prepared.zero.filter(|_| self.known.is_none()) {
-            begun.search.take_zero(zero)?;
+        let may_be = |error: &LargeError| self.known.is_none() && !settings.excluded.contains(&error.law());
+        if let Some(error) = self.prepared.large_error.filter(may_be) {
+            begun.search.take_large_error(error)?;
         }
         loop {
             // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.

@@ -43,16 +43,19 @@ pub(in crate::diagnosis) const RATE_ROUNDS: usize = 3;
 /// Angles of a turn at which the zero of an encoder is tried: every 15 degrees. Numerics: squares of torques are waves of two to
 /// four a turn over the angle.
 pub(in crate::diagnosis) const ZERO_ANGLES: usize = 24;
-/// Golden sections of two of their steps: to a hundredth. Numerics: refits of the law go on from there.
-pub(in crate::diagnosis) const ZERO_REFINED: usize = 8;
+/// Factors at which the torques of a drive are tried, up to twelve in either direction, in steps of their logarithm. Numerics.
+pub(in crate::diagnosis) const GAIN_STEP: f64 = 0.35;
+pub(in crate::diagnosis) const GAIN_STEPS: i32 = 7;
+/// Golden sections of two steps: to a hundredth. Numerics: refits of the law go on from there.
+pub(in crate::diagnosis) const ERROR_REFINED: usize = 8;
 /// Instants that they are tried on. Numerics: some rows for every parameter.
-pub(in crate::diagnosis) const ZERO_INSTANTS: usize = 240;
-/// An angle is taken where one joint is left with this part of its squares, the others as they are, and no joint with so many
-/// times its squares. Judgement, as for rates: a smaller angle is a law among others, and no other physics is imitated so well.
-pub(in crate::diagnosis) const ZERO_LEAVES: f64 = 0.5;
-pub(in crate::diagnosis) const ZERO_WORSENS: f64 = 1.25;
-/// Least angle that is taken, rad: derivatives at nothing lead to smaller ones. Mechanics.
-pub(in crate::diagnosis) const ZERO_LEAST: f64 = 0.35;
+pub(in crate::diagnosis) const SCANNED_INSTANTS: usize = 240;
+/// A value is taken where one joint is left with this part of its squares, the others as they are, and no joint with so many
+/// times its squares. Judgement, as for rates: a smaller error is a law among others, and no other physics is imitated so well.
+pub(in crate::diagnosis) const ERROR_LEAVES: f64 = 0.5;
+pub(in crate::diagnosis) const ERROR_WORSENS: f64 = 1.25;
+/// Least angle, rad, and logarithm of a factor that are taken: derivatives at nothing lead to smaller ones. Mechanics.
+pub(in crate::diagnosis) const LEAST_SCANNED: f64 = 0.35;
 /// From this error on, in units of its number, the columns of the base parameters are those of the robot that has it. Numerics:
 /// below, parameters that follow it one refit later have converged to a thousandth after three.
 pub(in crate::diagnosis) const LARGE_ERROR: f64 = 0.1;

@@ -14,7 +14,7 @@ use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{
-    GAIN_DEVIATION, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR, SETTLED_PARAMETER,
+    GAIN_DEVIATION, LARGE_ERROR, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR, SETTLED_PARAMETER,
 };
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
@@ -31,6 +31,8 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
     /// What evidence on the slow and on the fast rows is compared with.
     pub benches: [Bench; 2],
     pub terms: Vec<Accepted>,
+    /// By how much the torques of each joint are recorded larger than they are, as a part of them, where a term says so.
+    pub factors: Vec<f64>,
     /// Whether only what changed since a baseline is looked for.
     pub change: bool,
 }
@@ -63,7 +65,8 @@ impl<'a> ExtendedModel<'a> {
         let (slow, fast) = (regression(slow)?, regression(fast)?);
         let bench = |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design), change);
         let benches = [bench(&slow), bench(&fast)];
-        Ok(Self { context, slow, fast, benches, terms: Vec::new(), change })
+        let factors = vec![0.0; slow.design.joints];
+        Ok(Self { context, slow, fast, benches, terms: Vec::new(), factors, change })
     }
 
     /// The regression on the rows of a window.
@@ -88,20 +91,20 @@ impl<'a> ExtendedModel<'a> {
     /// [`SingularDesign`] where there is no fit.
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
         let mut deviation = GAIN_DEVIATION;
-        let mut factors = vec![0.0; self.terms.len()];
         for round in 1..=REFITS_OF_BENT_COLUMNS {
-            put_terms(&mut self.slow, (&self.context, self.change), (&self.terms, &factors), deviation)?;
+            put_terms(&mut self.slow, (&self.context, self.change), (&self.terms, &self.factors), deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let settled = self.follow_parameters();
-            factors = self.factors();
+            self.follow_factors();
             self.context.take(self.additions());
             if self.follow_errors() && settled && round >= REFITS {
                 break;
             }
         }
+        let factors = &self.factors;
         let mut fits = [(&mut self.slow, Ok(())), (&mut self.fast, Ok(()))];
         parallel::for_each(self.context.threads, &mut fits, |(regression, outcome)| {
-            *outcome = put_terms(regression, (&self.context, self.change), (&self.terms, &factors), deviation)
+            *outcome = put_terms(regression, (&self.context, self.change), (&self.terms, factors), deviation)
                 .and_then(|()| regression.hold_out());
         });
         fits.into_iter().try_for_each(|(_, outcome)| outcome)
@@ -122,14 +125,18 @@ impl<'a> ExtendedModel<'a> {
         settled
     }
 
-    /// Of each term by how much it makes the torque of a drive larger, as a part of it.
-    fn factors(&self) -> Vec<f64> {
-        let columns = self.terms.iter().zip(&self.slow.term_columns);
-        let of_term = |(term, columns): (&Accepted, &std::ops::Range<usize>)| match term.effect {
-            EffectKind::TorqueConstantError => columns.clone().map(|c| self.slow.fit.chi[c]).sum(),
-            _ => 0.0,
-        };
-        columns.map(of_term).collect()
+    /// Takes the factors of torques that were fitted for those that columns are made with.
+    fn follow_factors(&mut self) {
+        for (term, columns) in self.terms.iter().zip(&self.slow.term_columns) {
+            if let Some(joint) = recorded_larger_on(term) {
+                self.factors[joint] = columns.clone().map(|c| self.slow.fit.chi[c]).sum();
+            }
+        }
+    }
+
+    /// Whether a term is an error of a number of the robot or of a drive that is not small.
+    pub fn is_large_error(&self, k: usize) -> bool {
+        errors(&self.terms[k], &self.factors).iter().any(|e| e.abs() >= LARGE_ERROR)
     }
 
     /// An error that is not small bends its own column: derivatives are taken along the way to it. Says whether all errors stay
@@ -257,6 +264,20 @@ impl<'a> ExtendedModel<'a> {
     }
 }
 
+/// The joint whose torques are recorded larger, where a term is that.
+fn recorded_larger_on(term: &Accepted) -> Option<usize> {
+    term.place.joint().filter(|_| term.effect == EffectKind::TorqueConstantError)
+}
+
+/// How far the numbers of a term are off, where it is an error of such; nothing for other laws.
+fn errors<'t>(term: &'t Accepted, factors: &'t [f64]) -> &'t [f64] {
+    match recorded_larger_on(term) {
+        Some(joint) => &factors[joint..=joint],
+        None if term.effect.form().shape_is_amplitude() => &term.shape,
+        None => &[],
+    }
+}
+
 /// Puts the terms into a regression.
 fn put_terms(
     regression: &mut Regression,
@@ -266,10 +287,8 @@ fn put_terms(
 ) -> Result<(), SingularDesign> {
     let design = &regression.design;
     let known = more_of_standing_laws(context, design);
-    let bent = terms.iter().zip(factors).filter_map(|(term, factor)| {
-        let is_error = term.effect.form().shape_is_amplitude();
-        let errors = if is_error { &term.shape[..] } else { std::slice::from_ref(factor) };
-        context.bent_columns(design, (term.effect, term.place), errors, change)
+    let bent = terms.iter().filter_map(|term| {
+        context.bent_columns(design, (term.effect, term.place), errors(term, factors), change)
     });
     let (bent, chi) = (bent.collect(), context.chi.clone());
     let besides = Besides { known, gains: gain_columns(context, design), deviation, bent, chi };

@@ -43,7 +43,7 @@ impl Search<'_> {
     /// How large a term is beside all others, and what it gains in units of the noise variance.
     fn size_of(&mut self, k: usize) -> Result<Option<(Size, f64)>, SingularDesign> {
         let window = self.model.terms[k].effect.properties().window;
-        let with = self.model.terms[k].is_large_error().then(|| self.model.regression(window).clone());
+        let with = self.model.is_large_error(k).then(|| self.model.regression(window).clone());
         let term = self.model.terms.remove(k);
         self.model.refit()?;
         let (context, change) = (&self.model.context, self.model.change);

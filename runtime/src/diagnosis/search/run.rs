@@ -5,6 +5,7 @@
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::hull::Curve;
+use crate::diagnosis::large_error::{LargeError, Wrong};
 use crate::diagnosis::outcome::StopReason;
 use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, KEPT_FRACTION};
 use crate::diagnosis::search::body;
@@ -14,8 +15,7 @@ use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
 use crate::diagnosis::settings::{Progress, Settings};
-use crate::diagnosis::zero::ZeroOff;
-use crate::effects::{EffectKind, Place};
+use crate::effects::EffectKind;
 use crate::parallel;
 
 impl Search<'_> {
@@ -166,21 +166,23 @@ impl Search<'_> {
         Ok(SearchReport { stop: StopReason::Given, removed: Vec::new() })
     }
 
-    /// Takes an encoder for one whose zero is off by a large angle. It has to earn its place beside all else, and its rivals are
-    /// found beside it.
+    /// Takes a number of a joint for one that is far off. It has to earn its place beside all else, and others are found beside it.
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn take_zero(&mut self, zero: ZeroOff) -> Result<(), SingularDesign> {
-        let law = (EffectKind::PositionOffset, Place::Variant(zero.joint));
-        let Some(candidate) = self.slow.iter().find(|c| (c.effect, c.place) == law) else { return Ok(()) };
-        let shows_on = (0..self.model.slow.design.joints).collect();
-        let term = Accepted::tried(candidate, vec![zero.angle]);
+    pub fn take_large_error(&mut self, error: LargeError) -> Result<(), SingularDesign> {
+        let (effect, place) = error.law();
+        let shape = if error.wrong == Wrong::Zero { vec![error.by] } else { Vec::new() };
+        let (context, design) = (&self.model.context, &self.model.slow.design);
+        let candidate = make(context, design, effect, place, std::slice::from_ref(&shape), self.model.change);
+        if error.wrong == Wrong::Gain {
+            self.model.factors[error.joint] = error.by.exp_m1();
+        }
         self.model.terms.push(Accepted {
-            shows_on,
+            shows_on: (0..self.model.slow.design.joints).collect(),
             confidence: HIGHEST_CONFIDENCE,
-            explained_fraction: 1.0 - zero.left.exp(),
-            ..term
+            explained_fraction: 1.0 - error.left.exp(),
+            ..Accepted::tried(&candidate, shape)
         });
         self.refit_and_update()
     }
@@ -219,7 +221,7 @@ impl Search<'_> {
         let curves = self.model.regression(window).curves();
         let (with, model) = (held_out_error(&self.model, term, &curves)?, self.model.without(k)?);
         let (without, regression) = (held_out_error(&model, term, &curves)?, model.regression(window));
-        if term.is_large_error() {
+        if self.model.is_large_error(k) {
             // What the parameters beside it make of it is not what they make of it where they are fitted without.
             return Ok(with * with < (1.0 - KEPT_FRACTION * settings.least_share) * without * without);
         }

@@ -1,7 +1,6 @@
 //! An effect that became part of the model.
 
 use crate::diagnosis::candidates::candidate::Candidate;
-use crate::diagnosis::rules::LARGE_ERROR;
 use crate::effects::{EffectKind, Place};
 
 /// An accepted effect.
@@ -35,11 +34,6 @@ impl Accepted {
     /// The joint of a curve that says nothing of values which no motion has passed; `None` for every other law.
     pub fn curve_on(&self) -> Option<usize> {
         self.own.first().copied().filter(|_| self.effect.form().holds_only_where_seen())
-    }
-
-    /// Whether it is an error of the robot's numbers that is not small.
-    pub fn is_large_error(&self) -> bool {
-        self.effect.form().shape_is_amplitude() && self.shape.iter().any(|e| e.abs() >= LARGE_ERROR)
     }
 
     /// A candidate with a shape, before anything is known of how well it does.

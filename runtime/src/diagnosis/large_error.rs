@@ -1,8 +1,8 @@
-//! Encoder zeros that are off by a large angle, as where a table has another convention, scanned over angles before anything
-//! else.
+//! Numbers of one joint that are far off, scanned over values before anything else: the zero of an encoder, as where a table has
+//! another convention, and the factor of a drive's torques.
 //!
 //! The derivative by an angle says where a small one leads, and of a quarter of a turn next to nothing. The model is linear in its
-//! parameters at every angle, so that each is one fit. A scan needs neither all instants nor the mean of a column over a window:
+//! parameters at every value, so that each is one fit. A scan needs neither all instants nor the mean of a column over a window:
 //! over the width of a window a column bends far less than it differs from that of another angle.
 
 use super::error::SingularDesign;
@@ -10,35 +10,72 @@ use super::motions::Motions;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rules::{
-    FIT_RIDGE, ZERO_ANGLES, ZERO_INSTANTS, ZERO_LEAST, ZERO_LEAVES, ZERO_REFINED, ZERO_WORSENS,
+    ERROR_LEAVES, ERROR_REFINED, ERROR_WORSENS, FIT_RIDGE, GAIN_STEP, GAIN_STEPS, LEAST_SCANNED,
+    SCANNED_INSTANTS, ZERO_ANGLES,
 };
+use crate::effects::{EffectKind, Place};
 use crate::model::{JointKind, Model, States};
 use crate::parallel;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// An encoder whose zero is off.
+/// Which number of a joint is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wrong {
+    /// The joint is beyond where its encoder sees it, rad.
+    Zero,
+    /// Its torques are recorded larger than they are: the logarithm of the factor.
+    Gain,
+}
+
+/// A number of a joint that is far off.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ZeroOff {
+pub(super) struct LargeError {
     /// 0-based.
     pub joint: usize,
-    /// How far the joint is beyond where its encoder sees it, rad.
-    pub angle: f64,
+    pub wrong: Wrong,
+    pub by: f64,
     /// Logarithm of the part of the squares that the standard model leaves with it, in the mean over joints.
     pub left: f64,
 }
 
-/// The angle of one joint with which the standard model leaves least, where that is less than half of what it leaves of any joint
+impl LargeError {
+    /// The law that it is.
+    pub fn law(&self) -> (EffectKind, Place) {
+        match self.wrong {
+            Wrong::Zero => (EffectKind::PositionOffset, Place::Variant(self.joint)),
+            Wrong::Gain => (EffectKind::TorqueConstantError, Place::Joint(self.joint)),
+        }
+    }
+}
+
+impl Wrong {
+    /// Values that are tried, and their distance.
+    fn values(self) -> (Vec<f64>, f64) {
+        match self {
+            Self::Zero => {
+                let step = TAU / ZERO_ANGLES as f64;
+                ((1..ZERO_ANGLES).map(|k| step * k as f64).collect(), step)
+            }
+            Self::Gain => {
+                let larger = (1..=GAIN_STEPS).map(|k| GAIN_STEP * f64::from(k));
+                (larger.flat_map(|by| [by, -by]).collect(), GAIN_STEP)
+            }
+        }
+    }
+}
+
+/// The number of one joint with which the standard model leaves least, where that is less than half of what it leaves of any joint
 /// without, and of no joint more. Beside a baseline, and where a reference knows them, the parameters are known.
 ///
 /// # Errors
 /// [`SingularDesign`] where the baseline has no fit.
-pub(super) fn encoder_off(
+pub(super) fn large_error(
     model: &dyn Model,
     motions: &Motions,
     (design, fit): (&Design, &Fit),
-) -> Result<Option<ZeroOff>, SingularDesign> {
+) -> Result<Option<LargeError>, SingularDesign> {
     let is_old: Vec<bool> = design.segments.iter().map(|s| !s.is_target).collect();
     let reference = motions.settings().reference.as_ref();
     let known = if is_old.contains(&true) {
@@ -48,40 +85,40 @@ pub(super) fn encoder_off(
         reference.map(|reference| reference.chi().to_vec())
     };
     let instants = Instants::of(motions, design, known);
-    let Some(plain) = instants.left(model, fit, 0, 0.0) else { return Ok(None) };
-    let gain = |joint: usize, angle: f64| -> (f64, bool) {
-        let Some(left) = instants.left(model, fit, joint, angle) else { return (0.0, false) };
+    let Some(plain) = instants.left(model, fit, (0, Wrong::Zero, 0.0)) else { return Ok(None) };
+    // Sum of the joints' logarithms, and whether no joint is left with more.
+    let gain = |joint: usize, wrong: Wrong, by: f64| -> (f64, bool) {
+        let Some(left) = instants.left(model, fit, (joint, wrong, by)) else { return (0.0, false) };
         let ratios: Vec<f64> =
             left.iter().zip(&plain).filter(|(_, p)| **p > 0.0).map(|(l, p)| l / p).collect();
         let sum: f64 = ratios.iter().map(|r| r.max(f64::MIN_POSITIVE).ln()).sum();
-        (sum, ratios.iter().all(|r| *r < ZERO_WORSENS))
+        (sum, ratios.iter().all(|r| *r < ERROR_WORSENS))
     };
-    let kinds = model.robot().frames.iter().zip(model.robot().joint_of_frame());
-    let revolute: Vec<usize> =
-        kinds.filter(|(f, _)| f.kind == JointKind::Revolute).filter_map(|(_, joint)| joint).collect();
-    let step = TAU / ZERO_ANGLES as f64;
-    let threads = motions.settings().threads;
-    let best_of = parallel::map(threads, revolute.len(), |k| {
-        let joint = revolute[k];
-        let angles = (1..ZERO_ANGLES).map(|i| step * i as f64);
-        let each = angles.map(|angle| (joint, angle, gain(joint, angle).0));
+    let kinds = model.robot().joint_kinds();
+    let gains = (0..kinds.len()).map(|joint| (joint, Wrong::Gain));
+    let zeros =
+        gains.clone().filter(|(j, _)| kinds[*j] == JointKind::Revolute).map(|(j, _)| (j, Wrong::Zero));
+    let numbers: Vec<(usize, Wrong)> = zeros.chain(gains).collect();
+    let best_of = parallel::map(motions.settings().threads, numbers.len(), |k| {
+        let (joint, wrong) = numbers[k];
+        let each = wrong.values().0.into_iter().map(|by| (numbers[k], by, gain(joint, wrong, by).0));
         each.min_by(|a, b| a.2.total_cmp(&b.2))
     });
-    let Some((joint, near, _)) = best_of.into_iter().flatten().min_by(|a, b| a.2.total_cmp(&b.2)) else {
-        return Ok(None);
-    };
-    let angle = golden(near - step, near + step, |angle| gain(joint, angle).0);
-    let (sum, no_joint_worse) = gain(joint, angle);
-    let angle = if angle > 0.5 * TAU { angle - TAU } else { angle };
-    let certain = sum < ZERO_LEAVES.ln() && no_joint_worse && angle.abs() > ZERO_LEAST;
+    let best = best_of.into_iter().flatten().min_by(|a, b| a.2.total_cmp(&b.2));
+    let Some(((joint, wrong), near, _)) = best else { return Ok(None) };
+    let step = wrong.values().1;
+    let by = golden(near - step, near + step, |by| gain(joint, wrong, by).0);
+    let (sum, no_joint_worse) = gain(joint, wrong, by);
+    let by = if wrong == Wrong::Zero && by > 0.5 * TAU { by - TAU } else { by };
+    let certain = sum < ERROR_LEAVES.ln() && no_joint_worse && by.abs() > LEAST_SCANNED;
     let left = sum / plain.len().max(1) as f64;
-    Ok(certain.then_some(ZeroOff { joint, angle, left }))
+    Ok(certain.then_some(LargeError { joint, wrong, by, left }))
 }
 
 /// Where a function of one number is least between two values, by golden sections.
 fn golden(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
     let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-    for _ in 0..ZERO_REFINED {
+    for _ in 0..ERROR_REFINED {
         let (a, b) = (high - golden * (high - low), low + golden * (high - low));
         if value(a) < value(b) { high = b } else { low = a }
     }
@@ -110,7 +147,7 @@ impl Instants {
                 rows.entry((row.signal, row.centre)).or_default().push((joint, torque));
             }
         }
-        let every = rows.len().div_ceil(ZERO_INSTANTS).max(1);
+        let every = rows.len().div_ceil(SCANNED_INSTANTS).max(1);
         let kept: Vec<_> = rows.into_iter().step_by(every).collect();
         let of = |k: usize, j: usize| -> Vec<f64> {
             let at = |&((signal, centre), _): &((usize, usize), _)| {
@@ -125,10 +162,10 @@ impl Instants {
         Self { states, torques: kept.into_iter().map(|(_, t)| t).collect(), joints, parameters, known }
     }
 
-    /// Mean squares of what is left of each joint's torques, where a joint is so far beyond its encoder; 0 for a joint without
-    /// rows, `None` where there is no fit.
-    fn left(&self, model: &dyn Model, fit: &Fit, joint: usize, angle: f64) -> Option<Vec<f64>> {
-        let (x, mut y) = self.rows(model, fit, joint, angle);
+    /// Mean squares of what is left of each joint's torques, where a number of a joint is so far off; 0 for a joint without rows,
+    /// `None` where there is no fit.
+    fn left(&self, model: &dyn Model, fit: &Fit, error: (usize, Wrong, f64)) -> Option<Vec<f64>> {
+        let (x, mut y) = self.rows(model, fit, error);
         let mut chi = DVector::zeros(self.parameters);
         self.known.iter().for_each(|&(k, value)| chi[k] = value);
         y -= &x * &chi;
@@ -150,11 +187,19 @@ impl Instants {
     }
 
     /// Columns and torques in units of the noise of each joint.
-    fn rows(&self, model: &dyn Model, fit: &Fit, joint: usize, angle: f64) -> (DMatrix<f64>, DVector<f64>) {
+    fn rows(
+        &self,
+        model: &dyn Model,
+        fit: &Fit,
+        (joint, wrong, by): (usize, Wrong, f64),
+    ) -> (DMatrix<f64>, DVector<f64>) {
         let pattern = model.pattern();
         let count = self.torques.len();
         let mut states = self.states.clone();
-        states[0][joint].iter_mut().for_each(|q| *q += angle);
+        if wrong == Wrong::Zero {
+            states[0][joint].iter_mut().for_each(|q| *q += by);
+        }
+        let factor = |j: usize| if wrong == Wrong::Gain && j == joint { by.exp() } else { 1.0 };
         let mut entries = vec![0.0; pattern.columns.len() * count];
         let [q, dq, ddq] = [0, 1, 2].map(|k| states[k].iter().map(Vec::as_slice).collect::<Vec<_>>());
         model.idm_block(States { q: &q, dq: &dq, ddq: &ddq }, count, &mut entries);
@@ -166,7 +211,7 @@ impl Instants {
             let weight = 1.0 / fit.sigma[j].max(f64::MIN_POSITIVE);
             y[r] = weight * torque;
             for e in pattern.rows[j]..pattern.rows[j + 1] {
-                x[(r, pattern.columns[e])] = weight * entries[e * count + t];
+                x[(r, pattern.columns[e])] = weight * factor(j) * entries[e * count + t];
             }
         }
         (x, y)
