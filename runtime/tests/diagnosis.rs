@@ -289,6 +289,22 @@ fn an_encoder_whose_zero_is_off_by_a_large_angle_is_told_whole() {
 }
 
 #[test]
+fn a_drive_that_records_twice_its_torque_is_told_with_its_factor() {
+    let twice = Hidden::in_recording(|motion| motion.torque[0].iter_mut().for_each(|x| *x *= 2.0));
+    let diagnosis = diagnosed(planar(), &twice);
+    assert_eq!(diagnosis.findings.len(), 1);
+    // Of two joints, the other may as well record half of its torque.
+    let on_first = diagnosis.findings[0].joints == [1];
+    assert_within_four_sigma(&diagnosis, "factor", if on_first { 2.0 } else { 0.5 });
+    let tied = &diagnosis.cannot_tell[0];
+    assert_eq!(
+        (&tied.between[..], &tied.joints[..]),
+        (&["torque_constant_error"; 2].map(String::from)[..], &[1, 2][..])
+    );
+    assert_follows(planar(), &twice, &diagnosis);
+}
+
+#[test]
 fn torques_that_are_late_are_named_a_delay() {
     let robot = planar();
     let diagnosis = diagnosed(robot, &Hidden::in_recording(late));

@@ -10,7 +10,7 @@ use super::motions::Motions;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rules::{
-    ERROR_LEAVES, ERROR_REFINED, ERROR_WORSENS, FIT_RIDGE, GAIN_STEP, GAIN_STEPS, LEAST_SCANNED,
+    AS_LITTLE, ERROR_LEAVES, ERROR_REFINED, ERROR_WORSENS, FIT_RIDGE, GAIN_STEP, GAIN_STEPS, LEAST_SCANNED,
     SCANNED_INSTANTS, ZERO_ANGLES,
 };
 use crate::effects::{EffectKind, Place};
@@ -30,18 +30,25 @@ pub(super) enum Wrong {
 }
 
 /// A number of a joint that is far off.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct LargeError {
-    /// 0-based.
-    pub joint: usize,
-    pub wrong: Wrong,
+    pub number: Number,
     pub by: f64,
     /// Logarithm of the part of the squares that the standard model leaves with it, in the mean over joints.
     pub left: f64,
+    /// Others that leave as little: of two joints with common parameters, one may record twice its torque or the other half.
+    pub rivals: Vec<Number>,
 }
 
-impl LargeError {
-    /// The law that it is.
+/// A number of a joint (0-based).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Number {
+    pub joint: usize,
+    pub wrong: Wrong,
+}
+
+impl Number {
+    /// The law of its error.
     pub fn law(&self) -> (EffectKind, Place) {
         match self.wrong {
             Wrong::Zero => (EffectKind::PositionOffset, Place::Variant(self.joint)),
@@ -85,34 +92,37 @@ pub(super) fn large_error(
         reference.map(|reference| reference.chi().to_vec())
     };
     let instants = Instants::of(motions, design, known);
-    let Some(plain) = instants.left(model, fit, (0, Wrong::Zero, 0.0)) else { return Ok(None) };
+    let Some(plain) = instants.left(model, fit, (Number { joint: 0, wrong: Wrong::Zero }, 0.0)) else {
+        return Ok(None);
+    };
     // Sum of the joints' logarithms, and whether no joint is left with more.
-    let gain = |joint: usize, wrong: Wrong, by: f64| -> (f64, bool) {
-        let Some(left) = instants.left(model, fit, (joint, wrong, by)) else { return (0.0, false) };
+    let gain = |number: Number, by: f64| -> (f64, bool) {
+        let Some(left) = instants.left(model, fit, (number, by)) else { return (0.0, false) };
         let ratios: Vec<f64> =
             left.iter().zip(&plain).filter(|(_, p)| **p > 0.0).map(|(l, p)| l / p).collect();
         let sum: f64 = ratios.iter().map(|r| r.max(f64::MIN_POSITIVE).ln()).sum();
         (sum, ratios.iter().all(|r| *r < ERROR_WORSENS))
     };
     let kinds = model.robot().joint_kinds();
-    let gains = (0..kinds.len()).map(|joint| (joint, Wrong::Gain));
-    let zeros =
-        gains.clone().filter(|(j, _)| kinds[*j] == JointKind::Revolute).map(|(j, _)| (j, Wrong::Zero));
-    let numbers: Vec<(usize, Wrong)> = zeros.chain(gains).collect();
-    let best_of = parallel::map(motions.settings().threads, numbers.len(), |k| {
-        let (joint, wrong) = numbers[k];
-        let each = wrong.values().0.into_iter().map(|by| (numbers[k], by, gain(joint, wrong, by).0));
-        each.min_by(|a, b| a.2.total_cmp(&b.2))
+    let number = |wrong: Wrong| move |joint: usize| Number { joint, wrong };
+    let zeros = (0..kinds.len()).filter(|&j| kinds[j] == JointKind::Revolute).map(number(Wrong::Zero));
+    let numbers: Vec<Number> = zeros.chain((0..kinds.len()).map(number(Wrong::Gain))).collect();
+    // Of each number the value that leaves least: the sum of logarithms with it comes first.
+    let mut tried: Vec<(f64, f64, Number)> = parallel::map(motions.settings().threads, numbers.len(), |k| {
+        let (values, step) = numbers[k].wrong.values();
+        let each = values.into_iter().map(|by| (gain(numbers[k], by).0, by));
+        let near = each.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, by)| by);
+        let by = golden(near - step, near + step, |by| gain(numbers[k], by).0);
+        (gain(numbers[k], by).0, by, numbers[k])
     });
-    let best = best_of.into_iter().flatten().min_by(|a, b| a.2.total_cmp(&b.2));
-    let Some(((joint, wrong), near, _)) = best else { return Ok(None) };
-    let step = wrong.values().1;
-    let by = golden(near - step, near + step, |by| gain(joint, wrong, by).0);
-    let (sum, no_joint_worse) = gain(joint, wrong, by);
-    let by = if wrong == Wrong::Zero && by > 0.5 * TAU { by - TAU } else { by };
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(&(sum, by, number)) = tried.first() else { return Ok(None) };
+    let no_joint_worse = gain(number, by).1;
+    let by = if number.wrong == Wrong::Zero && by > 0.5 * TAU { by - TAU } else { by };
     let certain = sum < ERROR_LEAVES.ln() && no_joint_worse && by.abs() > LEAST_SCANNED;
     let left = sum / plain.len().max(1) as f64;
-    Ok(certain.then_some(LargeError { joint, wrong, by, left }))
+    let rivals = tried.iter().skip(1).filter(|other| other.0 - sum < AS_LITTLE).map(|other| other.2);
+    Ok(certain.then(|| LargeError { number, by, left, rivals: rivals.collect() }))
 }
 
 /// Where a function of one number is least between two values, by golden sections.
@@ -164,7 +174,7 @@ impl Instants {
 
     /// Mean squares of what is left of each joint's torques, where a number of a joint is so far off; 0 for a joint without rows,
     /// `None` where there is no fit.
-    fn left(&self, model: &dyn Model, fit: &Fit, error: (usize, Wrong, f64)) -> Option<Vec<f64>> {
+    fn left(&self, model: &dyn Model, fit: &Fit, error: (Number, f64)) -> Option<Vec<f64>> {
         let (x, mut y) = self.rows(model, fit, error);
         let mut chi = DVector::zeros(self.parameters);
         self.known.iter().for_each(|&(k, value)| chi[k] = value);
@@ -191,7 +201,7 @@ impl Instants {
         &self,
         model: &dyn Model,
         fit: &Fit,
-        (joint, wrong, by): (usize, Wrong, f64),
+        (Number { joint, wrong }, by): (Number, f64),
     ) -> (DMatrix<f64>, DVector<f64>) {
         let pattern = model.pattern();
         let count = self.torques.len();

@@ -74,7 +74,7 @@ impl Prepared {
         let rate = factor(model, &fitted.motions, declared)?;
         // Each is the other one's rival.
         if let Some((factor, left)) = rate
-            && large_error.is_none_or(|other| left < other.left)
+            && large_error.as_ref().is_none_or(|other| left < other.left)
         {
             let wrong = WrongRate::new(factor, &fitted.aligned, &fitted.fit)?;
             // A rate at which nothing can be made of the motion is not the right one.

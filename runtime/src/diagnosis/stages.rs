@@ -132,8 +132,9 @@ impl<'a> Course<'a> {
         let mut begun = self.begin(pushes.set_aside().as_ref(), settings)?;
         // Where something is said against what was found, the search goes on from here.
         let without_effects = self.known.is_none().then(|| begun.search.model.clone());
-        let may_be = |error: &LargeError| self.known.is_none() && !settings.excluded.contains(&error.law());
-        if let Some(error) = self.prepared.large_error.filter(may_be) {
+        let may_be =
+            |error: &&LargeError| self.known.is_none() && !settings.excluded.contains(&error.number.law());
+        if let Some(error) = self.prepared.large_error.as_ref().filter(may_be) {
             begun.search.take_large_error(error)?;
         }
         loop {

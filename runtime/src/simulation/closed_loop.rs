@@ -87,7 +87,7 @@ pub fn simulate(
     let mut here = state.clone();
     let mut log = Log::new(n, rows);
     let mut reading = vec![0.0; n];
-    let (mut torque, mut held) = (vec![0.0; n], vec![0.0; n]);
+    let (mut torque, mut held, mut real) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     let mut acceleration = vec![0.0; state.q.len()];
     let mut tracking_error = vec![0.0_f64; n];
     for k in 0..samples {
@@ -108,13 +108,16 @@ pub fn simulate(
             // With the mean torque: the acceleration has a step at the sample, and this is its middle.
             log.mean.iter_mut().zip(held.iter().zip(&torque)).for_each(|(m, (a, b))| *m = 0.5 * (a + b));
             here.copy_from(&state);
-            plant.acceleration(&mut here, &log.mean, &mut acceleration)?;
-            let sample = Sample { state: &state, acceleration: &acceleration, reading: &reading };
+            plant.real_torques(&log.mean, &mut real);
+            plant.acceleration(&mut here, &real, &mut acceleration)?;
+            let sample =
+                Sample { state: &state, acceleration: &acceleration, reading: &reading, torque: &real };
             log.record(plant, &sample, &mut sensors);
         }
         if k + 1 < samples {
+            plant.real_torques(&torque, &mut real);
             for _ in 0..parts {
-                plant.advance(&mut state, &torque, period / parts as f64)?;
+                plant.advance(&mut state, &real, period / parts as f64)?;
             }
         }
         if k % 1024 == 0 {
@@ -170,6 +173,8 @@ struct Sample<'a> {
     acceleration: &'a [f64],
     /// What the encoders say, per joint.
     reading: &'a [f64],
+    /// Real torques, per joint.
+    torque: &'a [f64],
 }
 
 /// Signals of the rows so far, joint by joint.
@@ -200,7 +205,7 @@ impl Log {
     }
 
     fn record(&mut self, plant: &Plant<'_>, sample: &Sample<'_>, sensors: &mut Sensors<'_>) {
-        let &Sample { state, acceleration, reading } = sample;
+        let &Sample { state, acceleration, reading, torque } = sample;
         self.time.push(state.time);
         for (j, &read) in reading.iter().enumerate() {
             self.position[j].push(read);
@@ -208,7 +213,7 @@ impl Log {
             self.q[j].push(plant.motor_position(state, j));
             self.dq[j].push(plant.motor_velocity(state, j));
             self.ddq[j].push(plant.motor_acceleration(acceleration, j));
-            self.true_torque[j].push(self.mean[j]);
+            self.true_torque[j].push(torque[j]);
         }
     }
 

@@ -26,6 +26,8 @@ pub struct Plant<'m> {
     pub(super) effects: Vec<Box<dyn ExtraTorque + 'm>>,
     /// How far each joint is from where its encoder sees it.
     pub(super) beyond_encoder: Vec<f64>,
+    /// So many times its real torque is what each drive is told and records.
+    pub(super) recorded_larger: Vec<f64>,
     pub(super) scheme: Scheme,
     pub(super) work: Work,
 }
@@ -147,6 +149,7 @@ impl<'m> Plant<'m> {
             rotor_in_chi,
             effects,
             beyond_encoder: vec![0.0; n],
+            recorded_larger: vec![1.0; n],
             scheme: Scheme::default(),
             work,
         })
@@ -166,6 +169,30 @@ impl<'m> Plant<'m> {
         }
         self.beyond_encoder = beyond.to_vec();
         Ok(self)
+    }
+
+    /// With drives whose torque constants are off: what each is told to do, and records, is so many times its real torque.
+    ///
+    /// # Errors
+    /// Another number of joints, a factor that is not positive.
+    pub fn with_drives_off(mut self, larger: &[f64]) -> Result<Self, SimulationError> {
+        let (expected, found) = (self.joints, larger.len());
+        if expected != found {
+            return Err(SimulationError::Length { what: "torque constants", expected, found });
+        }
+        if let Some(&found) = larger.iter().find(|x| !(x.is_finite() && **x > 0.0)) {
+            let what = "torque constant in multiples of the real one";
+            return Err(SimulationError::Setting { what, expected: "positive", found });
+        }
+        self.recorded_larger = larger.to_vec();
+        Ok(self)
+    }
+
+    /// The real torques, N.m or N, of drives that record these.
+    pub fn real_torques(&self, recorded: &[f64], real: &mut [f64]) {
+        for ((real, recorded), larger) in real.iter_mut().zip(recorded).zip(&self.recorded_larger) {
+            *real = recorded / larger;
+        }
     }
 
     /// Number of joints n.

@@ -55,6 +55,8 @@ pub struct World<'m> {
     table: Option<RecursiveModel>,
     /// How far each joint is from where its encoder sees it, rad or m.
     beyond_encoder: Vec<f64>,
+    /// So many times its real torque is what each drive records.
+    recorded_larger: Vec<f64>,
     /// What an error of the table uncovers: amplitudes of columns beyond its numbers.
     uncovered: Vec<(&'static dyn Sensitivity, Vec<f64>)>,
     parameters: Parameters,
@@ -89,6 +91,7 @@ impl<'m> World<'m> {
             nominal,
             table: None,
             beyond_encoder: vec![0.0; nominal.robot().joints()],
+            recorded_larger: vec![1.0; nominal.robot().joints()],
             uncovered: Vec::new(),
             parameters,
             laws: Vec::new(),
@@ -119,7 +122,7 @@ impl<'m> World<'m> {
     }
 
     /// Puts an effect in. Bodies become part of the parameters, laws of a joint torques; transmissions become elastic
-    /// joints, errors of the table another table, and encoders see joints elsewhere. What a plant does not have (skews and
+    /// joints, errors of the table another table, encoders see joints elsewhere, and drives record other torques than they give. What a plant does not have (skews and
     /// rates of a recording, the inertia of a coupled rotor, contacts, which belong to the recording they were seen in, laws of
     /// a user over accelerations) or what does not fit the robot is left out and named.
     pub fn put(&mut self, term: &EffectTerm) {
@@ -130,6 +133,7 @@ impl<'m> World<'m> {
                 self.laws.extend((0..n).filter(|_| known).map(|j| (law, [j, j], term.clone())));
                 known
             }
+            Form::Joint(_) if term.effect == EffectKind::TorqueConstantError => self.put_factor(term),
             Form::Joint(law) => self.put_law(law, term.place.joint().map(|j| [j, j]), term),
             Form::Heard(law) => self.put_law(law, term.place.hears(), term),
             Form::Body(_) => term.place.link().is_some_and(|frame| self.put_body(frame, &term.amplitude)),
@@ -176,6 +180,13 @@ impl<'m> World<'m> {
         let joints = joints.filter(|both| both.iter().all(|j| *j < n) && term.scale.is_some());
         self.laws.extend(joints.map(|joints| (law, joints, term.clone())));
         joints.is_some()
+    }
+
+    /// Puts a wrong torque constant in: the drive is told, and records, another torque than it gives.
+    fn put_factor(&mut self, term: &EffectTerm) -> bool {
+        let factor = 1.0 + term.amplitude.iter().sum::<f64>();
+        let own = term.place.joint().and_then(|j| self.recorded_larger.get_mut(j));
+        own.filter(|_| factor > 0.0 && factor.is_finite()).map(|own| *own *= factor).is_some()
     }
 
     /// Puts an error of the robot's own numbers in.
@@ -292,7 +303,7 @@ impl<'m> World<'m> {
                 Plant::with_effects(model, &self.with_rotors_apart(robot, &chi), &joints, torques)
             }
         };
-        plant?.with_encoders_off(&self.beyond_encoder)
+        plant?.with_encoders_off(&self.beyond_encoder)?.with_drives_off(&self.recorded_larger)
     }
 
     /// Torques of what is in the robot, in a motion.

@@ -5,7 +5,7 @@
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::hull::Curve;
-use crate::diagnosis::large_error::{LargeError, Wrong};
+use crate::diagnosis::large_error::{LargeError, Number, Wrong};
 use crate::diagnosis::outcome::StopReason;
 use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, KEPT_FRACTION};
 use crate::diagnosis::search::body;
@@ -13,10 +13,13 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::report::SearchReport;
 use crate::diagnosis::search::round::Winner;
 use crate::diagnosis::search::state::Search;
-use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::EffectKind;
 use crate::parallel;
+
+/// Probability that a rival which leaves as little leaves more by accident alone.
+const LEAVES_AS_LITTLE: f64 = 0.5;
 
 impl Search<'_> {
     /// Adds effects as long as one improves held-out motion; takes out what does not hold beside the others.
@@ -170,18 +173,27 @@ impl Search<'_> {
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn take_large_error(&mut self, error: LargeError) -> Result<(), SingularDesign> {
-        let (effect, place) = error.law();
-        let shape = if error.wrong == Wrong::Zero { vec![error.by] } else { Vec::new() };
+    pub fn take_large_error(&mut self, error: &LargeError) -> Result<(), SingularDesign> {
+        let ((effect, place), explained_fraction) = (error.number.law(), 1.0 - error.left.exp());
+        let shape = match error.number.wrong {
+            Wrong::Zero => vec![error.by],
+            Wrong::Gain => {
+                self.model.factors[error.number.joint] = error.by.exp_m1();
+                Vec::new()
+            }
+        };
+        let rival = |number: &Number| {
+            let (effect, place) = number.law();
+            let (shape, difference_p_value) = (Vec::new(), LEAVES_AS_LITTLE);
+            Rival { effect, place, shape, explained_fraction, difference_p_value }
+        };
         let (context, design) = (&self.model.context, &self.model.slow.design);
         let candidate = make(context, design, effect, place, std::slice::from_ref(&shape), self.model.change);
-        if error.wrong == Wrong::Gain {
-            self.model.factors[error.joint] = error.by.exp_m1();
-        }
         self.model.terms.push(Accepted {
-            shows_on: (0..self.model.slow.design.joints).collect(),
+            shows_on: (0..design.joints).collect(),
             confidence: HIGHEST_CONFIDENCE,
-            explained_fraction: 1.0 - error.left.exp(),
+            explained_fraction,
+            rivals: error.rivals.iter().map(rival).collect(),
             ..Accepted::tried(&candidate, shape)
         });
         self.refit_and_update()

@@ -17,7 +17,7 @@ const FAST_RATE: f64 = 4000.0;
 
 /// How a simulated robot followed a motion.
 pub(super) struct Followed {
-    /// Torques at the samples of the motion, `[j][t]`.
+    /// Torques at the samples of the motion as drives without noise record them, `[j][t]`.
     pub(super) torque: Vec<Vec<f64>>,
     /// How far each joint was from the motion at most, rad or m.
     pub(super) tracking_error: Vec<f64>,
@@ -59,7 +59,7 @@ pub(super) fn follow(
     let mut plant = world.plant(&motion.name)?;
     let run = simulate(&mut plant, &reference, &settings, &mut |_| {})?;
     let samples = motion.q.first().map_or(0, Vec::len);
-    let mut torque = run.truth.torque;
+    let mut torque = run.recorded.torque;
     torque.iter_mut().for_each(|x| x.resize(samples, 0.0));
     Ok(Followed { torque, tracking_error: run.tracking_error })
 }

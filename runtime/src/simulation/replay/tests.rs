@@ -94,6 +94,32 @@ fn errors_of_the_table_and_of_encoders_are_in_the_robot_that_follows() {
 }
 
 #[test]
+fn a_drive_that_records_twice_its_torque_gives_half_of_what_it_is_told() {
+    let (model, standard) = tx40();
+    let chi = model.robot().base_from_standard(&standard);
+    let twice = EffectTerm {
+        effect: EffectKind::TorqueConstantError,
+        place: Place::Joint(1),
+        joints: vec![2],
+        shape: Vec::new(),
+        amplitude: vec![1.0],
+        sigma: vec![0.0],
+        scale: Some(TermScale::UNIT),
+        wrenches: Vec::new(),
+    };
+    let motion = motion(6);
+    let followed = follow(&model, &motion, &chi, &chi, &[twice]).expect("it runs");
+    assert!(followed.tracking_error.iter().all(|x| *x < 0.05), "{:?}", followed.tracking_error);
+    let (mut left, mut whole) = (0.0, 0.0);
+    for t in (200..900).filter(|&t| motion.dq[1][t].abs() > 0.08) {
+        let real = inverse(&model, &chi, &motion, t)[1];
+        left += (followed.torque[1][t] - 2.0 * real).powi(2);
+        whole += real * real;
+    }
+    assert!(left < 1e-3 * whole, "{left} {whole}");
+}
+
+#[test]
 fn a_compliant_joint_that_was_found_swings_in_the_simulation() {
     let (model, standard) = tx40();
     let chi = model.robot().base_from_standard(&standard);
