@@ -6,8 +6,7 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
-use crate::diagnosis::rules::{DELAY_DEVIATION, LONGEST_BLOCK, SKEW_FREEDOM};
-use crate::statistics::moderation::{Prior, Variance};
+use crate::diagnosis::rules::{DELAY_DEVIATION, LONGEST_BLOCK};
 
 /// Skew of the torques behind the positions.
 pub(in crate::diagnosis) struct Skew {
@@ -20,12 +19,13 @@ pub(in crate::diagnosis) struct Skew {
     freedom: f64,
 }
 
-/// How much skews differ between motions, beyond their own errors.
+/// How much skews differ between motions, beyond the errors that they are known with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::diagnosis) struct BetweenMotions {
-    /// s².
-    variance: Variance,
-    /// That tell a mean.
+    /// Of sampling, s²: a motion begins anywhere within a sample of the clock of the torques.
+    of_sampling: f64,
+    /// Of everything else, s².
+    variance: f64,
     motions: usize,
 }
 
@@ -88,10 +88,12 @@ impl Skew {
     /// The same as the difference from motions whose own skews differ so much: another motion of that kind would have another
     /// one too, and the mean of few is not known better. Degrees of freedom by Satterthwaite (1946).
     pub fn beside(self, others: BetweenMotions) -> Self {
+        let n = others.motions as f64;
+        let beside_mean = 1.0 + 1.0 / n.max(1.0);
         let own = self.sigma * self.sigma;
-        let between = others.variance.value * (1.0 + 1.0 / others.motions.max(1) as f64);
-        let variance = own + between;
-        let uncertain = own * own / self.freedom + between * between / others.variance.freedom;
+        let between = others.variance * beside_mean;
+        let variance = own + others.of_sampling * beside_mean + between;
+        let uncertain = own * own / self.freedom + between * between / (n - 1.0).max(1.0);
         let freedom = variance * variance / uncertain;
         let sigma = variance.sqrt();
         let evidence = Evidence::student(self.value.abs() / sigma.max(1e-300), freedom);
@@ -135,21 +137,16 @@ impl BetweenMotions {
         Ok(Self::of(&skews, 1.0 / context.rate()))
     }
 
-    /// Of skews with their own errors, by moments (DerSimonian and Laird 1986), moderated by what is known before: a motion
-    /// begins anywhere within a `sample`, s, of the clock of the torques.
+    /// Of skews with their own errors, by moments (DerSimonian and Laird 1986), at so many seconds a `sample`.
     fn of(skews: &[Skew], sample: f64) -> Self {
-        let motions = skews.len();
+        let (motions, of_sampling) = (skews.len(), sample * sample / 12.0);
         let n = motions as f64;
-        let before = Prior { variance: sample * sample / 12.0, freedom: SKEW_FREEDOM };
-        let seen = if motions < 2 {
-            Variance { value: 0.0, freedom: 0.0 }
-        } else {
-            let mean = skews.iter().map(|s| s.value).sum::<f64>() / n;
-            let spread = skews.iter().map(|s| (s.value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-            let own = skews.iter().map(|s| s.sigma * s.sigma).sum::<f64>() / n;
-            Variance { value: (spread - own).max(0.0), freedom: n - 1.0 }
-        };
-        Self { variance: before.moderate(seen), motions }
+        let mean = skews.iter().map(|s| s.value).sum::<f64>() / n;
+        let spread = skews.iter().map(|s| (s.value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        let own = skews.iter().map(|s| s.sigma * s.sigma).sum::<f64>() / n;
+        // A single motion says nothing of how motions differ.
+        let variance = if motions < 2 { 0.0 } else { (spread - own - of_sampling).max(0.0) };
+        Self { of_sampling, variance, motions }
     }
 }
 
@@ -202,9 +199,9 @@ mod tests {
         assert!(one(0.004).beside(alike).sigma < 0.5 * SAMPLE);
         let differing = BetweenMotions::of(&[one(-0.002), one(0.001), one(0.003), one(-0.002)], SAMPLE);
         let told = one(0.004).beside(differing);
-        assert!(one(0.004).confidence() > 0.999 && told.confidence() < 0.95, "{}", told.confidence());
+        assert!(one(0.004).confidence() > 0.999 && told.confidence() < 0.9, "{}", told.confidence());
         assert!(one(0.1).beside(differing).confidence() > 0.999);
-        // What one motion, or two, do not say of how motions differ is known before.
+        // Of what one motion, or two that are alike, do not say sampling is known.
         for few in [&[one(0.001)][..], &[one(0.001), one(0.0012)]] {
             let few = BetweenMotions::of(few, SAMPLE);
             assert!(one(0.007).beside(few).confidence() > 0.999);

@@ -48,10 +48,6 @@ pub(in crate::diagnosis) const DELAY_TAKEN_OUT: f64 = 0.75;
 /// Standard deviation of skews before anything is known of one, s, a sample at least. Mechanics: filters of currents, buses and
 /// cycles of controllers delay by milliseconds.
 pub(in crate::diagnosis) const DELAY_DEVIATION: f64 = 0.01;
-/// So many motions of a baseline the expectation is worth that skews differ between motions by as much as a motion begins
-/// within a sample. Judgement: a clock that begins elsewhere by several samples is soon believed; 41 of 41 delays are named
-/// beside a baseline of two motions (`docs/concealment_baseline.md`).
-pub(in crate::diagnosis) const SKEW_FREEDOM: f64 = 4.0;
 /// A delay is named from this many samples on: a smaller one is part of sampling. Mechanics; time_delay in
 /// `docs/concealment.md`.
 pub(in crate::diagnosis) const NAMED_DELAY_SAMPLES: f64 = 0.75;
