@@ -119,6 +119,15 @@ impl EffectTerm {
     }
 }
 
+/// How many times faster a robot with these effects moved than the times of its recording say.
+pub fn times_faster(effects: &[EffectTerm]) -> f64 {
+    let factor = |distortion| match distortion {
+        Distortion::Skew => 1.0,
+        Distortion::Faster(factor) => factor,
+    };
+    effects.iter().filter_map(EffectTerm::distortion).map(factor).product()
+}
+
 /// [`Scale`], saved.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs)]

@@ -20,7 +20,6 @@ pub use crate::diagnosis::Errors;
 pub use comparison::{Comparison, Prepared};
 pub use errors::{above_noise, observed_errors};
 pub use evaluate::{Evaluation, JointRows, Prediction, evaluate};
-pub(crate) use predictor::times_faster;
 pub use predictor::{PredictionError, Predictor};
 pub use states::{StateRows, row_states};
 pub use trend::binned_means;

@@ -1,7 +1,7 @@
 //! What predicts: parameters, effects, and how late the torques are.
 
 use crate::diagnosis::{Diagnosis, DiagnosisError, term_torques};
-use crate::effects::{Distortion, EffectTerm};
+use crate::effects::{Distortion, EffectTerm, times_faster};
 use crate::estimation::observe::ObserveError;
 use crate::model::{Model, torques};
 use crate::signal::{Motion, SignalError};
@@ -81,15 +81,6 @@ impl<'a> Predictor<'a> {
         }
         Ok(all)
     }
-}
-
-/// How many times faster a robot with these effects moved than the times of its recording say.
-pub(crate) fn times_faster(effects: &[EffectTerm]) -> f64 {
-    let factor = |distortion| match distortion {
-        Distortion::Skew => 1.0,
-        Distortion::Faster(factor) => factor,
-    };
-    effects.iter().filter_map(EffectTerm::distortion).map(factor).product()
 }
 
 /// A signal `samples` later: linear interpolation, the ends held.

@@ -1,8 +1,7 @@
 //! A simulated robot on a recorded motion.
 
-use crate::effects::EffectTerm;
+use crate::effects::{EffectTerm, times_faster};
 use crate::model::Model;
-use crate::prediction::times_faster;
 use crate::signal::Motion;
 use crate::simulation::closed_loop::{LoopSettings, simulate};
 use crate::simulation::error::SimulationError;
