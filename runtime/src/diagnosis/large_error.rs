@@ -10,8 +10,8 @@ use super::motions::Motions;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rules::{
-    AS_LITTLE, ERROR_LEAVES, ERROR_REFINED, ERROR_WORSENS, FIT_RIDGE, GAIN_STEP, GAIN_STEPS, LEAST_SCANNED,
-    SCANNED_INSTANTS, ZERO_ANGLES,
+    AS_LITTLE, ERROR_LEAVES, ERROR_LEAVES_OF_KNOWN, ERROR_REFINED, ERROR_WORSENS, FIT_RIDGE, GAIN_STEP,
+    GAIN_STEPS, LEAST_SCANNED, SCANNED_INSTANTS, ZERO_ANGLES,
 };
 use crate::effects::{EffectKind, Place};
 use crate::model::{JointKind, Model, States};
@@ -91,7 +91,11 @@ pub(super) fn large_error(
     } else {
         reference.map(|reference| reference.chi().to_vec())
     };
+    let leaves = if known.is_some() { ERROR_LEAVES_OF_KNOWN } else { ERROR_LEAVES };
     let instants = Instants::of(motions, design, known);
+    if instants.are_few() {
+        return Ok(None);
+    }
     let Some(plain) = instants.left(model, fit, (Number { joint: 0, wrong: Wrong::Zero }, 0.0)) else {
         return Ok(None);
     };
@@ -119,7 +123,7 @@ pub(super) fn large_error(
     let Some(&(sum, by, number)) = tried.first() else { return Ok(None) };
     let no_joint_worse = gain(number, by).1;
     let by = if number.wrong == Wrong::Zero && by > 0.5 * TAU { by - TAU } else { by };
-    let certain = sum < ERROR_LEAVES.ln() && no_joint_worse && by.abs() > LEAST_SCANNED;
+    let certain = sum < leaves.ln() && no_joint_worse && by.abs() > LEAST_SCANNED;
     let left = sum / plain.len().max(1) as f64;
     let rivals = tried.iter().skip(1).filter(|other| other.0 - sum < AS_LITTLE).map(|other| other.2);
     Ok(certain.then(|| LargeError { number, by, left, rivals: rivals.collect() }))
@@ -170,6 +174,12 @@ impl Instants {
         let known = chi.map_or_else(|| design.known.clone(), |chi| chi.into_iter().enumerate().collect());
         let (joints, parameters) = (design.joints, design.parameters);
         Self { states, torques: kept.into_iter().map(|(_, t)| t).collect(), joints, parameters, known }
+    }
+
+    /// Whether every value would leave next to nothing.
+    fn are_few(&self) -> bool {
+        let rows: usize = self.torques.iter().map(Vec::len).sum();
+        rows < 2 * (self.parameters - self.known.len())
     }
 
     /// Mean squares of what is left of each joint's torques, where a number of a joint is so far off; 0 for a joint without rows,

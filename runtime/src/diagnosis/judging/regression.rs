@@ -4,6 +4,7 @@
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::{Fold, folds};
 use crate::diagnosis::judging::hull::{Beyond, Curve};
+use crate::diagnosis::rows::bent::Bent;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
@@ -37,6 +38,8 @@ pub(in crate::diagnosis) struct Regression {
     torque: Vec<f64>,
     /// Columns of the base parameters of the robot as it is in its table, where those of the design are others.
     plain: Option<Vec<Vec<f64>>>,
+    /// The last of these others.
+    pub bent: Vec<Bent>,
     /// Columns that are always there: base parameters and nuisances.
     fixed_columns: usize,
     /// What is known of these beforehand.
@@ -58,7 +61,7 @@ pub(in crate::diagnosis) struct Besides {
     pub gains: Vec<Vec<f64>>,
     pub deviation: f64,
     /// Of each term that is a large error of the robot's numbers, the columns of the base parameters with it.
-    pub bent: Vec<Vec<Vec<f64>>>,
+    pub bent: Vec<Bent>,
     /// The base parameters that the columns of terms are made with.
     pub chi: Vec<f64>,
 }
@@ -101,6 +104,7 @@ impl Regression {
             measured,
             torque,
             plain: None,
+            bent: Vec::new(),
             fixed_columns,
             known,
             curves,
@@ -168,13 +172,19 @@ impl Regression {
         for (i, &chi) in besides.chi.iter().enumerate().filter(|(i, _)| !is_known(*i)) {
             let rows = self.design.columns[i].iter_mut().zip(&mut self.design.y).zip(&plain[i]).enumerate();
             for (r, ((column, y), plain)) in rows {
-                let more: f64 = besides.bent.iter().map(|bent| bent[i][r] - plain).sum();
+                let more: f64 = besides.bent.iter().map(|bent| bent.columns[i][r] - plain).sum();
                 *column += more;
                 *y += more * chi;
             }
         }
         self.plain = Some(plain);
+        self.bent.clone_from(&besides.bent);
         true
+    }
+
+    /// Columns of the base parameters of the robot as it is in its table.
+    pub fn plain(&self) -> &[Vec<f64>] {
+        self.plain.as_deref().unwrap_or(&self.design.columns[..self.design.parameters])
     }
 
     /// Fits the folds of the design as it is, and works out what each leaves of the motion that it holds out.

@@ -8,27 +8,66 @@
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
-use crate::diagnosis::rules::LARGE_ERROR;
+use crate::diagnosis::rules::{LARGE_ERROR, NEAR_ERROR};
 use crate::effects::{EffectKind, Form, Place, corrected, numbers_at};
 use crate::model::RecursiveModel;
+use std::sync::Arc;
+
+/// Columns of the base parameters beside errors of a law.
+#[derive(Debug, Clone)]
+pub(in crate::diagnosis) struct Bent {
+    pub law: (EffectKind, Place),
+    pub errors: Vec<f64>,
+    /// On the rows of a design.
+    pub columns: Arc<Vec<Vec<f64>>>,
+}
+
+impl Bent {
+    /// Whether these errors of a law are so near that the columns do as well: where the parameters settle does not depend on them,
+    /// only how soon they do.
+    pub fn is_near(&self, law: (EffectKind, Place), errors: &[f64]) -> bool {
+        self.law == law
+            && self.errors.len() == errors.len()
+            && self.errors.iter().zip(errors).all(|(own, e)| (own - e).abs() <= NEAR_ERROR)
+    }
+}
 
 impl Context<'_> {
     /// The columns of the base parameters on the rows of a design, of the robot as it is with `errors` of an effect: in all
-    /// motions, or in those of the recording where it is a `change`. `None` where the errors are small, or numbers of neither the
-    /// robot nor its drives.
-    pub fn bent_columns(
+    /// motions, or in those of the recording where it is a `change`; `plain` are those without. `None` where the errors are small,
+    /// or numbers of neither the robot nor its drives.
+    pub fn bent(
+        &self,
+        (design, plain): (&Design, &[Vec<f64>]),
+        law: (EffectKind, Place),
+        errors: &[f64],
+        change: bool,
+    ) -> Option<Bent> {
+        if errors.iter().all(|e| e.abs() < LARGE_ERROR) {
+            return None;
+        }
+        let mut columns = match (law.0, law.1.joint()) {
+            (EffectKind::TorqueConstantError, Some(joint)) => {
+                larger_on(design.of_joint(joint), plain, 1.0 + errors[0])
+            }
+            _ => self.with_errors(design, law, errors)?,
+        };
+        if change {
+            let old = |r: &usize| !self.signals[design.rows[*r].signal].is_target;
+            for r in (0..design.rows.len()).filter(old) {
+                columns.iter_mut().zip(plain).for_each(|(bent, plain)| bent[r] = plain[r]);
+            }
+        }
+        Some(Bent { law, errors: errors.to_vec(), columns: Arc::new(columns) })
+    }
+
+    /// Those of the robot whose numbers are off by so much.
+    fn with_errors(
         &self,
         design: &Design,
         (effect, place): (EffectKind, Place),
         errors: &[f64],
-        change: bool,
     ) -> Option<Vec<Vec<f64>>> {
-        if errors.iter().all(|e| e.abs() < LARGE_ERROR) {
-            return None;
-        }
-        if let (EffectKind::TorqueConstantError, Some(joint)) = (effect, place.joint()) {
-            return Some(self.larger_on(design, joint, 1.0 + errors[0], change));
-        }
         let (Form::Sensitivity(law), Some(v)) = (effect.form(), place.variant()) else { return None };
         if law.in_recording(errors).is_some() {
             return None;
@@ -37,35 +76,24 @@ impl Context<'_> {
         let errors: Vec<_> = numbers_at(law, robot, v).into_iter().zip(errors.iter().copied()).collect();
         let there = corrected(robot, law, &errors);
         let model = RecursiveModel::new(there.robot).ok()?;
-        let mut columns = design.columns_of(&model, &self.seen_beyond(&there.beyond_encoder));
-        if change {
-            let before =
-                design.rows.iter().enumerate().filter(|(_, row)| !self.signals[row.signal].is_target);
-            let before: Vec<usize> = before.map(|(r, _)| r).collect();
-            let plain = design.columns_of(self.model, self.signals);
-            for (bent, plain) in columns.iter_mut().zip(&plain) {
-                before.iter().for_each(|&r| bent[r] = plain[r]);
-            }
-        }
-        Some(columns)
-    }
-
-    /// The columns of the base parameters with those of one joint so many times larger.
-    fn larger_on(&self, design: &Design, joint: usize, factor: f64, change: bool) -> Vec<Vec<f64>> {
-        let mut columns = design.columns_of(self.model, self.signals);
-        let is_larger = |&r: &usize| !change || self.signals[design.rows[r].signal].is_target;
-        for column in &mut columns {
-            design.of_joint(joint).filter(is_larger).for_each(|r| column[r] *= factor);
-        }
-        columns
+        Some(design.columns_of(&model, &self.seen_beyond(&there.beyond_encoder)))
     }
 
     /// The signals with each joint so much beyond where its encoder sees it.
     fn seen_beyond(&self, beyond: &[f64]) -> Vec<Signals> {
         let mut signals = self.signals.to_vec();
-        for q in signals.iter_mut().flat_map(|s| s.q.iter_mut().zip(beyond)) {
-            q.0.iter_mut().for_each(|x| *x += q.1);
+        for (q, by) in signals.iter_mut().flat_map(|s| s.q.iter_mut().zip(beyond)) {
+            q.iter_mut().for_each(|x| *x += by);
         }
         signals
     }
+}
+
+/// Columns with those rows so many times larger.
+fn larger_on(rows: std::ops::Range<usize>, plain: &[Vec<f64>], factor: f64) -> Vec<Vec<f64>> {
+    let mut columns = plain.to_vec();
+    for column in &mut columns {
+        column[rows.clone()].iter_mut().for_each(|x| *x *= factor);
+    }
+    columns
 }

@@ -1,7 +1,7 @@
 //! Rows: torques and columns of a recording, where a joint surely moves.
 
 pub(in crate::diagnosis) mod additions;
-mod bent;
+pub(in crate::diagnosis) mod bent;
 mod by_blocks;
 mod columns;
 pub(in crate::diagnosis) mod context;

@@ -54,6 +54,9 @@ pub(in crate::diagnosis) const SCANNED_INSTANTS: usize = 240;
 /// times its squares. Judgement, as for rates: a smaller error is a law among others, and no other physics is imitated so well.
 pub(in crate::diagnosis) const ERROR_LEAVES: f64 = 0.5;
 pub(in crate::diagnosis) const ERROR_WORSENS: f64 = 1.25;
+/// The same where the parameters are known: there what a robot carries, or friction that changed, is left as well, of which one
+/// number of a joint may take half. Judgement.
+pub(in crate::diagnosis) const ERROR_LEAVES_OF_KNOWN: f64 = 0.1;
 /// Sums of the joints' logarithms of squares that differ by less leave as little. Statistics: some sixty independent rows tell a
 /// tenth of the squares of one joint.
 pub(in crate::diagnosis) const AS_LITTLE: f64 = 0.1;
@@ -62,6 +65,9 @@ pub(in crate::diagnosis) const LEAST_SCANNED: f64 = 0.35;
 /// From this error on, in units of its number, the columns of the base parameters are those of the robot that has it. Numerics:
 /// below, parameters that follow it one refit later have converged to a thousandth after three.
 pub(in crate::diagnosis) const LARGE_ERROR: f64 = 0.1;
+/// Columns that were made for an error, in units of its number, do for one that is as near. Numerics: parameters then settle by a
+/// factor of fifty a refit.
+pub(in crate::diagnosis) const NEAR_ERROR: f64 = 0.02;
 /// Fewest refits where columns follow the standard parameters: candidates do, too. Judgement; not measured.
 pub(in crate::diagnosis) const REFITS: usize = 2;
 /// Most of them, where parameters or the numbers that columns are derivatives by have not converged. Numerics: what is far off

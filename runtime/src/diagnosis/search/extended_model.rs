@@ -288,7 +288,9 @@ fn put_terms(
     let design = &regression.design;
     let known = more_of_standing_laws(context, design);
     let bent = terms.iter().filter_map(|term| {
-        context.bent_columns(design, (term.effect, term.place), errors(term, factors), change)
+        let (law, errors) = ((term.effect, term.place), errors(term, factors));
+        let before = regression.bent.iter().find(|bent| bent.is_near(law, errors)).cloned();
+        before.or_else(|| context.bent((design, regression.plain()), law, errors, change))
     });
     let (bent, chi) = (bent.collect(), context.chi.clone());
     let besides = Besides { known, gains: gain_columns(context, design), deviation, bent, chi };
