@@ -10,8 +10,8 @@ use super::motions::Motions;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rules::{
-    AS_LITTLE, ERROR_LEAVES, ERROR_LEAVES_OF_KNOWN, ERROR_REFINED, ERROR_WORSENS, FIT_RIDGE, GAIN_STEP,
-    GAIN_STEPS, LEAST_SCANNED, SCANNED_INSTANTS, ZERO_ANGLES,
+    AS_LITTLE, ERROR_LEAVES, ERROR_REFINED, ERROR_WORSENS, FIT_RIDGE, GAIN_STEP, GAIN_STEPS, LEAST_SCANNED,
+    SCANNED_INSTANTS, ZERO_ANGLES,
 };
 use crate::effects::{EffectKind, Place};
 use crate::model::{JointKind, Model, States};
@@ -74,7 +74,8 @@ impl Wrong {
 }
 
 /// The number of one joint with which the standard model leaves least, where that is less than half of what it leaves of any joint
-/// without, and of no joint more. Beside a baseline, and where a reference knows them, the parameters are known.
+/// without, and of no joint more. Beside a baseline, and where a reference knows them, the parameters are known; then it must leave
+/// less than other parameters do.
 ///
 /// # Errors
 /// [`SingularDesign`] where the baseline has no fit.
@@ -91,21 +92,31 @@ pub(super) fn large_error(
     } else {
         reference.map(|reference| reference.chi().to_vec())
     };
-    let leaves = if known.is_some() { ERROR_LEAVES_OF_KNOWN } else { ERROR_LEAVES };
-    let instants = Instants::of(motions, design, known);
-    if instants.are_few() {
-        return Ok(None);
-    }
-    let Some(plain) = instants.left(model, fit, (Number { joint: 0, wrong: Wrong::Zero }, 0.0)) else {
-        return Ok(None);
-    };
+    let is_known = known.is_some();
+    let mut instants = Instants::of(motions, design, known);
+    let nothing = (Number { joint: 0, wrong: Wrong::Zero }, 0.0);
+    let Some(plain) = instants.left(model, fit, nothing) else { return Ok(None) };
     // Sum of the joints' logarithms, and whether no joint is left with more.
-    let gain = |number: Number, by: f64| -> (f64, bool) {
-        let Some(left) = instants.left(model, fit, (number, by)) else { return (0.0, false) };
+    let beside_plain = |left: &[f64]| -> (f64, bool) {
         let ratios: Vec<f64> =
             left.iter().zip(&plain).filter(|(_, p)| **p > 0.0).map(|(l, p)| l / p).collect();
         let sum: f64 = ratios.iter().map(|r| r.max(f64::MIN_POSITIVE).ln()).sum();
         (sum, ratios.iter().all(|r| *r < ERROR_WORSENS))
+    };
+    // What a robot carries, and friction that changed, are other parameters: an error must leave less than all of them together.
+    let free = if is_known {
+        let known = std::mem::replace(&mut instants.known, design.known.clone());
+        let free = instants.left(model, fit, nothing).map_or(0.0, |left| beside_plain(&left).0);
+        instants.known = known;
+        free
+    } else {
+        0.0
+    };
+    if instants.are_few() {
+        return Ok(None);
+    }
+    let gain = |number: Number, by: f64| -> (f64, bool) {
+        instants.left(model, fit, (number, by)).map_or((0.0, false), |left| beside_plain(&left))
     };
     let kinds = model.robot().joint_kinds();
     let number = |wrong: Wrong| move |joint: usize| Number { joint, wrong };
@@ -123,7 +134,7 @@ pub(super) fn large_error(
     let Some(&(sum, by, number)) = tried.first() else { return Ok(None) };
     let no_joint_worse = gain(number, by).1;
     let by = if number.wrong == Wrong::Zero && by > 0.5 * TAU { by - TAU } else { by };
-    let certain = sum < leaves.ln() && no_joint_worse && by.abs() > LEAST_SCANNED;
+    let certain = sum < ERROR_LEAVES.ln().min(free) && no_joint_worse && by.abs() > LEAST_SCANNED;
     let left = sum / plain.len().max(1) as f64;
     let rivals = tried.iter().skip(1).filter(|other| other.0 - sum < AS_LITTLE).map(|other| other.2);
     Ok(certain.then(|| LargeError { number, by, left, rivals: rivals.collect() }))

@@ -54,9 +54,6 @@ pub(in crate::diagnosis) const SCANNED_INSTANTS: usize = 240;
 /// times its squares. Judgement, as for rates: a smaller error is a law among others, and no other physics is imitated so well.
 pub(in crate::diagnosis) const ERROR_LEAVES: f64 = 0.5;
 pub(in crate::diagnosis) const ERROR_WORSENS: f64 = 1.25;
-/// The same where the parameters are known: there what a robot carries, or friction that changed, is left as well, of which one
-/// number of a joint may take half. Judgement.
-pub(in crate::diagnosis) const ERROR_LEAVES_OF_KNOWN: f64 = 0.1;
 /// Sums of the joints' logarithms of squares that differ by less leave as little. Statistics: some sixty independent rows tell a
 /// tenth of the squares of one joint.
 pub(in crate::diagnosis) const AS_LITTLE: f64 = 0.1;
