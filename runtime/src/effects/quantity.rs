@@ -72,6 +72,16 @@ impl Quantities {
         })
     }
 
+    /// What is added, with its sign before it: `+ 0.31 rad`, `- 0.31 rad`.
+    pub fn added(&self, name: &str) -> String {
+        match self.get(name) {
+            Some(p) if p.value < 0.0 && !self.by_name => {
+                format!("- {}{}", short(-p.value), unit_behind(&p.unit))
+            }
+            _ => format!("+ {}", self.value(name)),
+        }
+    }
+
     /// Value, standard deviation where it is known and smaller than the value, and unit: `0.31 ± 0.02 N.m`; empty
     /// where there is none.
     pub fn text(&self, name: &str) -> String {

@@ -63,7 +63,7 @@ fn first_motion(page: &mut Page, diagnosis: &Diagnosis, extras: &Extras, run: &C
             &Plot::new(
                 format!("{}: recorded less simulated torque, first motion", extras.joint(j)),
                 Plot::TIME,
-                "residual, N.m or N",
+                format!("residual, {}", extras.robot.joint_kinds()[j].torque_unit()),
             )
             .with(
                 "without the findings",

@@ -57,9 +57,9 @@ impl Effect for GeometryError {
 
     fn formula(&self, q: &Quantities) -> String {
         if q.has("error_d") {
-            format!("d + {}", q.value("error_d"))
+            format!("d {}", q.added("error_d"))
         } else {
-            format!("r + {}", q.value("error_r"))
+            format!("r {}", q.added("error_r"))
         }
     }
 }

@@ -53,7 +53,7 @@ impl Effect for PositionOffset {
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        format!("q + {}", q.value("offset"))
+        format!("q {}", q.added("offset"))
     }
 }
 

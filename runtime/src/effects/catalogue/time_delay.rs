@@ -53,7 +53,7 @@ impl Effect for TimeDelay {
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        format!("torque(t) was recorded at t + {}", q.value("delay"))
+        format!("torque(t) was recorded at t {}", q.added("delay"))
     }
 }
 
