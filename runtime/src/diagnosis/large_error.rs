@@ -5,7 +5,6 @@
 //! parameters at every value, so that each is one fit. A scan needs neither all instants nor the mean of a column over a window:
 //! over the width of a window a column bends far less than it differs from that of another angle.
 
-use super::error::SingularDesign;
 use super::motions::Motions;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
@@ -16,8 +15,10 @@ use super::rules::{
 use crate::effects::{EffectKind, Place};
 use crate::model::{JointKind, Model, States};
 use crate::parallel;
+use crate::statistics::golden;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 /// Which number of a joint is wrong.
@@ -75,27 +76,22 @@ impl Wrong {
 
 /// The number of one joint with which the standard model leaves least, where that is less than half of what it leaves of any joint
 /// without, and of no joint more. Beside a baseline, and where a reference knows them, the parameters are known; then it must leave
-/// less than other parameters do.
-///
-/// # Errors
-/// [`SingularDesign`] where the baseline has no fit.
+/// less than other parameters do. `before` is the fit to a baseline.
 pub(super) fn large_error(
     model: &dyn Model,
     motions: &Motions,
     (design, fit): (&Design, &Fit),
-) -> Result<Option<LargeError>, SingularDesign> {
-    let is_old: Vec<bool> = design.segments.iter().map(|s| !s.is_target).collect();
+    before: Option<&Fit>,
+) -> Option<LargeError> {
     let reference = motions.settings().reference.as_ref();
-    let known = if is_old.contains(&true) {
-        let before = Fit::new(design, &fit.sigma, is_old)?;
-        Some(before.chi.iter().take(design.parameters).copied().collect())
-    } else {
-        reference.map(|reference| reference.chi().to_vec())
+    let known = match before {
+        Some(before) => Some(before.chi.iter().take(design.parameters).copied().collect()),
+        None => reference.map(|reference| reference.chi().to_vec()),
     };
     let is_known = known.is_some();
     let mut instants = Instants::of(motions, design, known);
     let nothing = (Number { joint: 0, wrong: Wrong::Zero }, 0.0);
-    let Some(plain) = instants.left(model, fit, nothing) else { return Ok(None) };
+    let plain = instants.left(model, fit, nothing)?;
     // Sum of the joints' logarithms, and whether no joint is left with more.
     let beside_plain = |left: &[f64]| -> (f64, bool) {
         let ratios: Vec<f64> =
@@ -113,7 +109,7 @@ pub(super) fn large_error(
         0.0
     };
     if instants.are_few() {
-        return Ok(None);
+        return None;
     }
     let gain = |number: Number, by: f64| -> (f64, bool) {
         instants.left(model, fit, (number, by)).map_or((0.0, false), |left| beside_plain(&left))
@@ -127,27 +123,18 @@ pub(super) fn large_error(
         let (values, step) = numbers[k].wrong.values();
         let each = values.into_iter().map(|by| (gain(numbers[k], by).0, by));
         let near = each.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, by)| by);
-        let by = golden(near - step, near + step, |by| gain(numbers[k], by).0);
+        let sum = |by: f64| Ok::<f64, Infallible>(gain(numbers[k], by).0);
+        let Ok(by) = golden::least([near - step, near + step], ERROR_REFINED, sum);
         (gain(numbers[k], by).0, by, numbers[k])
     });
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(&(sum, by, number)) = tried.first() else { return Ok(None) };
+    let &(sum, by, number) = tried.first()?;
     let no_joint_worse = gain(number, by).1;
     let by = if number.wrong == Wrong::Zero && by > 0.5 * TAU { by - TAU } else { by };
     let certain = sum < ERROR_LEAVES.ln().min(free) && no_joint_worse && by.abs() > LEAST_SCANNED;
     let left = sum / plain.len().max(1) as f64;
     let rivals = tried.iter().skip(1).filter(|other| other.0 - sum < AS_LITTLE).map(|other| other.2);
-    Ok(certain.then(|| LargeError { number, by, left, rivals: rivals.collect() }))
-}
-
-/// Where a function of one number is least between two values, by golden sections.
-fn golden(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
-    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-    for _ in 0..ERROR_REFINED {
-        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-        if value(a) < value(b) { high = b } else { low = a }
-    }
-    0.5 * (low + high)
+    certain.then(|| LargeError { number, by, left, rivals: rivals.collect() })
 }
 
 /// Some instants of the recording that is diagnosed.

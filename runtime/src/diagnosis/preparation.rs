@@ -70,8 +70,12 @@ impl Prepared {
         if !fitted.moving.judged.contains(&true) || is_explained(declared) {
             return Self::judged(model, fitted);
         }
-        let large_error = large_error(model, &fitted.motions, declared)?;
-        let rate = factor(model, &fitted.motions, declared)?;
+        let is_old: Vec<bool> = fitted.aligned.segments.iter().map(|s| !s.is_target).collect();
+        let has_baseline = is_old.contains(&true);
+        let before =
+            has_baseline.then(|| Fit::new(&fitted.aligned, &fitted.fit.sigma, is_old)).transpose()?;
+        let large_error = large_error(model, &fitted.motions, declared, before.as_ref());
+        let rate = factor(model, &fitted.motions, &fitted.fit, before.as_ref())?;
         // Each is the other one's rival.
         if let Some((factor, left)) = rate
             && large_error.as_ref().is_none_or(|other| left < other.left)

@@ -21,6 +21,7 @@ use super::rules::{
 use crate::effects::{EffectKind, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
+use crate::statistics::golden;
 
 /// The law of an error that is small.
 pub(super) const LAW: (EffectKind, Place) = (EffectKind::WrongSampleRate, Place::Variant(0));
@@ -98,27 +99,25 @@ pub(super) fn is_explained((design, fit): (&Design, &Fit)) -> bool {
 
 /// The factor by which the robot moved faster than the times say, where one other than 1 leaves less than half of what
 /// the standard model leaves, on no joint more, with the logarithm of the part that it leaves in the mean over joints. Beside a
-/// baseline that model is known.
+/// baseline that model is known: that of the fit to what was `before`.
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit.
 pub(super) fn factor(
     model: &dyn Model,
     motions: &Motions,
-    declared: (&Design, &Fit),
+    declared: &Fit,
+    before: Option<&Fit>,
 ) -> Result<Option<(f64, f64)>, SingularDesign> {
-    let (design, fit) = declared;
-    let is_old: Vec<bool> = design.segments.iter().map(|s| !s.is_target).collect();
-    let before = if is_old.contains(&true) { Some(Fit::new(design, &fit.sigma, is_old)?) } else { None };
     let targets = motions.of_target();
     let spread = |logarithm: f64| -> Result<Vec<f64>, SingularDesign> {
         let rows = targets.faster(logarithm.exp()).aligned(model);
-        match &before {
+        match before {
             Some(before) => Ok(spread_beside(before, &rows)),
-            None => Ok(Fit::weighted(&rows, &fit.sigma)?.sigma),
+            None => Ok(Fit::weighted(&rows, &declared.sigma)?.sigma),
         }
     };
-    let at_declared = if before.is_some() { spread(0.0)? } else { fit.sigma.clone() };
+    let at_declared = if before.is_some() { spread(0.0)? } else { declared.sigma.clone() };
     // Squares of each joint relative to those at the declared rate.
     let left = |logarithm: f64| -> Result<Vec<f64>, SingularDesign> {
         let both = spread(logarithm)?.into_iter().zip(&at_declared);
@@ -136,13 +135,8 @@ pub(super) fn factor(
         return Ok(None);
     }
     // Golden sections around the best of them.
-    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-    let (mut low, mut high) = (best.0 - RATE_SPAN, best.0 + RATE_SPAN);
-    for _ in 0..RATE_REFINED {
-        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-        if mean(&left(a)?) < mean(&left(b)?) { high = b } else { low = a }
-    }
-    let found = 0.5 * (low + high);
+    let around = [best.0 - RATE_SPAN, best.0 + RATE_SPAN];
+    let found = golden::least(around, RATE_REFINED, |logarithm| Ok(mean(&left(logarithm)?)))?;
     let squares = left(found)?;
     let certain = found.abs() > RATE_LEAST
         && mean(&squares) < RATE_LEAVES.ln()

@@ -151,6 +151,21 @@ impl Form {
         }
     }
 
+    /// What is wrong with the model's own numbers or with the recording's.
+    pub fn sensitivity(self) -> Option<&'static dyn Sensitivity> {
+        match self {
+            Self::Sensitivity(law) => Some(law),
+            Self::Joint(_)
+            | Self::Heard(_)
+            | Self::Compliance(_)
+            | Self::Body(_)
+            | Self::Coupled
+            | Self::Window
+            | Self::Free
+            | Self::User => None,
+        }
+    }
+
     /// The amplitude, where the law leaves none free.
     pub fn fixed_amplitude(self) -> Option<f64> {
         match self {
@@ -174,17 +189,7 @@ impl Form {
     /// Whether its shape is its amplitude once more: an error that is not small bends its own column, so that the
     /// derivative is taken along the way to it.
     pub fn shape_is_amplitude(self) -> bool {
-        match self {
-            Self::Sensitivity(_) => true,
-            Self::Joint(_)
-            | Self::Heard(_)
-            | Self::Compliance(_)
-            | Self::Body(_)
-            | Self::Coupled
-            | Self::Window
-            | Self::Free
-            | Self::User => false,
-        }
+        self.sensitivity().is_some()
     }
 
     /// Whether it is a curve of many numbers, of which a motion may determine few.
@@ -218,21 +223,6 @@ impl Form {
             | Self::Window
             | Self::Free
             | Self::User => false,
-        }
-    }
-
-    /// The largest error along the way to which its columns are taken; 0 where its shape is not its amplitude.
-    pub fn largest_error(self) -> f64 {
-        match self {
-            Self::Sensitivity(law) => law.largest_error(),
-            Self::Joint(_)
-            | Self::Heard(_)
-            | Self::Compliance(_)
-            | Self::Body(_)
-            | Self::Coupled
-            | Self::Window
-            | Self::Free
-            | Self::User => 0.0,
         }
     }
 

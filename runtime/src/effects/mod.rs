@@ -56,8 +56,8 @@ pub use place::Place;
 pub use quantity::{Parameter, Quantities, unit_behind};
 pub use rigid_body::{BODY_SYMBOLS, BodyEstimate, BodyOnLink, body_columns, body_detail};
 pub use sensitivity::{
-    Corrected, Direction, Distortion, Seeds, Sensitivity, Variant, corrected, derivable, derivative,
-    numbers_at,
+    Corrected, Direction, Distortion, Seeds, Sensitivity, Variant, corrected, corrected_at, derivable,
+    derivative, numbers_at,
 };
 pub use shape::{Move, ShapeSearch, Step};
 #[cfg(feature = "diagnosis")]

@@ -137,6 +137,28 @@ pub fn corrected(
     Corrected { robot, beyond_encoder: q.iter().map(|q| q.value).collect() }
 }
 
+/// The same of the numbers at a place ([`numbers_at`]); `None` where there are none, or what is wrong is in the recording.
+pub fn corrected_at(
+    robot: &crate::model::Robot,
+    effect: &dyn Sensitivity,
+    v: usize,
+    errors: &[f64],
+) -> Option<Corrected> {
+    if effect.in_recording(errors).is_some() {
+        return None;
+    }
+    let errors: Vec<_> = numbers_at(effect, robot, v).into_iter().zip(errors.iter().copied()).collect();
+    (!errors.is_empty()).then(|| corrected(robot, effect, &errors))
+}
+
+impl Corrected {
+    /// Where joints are that encoders see at positions `q[j][t]`.
+    pub fn real_positions(&self, q: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let joints = q.iter().zip(&self.beyond_encoder);
+        joints.map(|(q, beyond)| q.iter().map(|q| q + beyond).collect()).collect()
+    }
+}
+
 /// A model whose derivatives have no entry left out: entries that vanish only because gravity is vertical count.
 ///
 /// # Errors
@@ -296,10 +318,7 @@ fn secant(
     let written = crate::model::Robot { gravity, ..robot.clone() };
     let there = corrected(&written, direction.effect, &[(variant, error)]);
     let [q, dq, ddq, _] = states;
-    let mut q_there = q.to_vec();
-    for (q, beyond) in q_there.iter_mut().zip(&there.beyond_encoder) {
-        q.iter_mut().for_each(|q| *q += beyond);
-    }
+    let q_there = there.real_positions(q);
     let torques_of = |robot, q: &[Vec<f64>]| -> Option<Vec<Vec<f64>>> {
         let model = RecursiveModel::new(robot).ok()?;
         Some(torques(&model, chi, StateSlices::new(q, dq, ddq).states()))

@@ -7,7 +7,7 @@ use super::form::Form;
 use super::free_law::{Axis, FreeLaw};
 use super::joint_law::Scale;
 use super::place::Place;
-use super::sensitivity::{Corrected, Distortion, corrected, numbers_at};
+use super::sensitivity::{Corrected, Distortion, corrected_at};
 use super::variable::Variable;
 use crate::model::{JointKind, Robot};
 use serde::{Deserialize, Serialize};
@@ -73,29 +73,12 @@ impl EffectTerm {
 
     /// What is wrong with a recording, where the term is that and nothing of the robot.
     pub fn distortion(&self) -> Option<Distortion> {
-        match self.effect.form() {
-            Form::Sensitivity(law) => law.in_recording(&self.amplitude),
-            Form::Joint(_)
-            | Form::Heard(_)
-            | Form::Compliance(_)
-            | Form::Body(_)
-            | Form::Coupled
-            | Form::Window
-            | Form::Free
-            | Form::User => None,
-        }
+        self.effect.form().sensitivity()?.in_recording(&self.amplitude)
     }
 
     /// The robot with the errors of the term in it, where it is one of the robot's own numbers.
     pub fn corrected(&self, robot: &Robot) -> Option<Corrected> {
-        let (Form::Sensitivity(law), None, Some(v)) =
-            (self.effect.form(), self.distortion(), self.place.variant())
-        else {
-            return None;
-        };
-        let numbers = numbers_at(law, robot, v);
-        let errors: Vec<_> = numbers.into_iter().zip(self.amplitude.iter().copied()).collect();
-        (!errors.is_empty()).then(|| corrected(robot, law, &errors))
+        corrected_at(robot, self.effect.form().sensitivity()?, self.place.variant()?, &self.amplitude)
     }
 
     /// The joint and the transmission of a compliant joint; `None` for every other effect.

@@ -122,9 +122,10 @@ impl<'m> World<'m> {
     }
 
     /// Puts an effect in. Bodies become part of the parameters, laws of a joint torques; transmissions become elastic
-    /// joints, errors of the table another table, encoders see joints elsewhere, and drives record other torques than they give. What a plant does not have (skews and
-    /// rates of a recording, the inertia of a coupled rotor, contacts, which belong to the recording they were seen in, laws of
-    /// a user over accelerations) or what does not fit the robot is left out and named.
+    /// joints, errors of the table another table, encoders see joints elsewhere, and drives record other torques than they
+    /// give. What a plant does not have (skews and rates of a recording, the inertia of a coupled rotor, contacts, which
+    /// belong to the recording they were seen in, laws of a user over accelerations) or what does not fit the robot is left
+    /// out and named.
     pub fn put(&mut self, term: &EffectTerm) {
         let n = self.nominal.robot().joints();
         let is_in = match term.effect.form() {

@@ -7,9 +7,8 @@
 
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::{LARGE_ERROR, NEAR_ERROR};
-use crate::effects::{EffectKind, Form, Place, corrected, numbers_at};
+use crate::effects::{EffectKind, Place, corrected_at};
 use crate::model::RecursiveModel;
 use std::sync::Arc;
 
@@ -68,24 +67,11 @@ impl Context<'_> {
         (effect, place): (EffectKind, Place),
         errors: &[f64],
     ) -> Option<Vec<Vec<f64>>> {
-        let (Form::Sensitivity(law), Some(v)) = (effect.form(), place.variant()) else { return None };
-        if law.in_recording(errors).is_some() {
-            return None;
-        }
-        let robot = self.model.robot();
-        let errors: Vec<_> = numbers_at(law, robot, v).into_iter().zip(errors.iter().copied()).collect();
-        let there = corrected(robot, law, &errors);
-        let model = RecursiveModel::new(there.robot).ok()?;
-        Some(design.columns_of(&model, &self.seen_beyond(&there.beyond_encoder)))
-    }
-
-    /// The signals with each joint so much beyond where its encoder sees it.
-    fn seen_beyond(&self, beyond: &[f64]) -> Vec<Signals> {
+        let there = corrected_at(self.model.robot(), effect.form().sensitivity()?, place.variant()?, errors)?;
         let mut signals = self.signals.to_vec();
-        for (q, by) in signals.iter_mut().flat_map(|s| s.q.iter_mut().zip(beyond)) {
-            q.iter_mut().for_each(|x| *x += by);
-        }
-        signals
+        signals.iter_mut().for_each(|s| s.q = there.real_positions(&s.q));
+        let model = RecursiveModel::new(there.robot).ok()?;
+        Some(design.columns_of(&model, &signals))
     }
 }
 

@@ -144,8 +144,8 @@ impl<'a> ExtendedModel<'a> {
     fn follow_errors(&mut self) -> bool {
         let mut settled = true;
         for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
-            if term.effect.form().shape_is_amplitude() {
-                let most = term.effect.form().largest_error();
+            if let Some(law) = term.effect.form().sensitivity() {
+                let most = law.largest_error();
                 let error = |c: usize| self.slow.fit.chi[c].clamp(-most, most);
                 let shape: Vec<f64> = columns.clone().map(error).collect();
                 let stays = |(new, old): (&f64, &f64)| (new - old).abs() <= SETTLED_ERROR * new.abs();

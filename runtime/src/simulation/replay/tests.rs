@@ -77,11 +77,8 @@ fn errors_of_the_table_and_of_encoders_are_in_the_robot_that_follows() {
     ] {
         assert_eq!(left_out(&model, &chi, std::slice::from_ref(&term)), Vec::<String>::new());
         let there = term.corrected(model.robot()).expect("an error of the robot");
+        let beyond = Motion { q: there.real_positions(&motion.q), ..motion.clone() };
         let table = RecursiveModel::new(there.robot).expect("a robot");
-        let mut beyond = motion.clone();
-        for (q, by) in beyond.q.iter_mut().zip(&there.beyond_encoder) {
-            q.iter_mut().for_each(|q| *q += by);
-        }
         let followed = follow(&model, &motion, &chi, &chi, &[term]).expect("it can be simulated");
         let (mut left, mut change) = (0.0, 0.0);
         for t in (200..900).filter(|&t| motion.dq[1][t].abs() > 0.08) {
