@@ -23,6 +23,7 @@ pub mod signal;
 #[cfg(feature = "simulation")]
 pub mod simulation;
 
+mod far_off;
 mod parallel;
 mod statistics;
 #[cfg(test)]

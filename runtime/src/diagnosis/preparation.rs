@@ -34,7 +34,7 @@ pub(super) struct Prepared {
     pub moving: Moving,
     /// Times that were wrong by a factor, and were corrected before anything else.
     pub rate: Option<WrongRate>,
-    /// A number of one joint that is far off.
+    /// Numbers of joints that are far off.
     pub large_error: Option<LargeError>,
 }
 

@@ -20,6 +20,7 @@ use super::search::report::SearchReport;
 use super::search::state::Search;
 use super::settings::{Progress, Settings};
 use crate::effects::{EffectKind, Place};
+use crate::far_off::Number;
 use crate::model::Model;
 use crate::recording::Trajectory;
 use std::sync::Arc;
@@ -132,8 +133,10 @@ impl<'a> Course<'a> {
         let mut begun = self.begin(pushes.set_aside().as_ref(), settings)?;
         // Where something is said against what was found, the search goes on from here.
         let without_effects = self.known.is_none().then(|| begun.search.model.clone());
-        let may_be =
-            |error: &&LargeError| self.known.is_none() && !settings.excluded.contains(&error.number.law());
+        let may_be = |error: &&LargeError| {
+            let is_excluded = |(number, ..): &(Number, _, _)| settings.excluded.contains(&number.law());
+            self.known.is_none() && !error.numbers.iter().any(is_excluded)
+        };
         if let Some(error) = self.prepared.large_error.as_ref().filter(may_be) {
             begun.search.take_large_error(error)?;
         }

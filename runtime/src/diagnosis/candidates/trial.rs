@@ -78,7 +78,21 @@ pub(super) fn gathered(
     out
 }
 
-/// The same on all rows of the design, zero where a column does not act.
+/// The columns of an error of the robot's numbers that is far off on all rows of a design: the derivatives where it is.
+pub(in crate::diagnosis) fn columns_there(
+    context: &Context<'_>,
+    design: &Design,
+    (effect, place): (EffectKind, Place),
+    error: &[f64],
+    change: bool,
+) -> Option<Vec<Vec<f64>>> {
+    let (law, v) = (effect.form().sensitivity()?, place.variant()?);
+    let silent = |k: usize| change && !context.signals[k].is_target;
+    let columns = gathered(context, design, silent, |k| context.derivatives_there(k, law, v, error));
+    Some(columns.iter().map(|c| dense(design, c)).collect())
+}
+
+/// The columns of an effect on all rows of the design, zero where a column does not act.
 pub(in crate::diagnosis) fn dense_columns(
     context: &Context<'_>,
     design: &Design,

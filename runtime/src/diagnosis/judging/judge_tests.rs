@@ -77,9 +77,14 @@ fn beside_a_curve_other_laws_are_not_judged_where_it_says_nothing() {
     design.y.iter_mut().zip(&other).for_each(|(y, c)| *y += 0.1 * c);
     let mut regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
     let mut judged_beside = |curve_on| {
-        let besides =
-            Besides { known: None, gains: Vec::new(), deviation: 1.0, bent: Vec::new(), chi: Vec::new() };
-        let term = TermColumns { columns: columns.clone(), fixed: None, is_curve: false, curve_on };
+        let besides = Besides { known: None, gains: Vec::new(), deviation: 1.0, bent: None };
+        let term = TermColumns {
+            columns: columns.clone(),
+            fixed: None,
+            derived_at: Vec::new(),
+            is_curve: false,
+            curve_on,
+        };
         regression.set_terms(vec![term], besides).expect("a small problem is regular");
         regression.hold_out().expect("a small problem is regular");
         let candidate = candidate(&regression.design, EffectKind::Spring, vec![other.clone()]);

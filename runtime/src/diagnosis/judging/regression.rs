@@ -39,7 +39,7 @@ pub(in crate::diagnosis) struct Regression {
     /// Columns of the base parameters of the robot as it is in its table, where those of the design are others.
     plain: Option<Vec<Vec<f64>>>,
     /// The last of these others.
-    pub bent: Vec<Bent>,
+    pub bent: Option<Bent>,
     /// Columns that are always there: base parameters and nuisances.
     fixed_columns: usize,
     /// What is known of these beforehand.
@@ -60,16 +60,16 @@ pub(in crate::diagnosis) struct Besides {
     /// Columns that are zero within a standard deviation.
     pub gains: Vec<Vec<f64>>,
     pub deviation: f64,
-    /// Of each term that is a large error of the robot's numbers, the columns of the base parameters with it.
-    pub bent: Vec<Bent>,
-    /// The base parameters that the columns of terms are made with.
-    pub chi: Vec<f64>,
+    /// The columns of the base parameters with the terms that are large errors of numbers, where there are any.
+    pub bent: Option<Bent>,
 }
 
 /// The columns of a term on the rows, and its amplitude where the law leaves none free.
 pub(in crate::diagnosis) struct TermColumns {
     pub columns: Vec<Vec<f64>>,
     pub fixed: Option<f64>,
+    /// Amplitudes at which the columns are derivatives beside bent columns of the base parameters; nothing for other columns.
+    pub derived_at: Vec<f64>,
     /// Whether it is a curve of many numbers.
     pub is_curve: bool,
     /// The joint of a curve that says nothing of values that no motion has passed.
@@ -104,7 +104,7 @@ impl Regression {
             measured,
             torque,
             plain: None,
-            bent: Vec::new(),
+            bent: None,
             fixed_columns,
             known,
             curves,
@@ -137,6 +137,9 @@ impl Regression {
         besides.gains.into_iter().for_each(|column| self.design.push(column));
         for term in terms {
             let start = self.design.columns.len();
+            for (column, at) in term.columns.iter().zip(&term.derived_at) {
+                self.design.y.iter_mut().zip(column).for_each(|(y, c)| *y += at * c);
+            }
             for column in term.columns {
                 match term.fixed {
                     Some(a) => self.design.y.iter_mut().zip(&column).for_each(|(y, c)| *y -= a * c),
@@ -156,25 +159,22 @@ impl Regression {
         Ok(())
     }
 
-    /// Puts the columns of the base parameters beside large errors into the design, and what the columns of these have of the
-    /// parameters that they are made with into y; says whether any column became another one.
+    /// Puts the columns of the base parameters beside large errors into the design, of known ones what these change of their
+    /// torques into y; says whether any column became another one.
     fn bend(&mut self, besides: &Besides) -> bool {
         let before = self.plain.take();
         let was_bent = before.is_some();
         for (column, plain) in self.design.columns.iter_mut().zip(before.into_iter().flatten()) {
             *column = plain;
         }
-        if besides.bent.is_empty() {
-            return was_bent;
-        }
+        let Some(bent) = &besides.bent else { return was_bent };
         let plain = self.design.columns[..self.design.parameters].to_vec();
-        let is_known = |i: usize| self.design.known.iter().any(|(k, _)| *k == i);
-        for (i, &chi) in besides.chi.iter().enumerate().filter(|(i, _)| !is_known(*i)) {
-            let rows = self.design.columns[i].iter_mut().zip(&mut self.design.y).zip(&plain[i]).enumerate();
-            for (r, ((column, y), plain)) in rows {
-                let more: f64 = besides.bent.iter().map(|bent| bent.columns[i][r] - plain).sum();
-                *column += more;
-                *y += more * chi;
+        for (i, column) in bent.columns.iter().enumerate() {
+            match self.design.known.iter().find(|(k, _)| *k == i) {
+                Some((_, value)) => {
+                    self.design.y.iter_mut().zip(column).for_each(|(y, more)| *y -= value * more);
+                }
+                None => self.design.columns[i].clone_from(column),
             }
         }
         self.plain = Some(plain);

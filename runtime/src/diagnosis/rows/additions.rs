@@ -1,6 +1,7 @@
 //! What a robot has beyond its base parameters and other laws feel: bodies that its joints carry, and torques of its drives.
 
-use crate::effects::{EffectKind, EffectTerm, Form, Place, TermScale};
+use crate::diagnosis::rules::LARGE_ERROR;
+use crate::effects::{Corrected, EffectKind, EffectTerm, Form, Place, TermScale, numbers_at};
 use crate::model::Robot;
 
 /// Bodies and laws that are known of a robot beside its parameters.
@@ -10,6 +11,9 @@ pub(in crate::diagnosis) struct Additions {
     pub bodies: Vec<Carried>,
     /// Laws that follow the torque of a drive, or hear it, feel them.
     pub laws: Vec<DriveLaw>,
+    /// Numbers of the robot that are far off, in the order in which they were found: the torque of each is what it changes of
+    /// the robot with those before it.
+    pub errors: Vec<NumberError>,
 }
 
 impl Additions {
@@ -44,11 +48,12 @@ impl Additions {
                 let (shape, amplitude) = (shape.to_vec(), amplitude.to_vec());
                 self.laws.push(DriveLaw { effect, place, shape, scale, amplitude, in_baseline });
             }
-            // What is heard is no torque of the drive that it is heard on; a transmission rings faster than what is heard,
-            // and an error of the geometry is one of all joints.
+            Form::Sensitivity(_) => {
+                self.errors.extend(NumberError::of_robot(robot, (effect, place), shape, in_baseline));
+            }
+            // What is heard is no torque of the drive that it is heard on; a transmission rings faster than what is heard.
             Form::Joint(_)
             | Form::Heard(_)
-            | Form::Sensitivity(_)
             | Form::Compliance(_)
             | Form::Coupled
             | Form::Window
@@ -79,4 +84,42 @@ pub(in crate::diagnosis) struct DriveLaw {
     pub amplitude: Vec<f64>,
     /// Whether the robot had it in the baseline too.
     pub in_baseline: bool,
+}
+
+/// Numbers of the robot that are far off.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::diagnosis) struct NumberError {
+    pub effect: EffectKind,
+    pub place: Place,
+    /// How far each number of the effect is off, in its unit.
+    pub errors: Vec<f64>,
+    /// Whether it was so in the baseline too.
+    pub in_baseline: bool,
+}
+
+impl NumberError {
+    /// Of a law with this shape; `None` where it is none of the robot's numbers, or a small one.
+    pub fn of_robot(
+        robot: &Robot,
+        (effect, place): (EffectKind, Place),
+        shape: &[f64],
+        in_baseline: bool,
+    ) -> Option<Self> {
+        let law = effect.form().sensitivity().filter(|law| law.in_recording(shape).is_none())?;
+        let numbers = numbers_at(law, robot, place.variant()?).len();
+        let errors = shape.get(..numbers).unwrap_or(shape).to_vec();
+        Some(Self { effect, place, errors, in_baseline }).filter(Self::is_large)
+    }
+
+    /// Whether any of the numbers is so far off that the derivatives where it is are others.
+    pub fn is_large(&self) -> bool {
+        self.errors.iter().any(|e| e.abs() >= LARGE_ERROR)
+    }
+
+    /// The robot with these numbers as they are, too.
+    pub fn put_in(&self, robot: Corrected) -> Corrected {
+        let law = self.effect.form().sensitivity().zip(self.place.variant());
+        let there = law.and_then(|(law, v)| robot.clone().then(law, v, &self.errors));
+        there.unwrap_or(robot)
+    }
 }

@@ -1,5 +1,6 @@
 //! The columns of effects in the motions, by the form of each.
 
+use crate::diagnosis::rows::additions::NumberError;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::free::free_columns;
 use crate::diagnosis::rows::links::Links;
@@ -7,9 +8,11 @@ use crate::diagnosis::rows::series::Series;
 use crate::diagnosis::rows::signals::ModelTorques;
 use crate::diagnosis::rows::user::user_columns;
 use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
-    TermScale, Transmission, body_columns, derivative, numbers_at,
+    At, Corrected, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale,
+    Sensitivity, TermScale, Transmission, body_columns, derivable, derivative, numbers_at,
 };
+use crate::model::RecursiveModel;
+use std::borrow::Cow;
 
 impl Context<'_> {
     /// The columns of an effect in one motion, one per amplitude; none where the effect cannot be at the place.
@@ -22,7 +25,9 @@ impl Context<'_> {
             Form::Heard(law) => {
                 place.hears().map(|[on, j]| self.of_joint(signal, law, ([on, j], &self.scales[j]), shape))
             }
-            Form::Sensitivity(law) => place.variant().map(|v| self.derivatives(signal, law, v, shape)),
+            Form::Sensitivity(law) => {
+                place.variant().map(|v| self.derivatives(signal, (effect, law), v, shape))
+            }
             Form::Compliance(_) => place.joint().map(|j| vec![self.compliant(signal, j, shape)]),
             Form::Body(_) => place.link().map(|frame| self.body(signal, frame)),
             Form::Coupled => place.pair().map(|joints| self.coupled(signal, joints, shape)),
@@ -69,8 +74,8 @@ impl Context<'_> {
     /// What gravity asks for in a motion, `[j][t]`.
     fn gravity(&self, signal: usize) -> &[Vec<f64>] {
         self.made.gravity[signal].get_or_init(|| {
-            let at_rest = self.signals[signal].at_rest();
-            ModelTorques::new(self.model, &self.chi_in(signal), &at_rest).link
+            let (model, signals) = self.as_it_is(signal);
+            ModelTorques::new(model, &self.chi_in(signal), &signals.at_rest()).link
         })
     }
 
@@ -114,29 +119,83 @@ impl Context<'_> {
         columns.into_iter().map(|c| vec![(on, c)]).collect()
     }
 
-    /// Derivatives with respect to the variant `v`, or to all together, on the way to the error `at`.
-    fn derivatives(&self, signal: usize, law: &dyn Sensitivity, v: usize, at: &[f64]) -> Vec<Series> {
+    /// Derivatives with respect to the variant `v`, or to all together, on the way to the error `at` from the robot with the
+    /// numbers that were found to be far off before it.
+    fn derivatives(
+        &self,
+        signal: usize,
+        (effect, law): (EffectKind, &dyn Sensitivity),
+        v: usize,
+        at: &[f64],
+    ) -> Vec<Series> {
+        let errors = &self.additions().errors;
+        let own = errors.iter().position(|e| (e.effect, e.place) == (effect, Place::Variant(v)));
+        let before = self.with_errors(&errors[..own.unwrap_or(errors.len())], signal);
+        self.derivatives_from((signal, before), law, v, at)
+    }
+
+    /// The columns of an error of the robot's numbers where these are far off: the derivatives of the robot with all of them.
+    pub fn derivatives_there(
+        &self,
+        signal: usize,
+        law: &dyn Sensitivity,
+        v: usize,
+        at: &[f64],
+    ) -> Vec<Series> {
+        let there = self.with_errors(&self.additions().errors, signal);
+        let mut columns = self.derivatives_from((signal, there), law, v, &[]);
+        if !at.is_empty() {
+            columns.extend(self.uncovered(signal, law));
+        }
+        columns
+    }
+
+    fn derivatives_from(
+        &self,
+        (signal, from): (usize, Option<(Corrected, RecursiveModel)>),
+        law: &dyn Sensitivity,
+        v: usize,
+        at: &[f64],
+    ) -> Vec<Series> {
         let robot = self.model.robot();
-        let wanted = numbers_at(law, robot, v);
         let (s, chi) = (&self.signals[signal], self.chi_in(signal));
+        let (engine, gravity, q) = match &from {
+            Some((there, engine)) => (engine, there.robot.gravity, Cow::Owned(there.real_positions(&s.q))),
+            None => (&*self.engine, robot.gravity, Cow::Borrowed(&s.q)),
+        };
+        let wanted = numbers_at(law, robot, v);
         let mut columns: Vec<Series> = (0..wanted.len())
             .map(|which| {
                 let mut out = vec![Vec::new(); s.q.len()];
                 derivative(
-                    &self.engine,
-                    robot.gravity,
+                    engine,
+                    gravity,
                     &chi,
                     &Direction { effect: law, variants: &wanted, which, at },
-                    [&s.q, &s.dq, &s.ddq, &s.jerk],
+                    [&*q, &s.dq, &s.ddq, &s.jerk],
                     &mut out,
                 );
                 out.into_iter().enumerate().collect()
             })
             .collect();
         if !at.is_empty() {
-            columns.extend(law.uncovered(robot, &s.q).into_iter().map(|column| vec![column]));
+            columns.extend(self.uncovered(signal, law));
         }
         columns
+    }
+
+    fn uncovered(&self, signal: usize, law: &dyn Sensitivity) -> impl Iterator<Item = Series> {
+        law.uncovered(self.model.robot(), &self.signals[signal].q).into_iter().map(|column| vec![column])
+    }
+
+    /// The robot with these errors as it was in a motion, and its model; `None` where there are none.
+    fn with_errors(&self, errors: &[NumberError], signal: usize) -> Option<(Corrected, RecursiveModel)> {
+        let is_there = |e: &&NumberError| e.in_baseline || self.signals[signal].is_target;
+        let mut errors = errors.iter().filter(is_there).peekable();
+        errors.peek()?;
+        let there = errors.fold(Corrected::nothing(self.model.robot()), |robot, e| e.put_in(robot));
+        let engine = derivable(&there.robot).ok()?;
+        Some((there, engine))
     }
 
     fn coupled(&self, signal: usize, [a, b]: [usize; 2], shape: &[f64]) -> Vec<Series> {

@@ -2,12 +2,13 @@
 
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::reference::Reference;
-use crate::diagnosis::rows::additions::{Additions, Carried, DriveLaw};
+use crate::diagnosis::rows::additions::{Additions, Carried, DriveLaw, NumberError};
 use crate::diagnosis::rows::links::Links;
 use crate::diagnosis::rows::series::add_to;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
-use crate::effects::{Scale, Transmission, derivable};
+use crate::effects::{Corrected, Scale, Transmission, derivable};
 use crate::model::{Link, Model, RecursiveModel};
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 /// What is made of the motions with the base parameters and additions as they are, each when it is first asked for.
@@ -21,6 +22,14 @@ pub(super) struct Made {
     pub(super) gravity: Vec<OnceLock<Vec<Vec<f64>>>>,
     /// Least and median inertia that each joint moves.
     pub(super) inertias: Vec<OnceLock<[f64; 2]>>,
+    /// The robot with the errors that are far off: in the baseline, and in the recording.
+    there: [OnceLock<Option<There>>; 2],
+}
+
+/// A robot whose numbers are not those of its table.
+pub(super) struct There {
+    pub corrected: Corrected,
+    pub model: RecursiveModel,
 }
 
 impl Made {
@@ -35,6 +44,7 @@ impl Made {
             links: unasked(motions),
             gravity: unasked(motions),
             inertias: unasked(joints),
+            there: [OnceLock::new(), OnceLock::new()],
         }
     }
 }
@@ -110,6 +120,15 @@ impl<'a> Context<'a> {
         self.forget();
     }
 
+    /// Takes these large errors, beside those that the reference has.
+    pub fn take_errors(&mut self, errors: Vec<NumberError>) {
+        let mut all = self.additions_before().errors;
+        all.extend(errors);
+        if all != self.additions.errors {
+            self.take(Additions { errors: all, ..self.additions.clone() });
+        }
+    }
+
     /// What was made with other parameters or additions is made anew where it is asked for.
     fn forget(&mut self) {
         self.made = Arc::new(Made::nothing(self.signals.len(), self.model.robot().joints()));
@@ -117,8 +136,27 @@ impl<'a> Context<'a> {
 
     /// What the model makes of a motion; worked out when it is first asked for.
     pub fn torques(&self, signal: usize) -> &ModelTorques {
-        self.made.torques[signal]
-            .get_or_init(|| ModelTorques::new(self.model, &self.chi_in(signal), &self.signals[signal]))
+        self.made.torques[signal].get_or_init(|| {
+            let (model, signals) = self.as_it_is(signal);
+            ModelTorques::new(model, &self.chi_in(signal), &signals)
+        })
+    }
+
+    /// The model of a motion, and the motion that it is evaluated on: those of the robot with the numbers that are far off.
+    pub(super) fn as_it_is(&self, signal: usize) -> (&dyn Model, Cow<'_, Signals>) {
+        let signals = &self.signals[signal];
+        let there = self.made.there[usize::from(signals.is_target)].get_or_init(|| {
+            let all = self.additions.errors.iter().filter(|e| e.in_baseline || signals.is_target);
+            let mut all = all.peekable();
+            all.peek()?;
+            let corrected = all.fold(Corrected::nothing(self.model.robot()), |robot, e| e.put_in(robot));
+            let model = RecursiveModel::new(corrected.robot.clone()).ok()?;
+            Some(There { corrected, model })
+        });
+        match there {
+            Some(There { corrected, model }) => (model, Cow::Owned(signals.seen_by(corrected))),
+            None => (self.model, Cow::Borrowed(signals)),
+        }
     }
 
     /// The torque of each drive, `[j][t]`, which channels hear: that of the standard model and of the laws that the joints
@@ -181,7 +219,8 @@ impl<'a> Context<'a> {
         for body in self.additions.bodies.iter().filter(|body| !body.in_baseline) {
             chi.iter_mut().zip(&body.chi).for_each(|(x, more)| *x += more);
         }
-        ModelTorques::new(self.model, &chi, &self.signals[signal]).rigid
+        let (model, signals) = self.as_it_is(signal);
+        ModelTorques::new(model, &chi, &signals).rigid
     }
 
     pub fn tables(&self) -> &[Link<f64>] {

@@ -2,6 +2,7 @@
 
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::rules::{RATE_PER_CUTOFF, RECORDED_BAND, SAMPLES_PER_SECOND};
+use crate::effects::Corrected;
 use crate::model::{Model, ParameterKind, Robot, StandardParameter, States};
 use crate::recording::Trajectory;
 use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
@@ -190,6 +191,11 @@ impl Signals {
             known: None,
             recorded: None,
         }
+    }
+
+    /// The same motion of joints that are where a robot with errors of its numbers has them.
+    pub fn seen_by(&self, robot: &Corrected) -> Self {
+        Self { q: robot.real_positions(&self.q), ..self.clone() }
     }
 
     /// The same positions, each reached infinitely slowly.

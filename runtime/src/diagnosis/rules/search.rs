@@ -50,13 +50,6 @@ pub(in crate::diagnosis) const GAIN_STEPS: i32 = 7;
 pub(in crate::diagnosis) const ERROR_REFINED: usize = 8;
 /// Instants that they are tried on. Numerics: some rows for every parameter.
 pub(in crate::diagnosis) const SCANNED_INSTANTS: usize = 240;
-/// A value is taken where one joint is left with this part of its squares, the others as they are, and no joint with so many
-/// times its squares. Judgement, as for rates: a smaller error is a law among others, and no other physics is imitated so well.
-pub(in crate::diagnosis) const ERROR_LEAVES: f64 = 0.5;
-pub(in crate::diagnosis) const ERROR_WORSENS: f64 = 1.25;
-/// Sums of the joints' logarithms of squares that differ by less leave as little. Statistics: some sixty independent rows tell a
-/// tenth of the squares of one joint.
-pub(in crate::diagnosis) const AS_LITTLE: f64 = 0.1;
 /// Least angle, rad, and logarithm of a factor that are taken: derivatives at nothing lead to smaller ones. Mechanics.
 pub(in crate::diagnosis) const LEAST_SCANNED: f64 = 0.35;
 /// From this error on, in units of its number, the columns of the base parameters are those of the robot that has it. Numerics:

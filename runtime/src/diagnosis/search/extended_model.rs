@@ -5,20 +5,21 @@ use crate::diagnosis::candidates::gains::{deviation_of_gains, gain_columns};
 use crate::diagnosis::candidates::nuisances::{
     NUISANCES, SKEW_COLUMNS, always_there, more_of_standing_laws, standing_curves, standing_from,
 };
-use crate::diagnosis::candidates::trial::dense_columns;
+use crate::diagnosis::candidates::trial::{columns_there, dense_columns};
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::judging::skew::usual_deviation;
-use crate::diagnosis::rows::additions::Additions;
+use crate::diagnosis::rows::additions::{Additions, NumberError};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{
-    GAIN_DEVIATION, LARGE_ERROR, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR, SETTLED_PARAMETER,
+    GAIN_DEVIATION, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR, SETTLED_PARAMETER,
 };
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
 use crate::effects::{EffectKind, SmoothingWindow};
+use crate::model::Robot;
 use crate::parallel;
 use std::sync::Arc;
 
@@ -91,13 +92,17 @@ impl<'a> ExtendedModel<'a> {
     /// [`SingularDesign`] where there is no fit.
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
         let mut deviation = GAIN_DEVIATION;
+        let of_robot = self.terms.iter().filter(|term| recorded_larger_on(term).is_none());
+        let errors = of_robot.filter_map(|term| self.large_error(term)).collect();
+        self.context.take_errors(errors);
         for round in 1..=REFITS_OF_BENT_COLUMNS {
             put_terms(&mut self.slow, (&self.context, self.change), (&self.terms, &self.factors), deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let settled = self.follow_parameters();
             self.follow_factors();
+            let stay = self.follow_errors();
             self.context.take(self.additions());
-            if self.follow_errors() && settled && round >= REFITS {
+            if stay && settled && round >= REFITS {
                 break;
             }
         }
@@ -136,7 +141,11 @@ impl<'a> ExtendedModel<'a> {
 
     /// Whether a term is an error of a number of the robot or of a drive that is not small.
     pub fn is_large_error(&self, k: usize) -> bool {
-        errors(&self.terms[k], &self.factors).iter().any(|e| e.abs() >= LARGE_ERROR)
+        self.large_error(&self.terms[k]).is_some()
+    }
+
+    fn large_error(&self, term: &Accepted) -> Option<NumberError> {
+        large_error(self.context.model.robot(), term, &self.factors, self.change)
     }
 
     /// An error that is not small bends its own column: derivatives are taken along the way to it. Says whether all errors stay
@@ -269,12 +278,15 @@ fn recorded_larger_on(term: &Accepted) -> Option<usize> {
     term.place.joint().filter(|_| term.effect == EffectKind::TorqueConstantError)
 }
 
-/// How far the numbers of a term are off, where it is an error of such; nothing for other laws.
-fn errors<'t>(term: &'t Accepted, factors: &'t [f64]) -> &'t [f64] {
+/// A term that is a large error of the robot's numbers, or of a drive.
+fn large_error(robot: &Robot, term: &Accepted, factors: &[f64], change: bool) -> Option<NumberError> {
+    let (effect, place) = (term.effect, term.place);
     match recorded_larger_on(term) {
-        Some(joint) => &factors[joint..=joint],
-        None if term.effect.form().shape_is_amplitude() => &term.shape,
-        None => &[],
+        Some(joint) => {
+            let (errors, in_baseline) = (vec![factors[joint]], !change);
+            Some(NumberError { effect, place, errors, in_baseline }).filter(NumberError::is_large)
+        }
+        None => NumberError::of_robot(robot, (effect, place), &term.shape, !change),
     }
 }
 
@@ -287,21 +299,27 @@ fn put_terms(
 ) -> Result<(), SingularDesign> {
     let design = &regression.design;
     let known = more_of_standing_laws(context, design);
-    let bent = terms.iter().filter_map(|term| {
-        let (law, errors) = ((term.effect, term.place), errors(term, factors));
-        let before = regression.bent.iter().find(|bent| bent.is_near(law, errors)).cloned();
-        before.or_else(|| context.bent((design, regression.plain()), law, errors, change))
-    });
-    let (bent, chi) = (bent.collect(), context.chi.clone());
-    let besides = Besides { known, gains: gain_columns(context, design), deviation, bent, chi };
+    let robot = context.model.robot();
+    let errors: Vec<_> = terms.iter().filter_map(|term| large_error(robot, term, factors, change)).collect();
+    let bent = match regression.bent.as_ref().filter(|bent| bent.is_near(&errors)) {
+        Some(bent) => Some(bent.clone()),
+        None => context.bent((design, regression.plain()), errors),
+    };
     let columns = parallel::map(context.threads, terms.len(), |k| {
         let term = &terms[k];
+        let law = (term.effect, term.place);
+        let large = bent.as_ref().and_then(|bent| bent.errors.iter().find(|e| (e.effect, e.place) == law));
+        let there = large.and_then(|_| columns_there(context, design, law, &term.shape, change));
         TermColumns {
-            columns: dense_columns(context, design, term.effect, term.place, &term.shape, change),
+            columns: there.unwrap_or_else(|| {
+                dense_columns(context, design, term.effect, term.place, &term.shape, change)
+            }),
+            derived_at: large.map_or_else(Vec::new, |e| e.errors.clone()),
             fixed: term.fixed,
             is_curve: term.effect.form().is_curve(),
             curve_on: term.curve_on(),
         }
     });
+    let besides = Besides { known, gains: gain_columns(context, design), deviation, bent };
     regression.set_terms(columns, besides)
 }

@@ -5,7 +5,7 @@
 use crate::diagnosis::candidates::candidate::make;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::hull::Curve;
-use crate::diagnosis::large_error::{LargeError, Number, Wrong};
+use crate::diagnosis::large_error::LargeError;
 use crate::diagnosis::outcome::StopReason;
 use crate::diagnosis::rules::{HIGHEST_CONFIDENCE, KEPT_FRACTION};
 use crate::diagnosis::search::body;
@@ -16,6 +16,7 @@ use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::EffectKind;
+use crate::far_off::{Number, Wrong};
 use crate::parallel;
 
 /// Probability that a rival which leaves as little leaves more by accident alone.
@@ -169,33 +170,37 @@ impl Search<'_> {
         Ok(SearchReport { stop: StopReason::Given, removed: Vec::new() })
     }
 
-    /// Takes a number of a joint for one that is far off. It has to earn its place beside all else, and others are found beside it.
+    /// Takes numbers of joints for far off. Each has to earn its place beside all else, and others are found beside them.
     ///
     /// # Errors
     /// As [`Self::run`].
     pub fn take_large_error(&mut self, error: &LargeError) -> Result<(), SingularDesign> {
-        let ((effect, place), explained_fraction) = (error.number.law(), 1.0 - error.left.exp());
-        let shape = match error.number.wrong {
-            Wrong::Zero => vec![error.by],
-            Wrong::Gain => {
-                self.model.factors[error.number.joint] = error.by.exp_m1();
-                Vec::new()
-            }
-        };
-        let rival = |number: &Number| {
+        let explained_fraction = 1.0 - error.left.exp();
+        for &(number, by, ref rivals) in &error.numbers {
             let (effect, place) = number.law();
-            let (shape, difference_p_value) = (Vec::new(), LEAVES_AS_LITTLE);
-            Rival { effect, place, shape, explained_fraction, difference_p_value }
-        };
-        let (context, design) = (&self.model.context, &self.model.slow.design);
-        let candidate = make(context, design, effect, place, std::slice::from_ref(&shape), self.model.change);
-        self.model.terms.push(Accepted {
-            shows_on: (0..design.joints).collect(),
-            confidence: HIGHEST_CONFIDENCE,
-            explained_fraction,
-            rivals: error.rivals.iter().map(rival).collect(),
-            ..Accepted::tried(&candidate, shape)
-        });
+            let shape = match number.wrong {
+                Wrong::Zero => vec![by],
+                Wrong::Gain => {
+                    self.model.factors[number.joint] = by.exp_m1();
+                    Vec::new()
+                }
+            };
+            let rival = |number: &Number| {
+                let (effect, place) = number.law();
+                let (shape, difference_p_value) = (Vec::new(), LEAVES_AS_LITTLE);
+                Rival { effect, place, shape, explained_fraction, difference_p_value }
+            };
+            let (context, design) = (&self.model.context, &self.model.slow.design);
+            let candidate =
+                make(context, design, effect, place, std::slice::from_ref(&shape), self.model.change);
+            self.model.terms.push(Accepted {
+                shows_on: (0..design.joints).collect(),
+                confidence: HIGHEST_CONFIDENCE,
+                explained_fraction,
+                rivals: rivals.iter().map(rival).collect(),
+                ..Accepted::tried(&candidate, shape)
+            });
+        }
         self.refit_and_update()
     }
 
