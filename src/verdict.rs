@@ -91,7 +91,8 @@ pub fn check_mistakes(
         |fault: &ChannelFault| matches!(fault, ChannelFault::Slow { .. } | ChannelFault::TooFast { .. });
     check_channels(path, judged, |fault| !of_time(fault))?;
     let verdict = judge(judged, torques, estimated, models::all());
-    if matches!(&verdict, Verdict::Better { instead, .. } if matches!(instead.first(), Some((Instead::Offset { .. }, _))))
+    if let Verdict::Better { instead, .. } = &verdict
+        && let Some((Instead::Offset { .. } | Instead::Zeros(_), _)) = instead.first()
     {
         return Ok(());
     }
@@ -192,7 +193,7 @@ fn advice(instead: &Instead) -> &'static str {
         Instead::TableAngles => "Write them in rad, as 90*pi/180",
         Instead::Exchange { .. } => "Check the order of `columns`",
         Instead::Unit(_) => "Check `unit`",
-        Instead::Offset { .. } => "Check `offset`, and theta in the robot's table",
+        Instead::Offset { .. } | Instead::Zeros(_) => "Check `offset`, and theta in the robot's table",
         _ => "Check the recording's YAML",
     }
 }
@@ -229,6 +230,13 @@ fn words(instead: &Instead, robot: &Robot) -> String {
         Instead::TableAngles => "reading the table's angles beyond a turn in degrees".to_owned(),
         Instead::Unit(AngleUnit::Degrees) => "reading angles in degrees".to_owned(),
         Instead::Unit(AngleUnit::Radians) => "reading angles in radians".to_owned(),
+        Instead::Zeros(zeros) => {
+            let each =
+                |(joint, by): &(JointIndex, f64)| format!("joint {} {:+.1}", number(*joint), by.to_degrees());
+            let joints: Vec<String> = zeros.iter().map(each).collect();
+            let see = if joints.len() == 1 { "its encoder sees it" } else { "their encoders see them" };
+            format!("{} degrees beyond where {see}", joints.join(" and "))
+        }
         Instead::Offset { joint, degrees } => {
             format!("an offset of {degrees} degrees on the position of joint {}", number(*joint))
         }

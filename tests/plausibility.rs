@@ -186,3 +186,63 @@ fn simulated_recordings_of_every_robot_are_accepted() {
     println!("{accepted} recordings accepted");
     assert!(accepted >= 24);
 }
+
+/// A recording of the tx40 as `dynid simulate` writes it, whose encoders 2 and 3 count from elsewhere by these angles.
+fn seen_from_elsewhere(own: &Path, name: &str, seed: &str, [second, third]: [f64; 2]) -> PathBuf {
+    let folder = own.join(name);
+    let out = folder.to_str().unwrap();
+    let simulate = ["simulate", "tx40", "--motions", "2", "--seed", seed, "--out", out];
+    assert!(Command::new(env!("CARGO_BIN_EXE_dynid")).args(simulate).output().unwrap().status.success());
+    for file in std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()) {
+        if file.extension().is_none_or(|e| e != "csv") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).unwrap();
+        let mut lines = text.lines();
+        let mut moved = lines.next().unwrap().to_owned();
+        for line in lines {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            for (column, by) in [(2, second), (3, third)] {
+                cells[column] = (cells[column].parse::<f64>().unwrap() + by).to_string();
+            }
+            moved += &format!("\n{}", cells.join(","));
+        }
+        std::fs::write(&file, moved).unwrap();
+    }
+    folder.join("recording.yaml")
+}
+
+#[test]
+fn zeros_of_two_encoders_that_undo_each_other_are_told_by_identify_and_named_by_diagnose() {
+    let own = std::env::temp_dir().join(format!("dynid-zeros-{}", std::process::id()));
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let fitted = seen_from_elsewhere(&own, "fitted", "5", [-quarter, quarter]);
+    let other = seen_from_elsewhere(&own, "other", "6", [-quarter, quarter]);
+    let (status, words) = identify(&fitted, &[]);
+    assert!(status == 1 && words.contains("joint 2 +") && words.contains("joint 3 -"), "{status} {words}");
+    let (json, model) = (own.join("found.json"), own.join("model.json"));
+    let run = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_dynid")).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let [fitted, other] = [&fitted, &other].map(|path| path.to_str().unwrap());
+    let (json, model) = (json.to_str().unwrap(), model.to_str().unwrap());
+    run(&["diagnose", fitted, "--json", json, "--out", model]);
+    let read = |path: &str| -> serde_json::Value {
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    };
+    let found = read(json);
+    let findings = found["findings"].as_array().unwrap();
+    let offset = |joint: u64| {
+        let is_it = |f: &&serde_json::Value| f["effect"] == "position_offset" && f["joints"][0] == joint;
+        findings.iter().find(is_it).map(|f| f["parameters"]["offset"]["value"].as_f64().unwrap())
+    };
+    assert_eq!(findings.len(), 2, "{findings:?}");
+    let [second, third] = [2, 3].map(|joint| offset(joint).expect("an offset on this joint"));
+    assert!((second - quarter).abs() < 0.02 && (third + quarter).abs() < 0.05, "{second} {third}");
+    // The saved model has both, one on top of the other.
+    run(&["validate", model, other, "--json", json]);
+    let error = read(json)["relative_error"].as_f64().unwrap();
+    assert!(error < 0.02, "{error}");
+    std::fs::remove_dir_all(&own).unwrap();
+}

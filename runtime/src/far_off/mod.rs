@@ -9,9 +9,15 @@ mod descent;
 mod instants;
 mod zeros;
 
+// Single numbers, and what imitates them, are looked for by the diagnosis.
+#[cfg(feature = "diagnosis")]
 pub(crate) use descent::Descent;
-pub(crate) use instants::{Instants, Number, Wrong};
-pub(crate) use zeros::{Zeros, zeros};
+pub(crate) use instants::Instants;
+#[cfg(feature = "diagnosis")]
+pub(crate) use instants::{Number, Wrong};
+#[cfg(feature = "diagnosis")]
+pub(crate) use zeros::Zeros;
+pub(crate) use zeros::zeros;
 
 /// A number is taken for wrong where one joint is left with this part of its squares by it, the others as they are. Judgement: a
 /// smaller error is a law among others, and no other physics is imitated so well.

@@ -56,6 +56,8 @@ pub enum Instead {
         /// Degrees that are added.
         degrees: i32,
     },
+    /// Other zeros of some joints: how far each is beyond where its encoder sees it, rad.
+    Zeros(Vec<(JointIndex, f64)>),
 }
 
 /// A signal of a recording.
@@ -181,6 +183,12 @@ impl Instead {
         let positions = [q, dq, ddq];
         match *self {
             Instead::Robot(_) | Instead::Gravity(_) | Instead::TableAngles => {}
+            Instead::Zeros(ref zeros) => {
+                let [q, ..] = positions;
+                for &(JointIndex(joint), by) in zeros {
+                    q[joint].iter_mut().for_each(|x| *x += by);
+                }
+            }
             Instead::Scale { joint: JointIndex(joint), factor } => scale(&mut torque[joint], factor),
             Instead::Sign { of, joint: JointIndex(joint) } => {
                 if of != Signal::Torque {

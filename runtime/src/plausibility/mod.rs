@@ -5,6 +5,7 @@ mod instead;
 mod judged;
 mod position;
 mod table;
+mod zeros;
 
 pub use channels::{ChannelFault, faulty_channel};
 pub use instead::{AngleUnit, Instead, Signal};
@@ -14,14 +15,15 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use crate::estimation::observe::Observation;
 use crate::estimation::{Estimate, PhysicalFit, physical_fit};
-use crate::model::{JointIndex, Model, Robot};
+use crate::model::{JointIndex, Model};
 use instead::{POOR, mistakes, other_gravities, single_mistakes};
 use position::with_torques_over_position;
+use zeros::other_zeros;
 
 /// Strain from which the parameters are said not to be those of a real robot.
 const STRAINED: f64 = 1.1;
-/// A joint's error from which other directions of gravity are tried: parameters of several links can take over most of a
-/// gravity that points the other way.
+/// A joint's error from which other directions of gravity and other zeros are tried: parameters of several links can take over
+/// most of a gravity that points the other way.
 const GRAVITY: f64 = 0.05;
 /// A joint's error, and a strain, from which signs and units of single joints are tried as well. These limits cost time
 /// only: what is believed is decided by [`ROBOT`] and [`MISTAKE`].
@@ -91,7 +93,7 @@ pub enum Verdict {
 ///
 /// The free fit is compared with the best one that a real robot can have ([`physical_fit`]). Where physics costs
 /// something or a joint is explained poorly, other robots of the same joints are tried, other directions of gravity, and
-/// signs and units of single joints; where it costs much or a joint is explained badly, so are orders of columns, units
+/// signs and units of single joints, other zeros; where it costs much or a joint is explained badly, so are orders of columns, units
 /// of angles and offsets.
 pub fn judge(
     judged: &Judged<'_>,
@@ -111,7 +113,7 @@ pub fn judge(
     let instead = if estimated.rows_per_parameter() < ENOUGH_ROWS {
         Vec::new()
     } else {
-        better(judged, others, candidates(robot, others, &own, error), &own)
+        better(judged, others, candidates(judged, others, &own, error), &own)
     };
     let impossible = impossible(&errors, estimated);
     let best = instead.first().map_or(f64::INFINITY, |(_, error)| *error);
@@ -135,8 +137,8 @@ pub fn judge(
 
 /// What is tried instead of what was declared: the more, the worse the best parameters of a real robot do. `error` is that
 /// of the joint that they explain worst.
-fn candidates(robot: &Robot, others: &[&dyn Model], own: &PhysicalFit, error: f64) -> Vec<Instead> {
-    let mut candidates = Vec::new();
+fn candidates(judged: &Judged<'_>, others: &[&dyn Model], own: &PhysicalFit, error: f64) -> Vec<Instead> {
+    let (robot, mut candidates) = (judged.model.robot(), Vec::new());
     if own.strain > STRAINED || error > POOR {
         let kinds = robot.joint_kinds();
         let alike =
@@ -151,6 +153,9 @@ fn candidates(robot: &Robot, others: &[&dyn Model], own: &PhysicalFit, error: f6
     }
     if own.strain > OVERSTRAINED || error > BAD {
         candidates.extend(mistakes(robot, own));
+    }
+    if error > GRAVITY {
+        candidates.extend(other_zeros(judged, own).map(Instead::Zeros));
     }
     candidates
 }
@@ -222,6 +227,8 @@ fn better(
                         [own, &fit].map(|f| errors_of(&f.per_equation).into_iter().fold(0.0, f64::max));
                     MISTAKE * after <= before
                 }
+                // Several angles that are free take more than one mistake does.
+                Instead::Zeros(_) => own.relative_error.is_some_and(|own| MISTAKE * error <= own),
                 // Nor is a joint made right by what makes the torques of all together worse.
                 _ => own.relative_error.is_none_or(|own| error <= own),
             };
