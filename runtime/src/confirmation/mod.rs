@@ -66,6 +66,10 @@ pub fn diagnose_and_confirm(
     if let Some(error) = failed {
         return Err(error.into());
     }
+    // What was refuted beside other laws, and holds beside those that took their place, is found.
+    let is_found =
+        |r: &Refuted| diagnosis.findings.iter().any(|f| (&f.effect, &f.joints) == (&r.effect, &r.joints));
+    refuted.retain(|r| !is_found(r));
     diagnosis.verdict.extend(words(&refuted));
     diagnosis.refuted = refuted;
     Ok(diagnosis)

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use dynid_runtime::diagnosis::Diagnosis;
+use dynid_runtime::diagnosis::{Diagnosis, Finding};
+use dynid_runtime::effects::EffectKind;
 use dynid_runtime::model::Model;
 use dynid_runtime::prediction::{Evaluation, PredictionError, Predictor, Prepared, evaluate, row_states};
 use dynid_runtime::report::percent;
@@ -61,12 +62,14 @@ pub fn tested(test: &Test, path: &Path, diagnosis: &Diagnosis) -> Result<Tested,
     Ok(Tested { name: test.measured.title.clone(), evaluation })
 }
 
-/// That all findings together do not help on the test recording, where that is so.
+/// That all findings together do not help on the test recording, where that is so. Pushes belong to the recording that they were
+/// seen in.
 pub fn no_gain_words(tested: &Tested, diagnosis: &Diagnosis) -> Option<String> {
     let errors: Vec<Option<f64>> =
         tested.evaluation.predictions.iter().map(|p| p.errors.relative_error).collect();
     let &[Some(before), Some(after)] = errors.as_slice() else { return None };
-    (!diagnosis.findings.is_empty() && after >= before).then(|| {
+    let is_push = |finding: &Finding| finding.term.effect == EffectKind::Contact;
+    (!diagnosis.findings.iter().all(is_push) && after >= before).then(|| {
         format!(
             "On the test recording the error does not fall: it is {} before and {} after. Do not rely on what was found \
              before another recording shows it.",

@@ -9,7 +9,7 @@ use crate::effects::{
 const WORDS: Words = Words {
     id: "friction_level_change",
     name: "friction level change",
-    what: "Friction has changed since the baseline by one factor while inertias have not: other temperature, other lubricant, wear.",
+    what: "Friction has changed since the baseline while inertias have not: other temperature, other lubricant, wear.",
     looks_like: "a residual proportional to the friction of the baseline",
     revealed_by: "friction torque of the baseline",
     experiment: "repeat the baseline motion at the same temperature",
@@ -54,11 +54,23 @@ impl Effect for FrictionLevelChange {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("friction is {} times that of the baseline", q.text("factor"))
+        if !q.has("viscous_change") {
+            return format!("friction is {} times that of the baseline", q.text("factor"));
+        }
+        format!(
+            "viscous friction has changed by {} and Coulomb friction by {}: at half of the top speed friction is {} times that \
+             of the baseline",
+            q.text("viscous_change"),
+            q.text("coulomb_change"),
+            q.text("factor")
+        )
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        format!("({} - 1)·(Fv·dq + Fc·sign(dq))", q.value("factor"))
+        if !q.has("viscous_change") {
+            return format!("({} - 1)·(Fv·dq + Fc·sign(dq))", q.value("factor"));
+        }
+        format!("{}·dq + {}·sign(dq)", q.value("viscous_change"), q.value("coulomb_change"))
     }
 }
 
