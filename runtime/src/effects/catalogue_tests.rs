@@ -13,6 +13,7 @@ const SCALE: Scale = Scale {
     duration: 12.0,
     gear: 100.0,
     fast: 0.0,
+    inertia: 0.4,
     kind: JointKind::Revolute,
 };
 
@@ -183,6 +184,7 @@ fn every_law_of_a_joint_fills_its_columns() {
         time: 0.7,
         q: 0.4,
         dq: 1.1,
+        ddq: 2.0,
         sign: 1.0,
         load: 9.0,
         link: 8.0,

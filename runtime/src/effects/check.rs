@@ -14,7 +14,7 @@ pub struct TermError {
 }
 
 /// A joint on which every law offers all of its shapes.
-const WIDE: Scale = Scale { range: 1e3, fast: 1.0, ..Scale::UNIT };
+const WIDE: Scale = Scale { range: 1e3, fast: 1.0, inertia: 1.0, ..Scale::UNIT };
 
 impl EffectTerm {
     /// Checks that every place, length and number of the term is one that its effect has on this robot.

@@ -1,5 +1,8 @@
 //! The load that losses in a gear are proportional to.
 //!
+//! Where the inertia of the rotor is a part of that of the link, as on the first joint of every robot, motion does not tell
+//! which part of the load passes through the gear: there that inertia is a number of the law.
+//!
 //! Teeth and bearings are pressed by what passes through them. A rotor in front of the gear does not press them; where
 //! the pressing has a slow part only, as by a preload that follows the weight, gravity alone counts (Hamon, Gautier and
 //! Garrec 2011 compare the quasi-static load with the full one).
@@ -13,10 +16,11 @@
 use super::joint_law::{At, Scale};
 use super::quantity::{Parameter, Quantities};
 use super::shape::Step;
+use crate::model::ParameterKind;
 use statrs::function::erf::erf;
 
 /// Which load counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Part {
     /// Gravity alone.
     Gravity,
@@ -24,10 +28,12 @@ enum Part {
     Whole,
     /// Inertia and gravity of the links.
     Links,
+    /// The whole load but for that of a rotor whose inertia is no parameter of its own, kg.m2 or kg.
+    Behind(f64),
 }
 
-/// What a loss is proportional to. The shape of a law has no number for the whole load, one for a part of it, and a second
-/// one where fast torques count.
+/// What a loss is proportional to. The shape of a law has no number for the whole load, one for a part of it, a second one where
+/// fast torques count, and a third one for the inertia of a rotor, behind a second one of zero where they do not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct GearLoad {
     part: Part,
@@ -49,6 +55,11 @@ const GRAVITY: f64 = 0.0;
 const LINKS: f64 = 1.0;
 const WHOLE_AND_FAST: f64 = 2.0;
 const LINKS_AND_FAST: f64 = 3.0;
+const BEHIND: f64 = 4.0;
+
+/// Inertias of a rotor to try, in parts of the least that its joint moves, and the factor by which the search varies them.
+const ROTORS: [f64; 3] = [0.25, 0.45, 0.8];
+const ROTOR_STEP: f64 = 1.3;
 
 /// Sizes of fast torques to try, and the factor by which the search varies them: a drive that reports the mean of what it
 /// has had over two control periods hides half of the noise of a differentiated position.
@@ -63,6 +74,11 @@ pub(super) fn shapes(scale: &Scale) -> Vec<Vec<f64>> {
             [WHOLE_AND_FAST, LINKS_AND_FAST].iter().flat_map(|part| FAST.map(|fast| vec![*part, fast])),
         );
     }
+    if scale.inertia > 0.0 {
+        let fast = if scale.fast > 0.0 { &[0.0, FAST[0]][..] } else { &[0.0] };
+        let behind = |fast: &f64| ROTORS.map(|part| vec![BEHIND, *fast, part * scale.inertia]);
+        shapes.extend(fast.iter().flat_map(behind));
+    }
     shapes
 }
 
@@ -74,7 +90,7 @@ pub(super) fn shapes_behind_the_rotor(scale: &Scale) -> Vec<Vec<f64>> {
 
 /// How the numbers of a shape are varied.
 pub(super) fn steps() -> Vec<Step> {
-    vec![Step::Keep, Step::Times(FAST_STEP)]
+    vec![Step::Keep, Step::Times(FAST_STEP), Step::Times(ROTOR_STEP)]
 }
 
 impl GearLoad {
@@ -85,9 +101,10 @@ impl GearLoad {
             Some(x) if *x < 0.5 * (GRAVITY + LINKS) => Part::Gravity,
             Some(x) if *x < 0.5 * (LINKS + WHOLE_AND_FAST) => Part::Links,
             Some(x) if *x < 0.5 * (WHOLE_AND_FAST + LINKS_AND_FAST) => Part::Whole,
-            Some(_) => Part::Links,
+            Some(x) if *x < 0.5 * (LINKS_AND_FAST + BEHIND) => Part::Links,
+            Some(_) => Part::Behind(shape.get(2).copied().unwrap_or(0.0)),
         };
-        Self { part, fast: shape.get(1).copied() }
+        Self { part, fast: shape.get(1).copied().filter(|fast| *fast > 0.0) }
     }
 
     /// Whether it takes gravity to tell it from others.
@@ -107,6 +124,7 @@ impl GearLoad {
                 Part::Gravity => at.gravity,
                 Part::Whole => at.load,
                 Part::Links => at.link,
+                Part::Behind(rotor) => at.load - rotor * at.ddq,
             };
         let fast = self.fast.unwrap_or(0.0) * scale.fast;
         if fast <= 0.0 {
@@ -120,18 +138,23 @@ impl GearLoad {
 
     const GRAVITY: &'static str = "load_of_gravity_alone";
     const LINKS: &'static str = "load_without_rotor";
+    const ROTOR: &'static str = "rotor_inertia";
     const FAST: &'static str = "fast_torque";
 
     /// The quantities that say which load it is, where it is not the whole without fast torques.
     pub(super) fn parameters(self, scale: &Scale) -> Vec<Parameter> {
         let part = match self.part {
             Part::Whole => None,
-            Part::Gravity => Some(Self::GRAVITY),
-            Part::Links => Some(Self::LINKS),
+            Part::Gravity => Some((Self::GRAVITY, 1.0, "1")),
+            Part::Links => Some((Self::LINKS, 1.0, "1")),
+            Part::Behind(rotor) => Some((Self::ROTOR, rotor, ParameterKind::Ia.unit(scale.kind))),
         };
         let unit = scale.kind.torque_unit();
         let fast = self.fast.map(|times| Parameter::new(Self::FAST, times * scale.fast, 0.0, unit));
-        part.map(|name| Parameter::new(name, 1.0, 0.0, "1")).into_iter().chain(fast).collect()
+        part.map(|(name, value, unit)| Parameter::new(name, value, 0.0, unit))
+            .into_iter()
+            .chain(fast)
+            .collect()
     }
 
     /// The load that quantities tell of, and whether with fast torques.
@@ -140,6 +163,8 @@ impl GearLoad {
             Part::Gravity
         } else if q.has(Self::LINKS) {
             Part::Links
+        } else if let Some(rotor) = q.number(Self::ROTOR) {
+            Part::Behind(rotor)
         } else {
             Part::Whole
         };
@@ -147,16 +172,15 @@ impl GearLoad {
     }
 
     /// What a person calls the load that quantities tell of.
-    pub(super) fn words(q: &Quantities) -> &'static str {
-        match Self::told(q) {
-            (Part::Gravity, _) => "the torque of gravity alone",
-            (Part::Whole, false) => "the load torque",
-            (Part::Whole, true) => "the load torque, with what the motor does faster than the signals",
-            (Part::Links, false) => "the load torque without the rotor's inertia",
-            (Part::Links, true) => {
-                "the load torque without the rotor's inertia, with what the motor does faster than the signals"
-            }
-        }
+    pub(super) fn words(q: &Quantities) -> String {
+        let (part, fast) = Self::told(q);
+        let load = match part {
+            Part::Gravity => return "the torque of gravity alone".to_owned(),
+            Part::Whole => "the load torque".to_owned(),
+            Part::Links => "the load torque without the rotor's inertia".to_owned(),
+            Part::Behind(_) => format!("the load torque without a rotor of {}", q.text(Self::ROTOR)),
+        };
+        load + if fast { ", with what the motor does faster than the signals" } else { "" }
     }
 
     /// Its name in a formula.
@@ -165,8 +189,8 @@ impl GearLoad {
             (Part::Gravity, _) => "gravity",
             (Part::Whole, false) => "load",
             (Part::Whole, true) => "load + fast",
-            (Part::Links, false) => "link load",
-            (Part::Links, true) => "link load + fast",
+            (Part::Links | Part::Behind(_), false) => "link load",
+            (Part::Links | Part::Behind(_), true) => "link load + fast",
         }
     }
 }
@@ -176,7 +200,7 @@ mod tests {
     use super::*;
 
     fn scale() -> Scale {
-        Scale { fast: 0.75, ..Scale::UNIT }
+        Scale { fast: 0.75, inertia: 2.0, ..Scale::UNIT }
     }
 
     #[test]
@@ -191,6 +215,9 @@ mod tests {
         let values: Vec<f64> =
             plain.iter().map(|s| GearLoad::of(s).losses(&Scale::UNIT, &at).driving).collect();
         assert_eq!(values, [1.0, 3.0, 2.0], "none with fast torques where there are none");
+        let at = At { ddq: 4.0, ..at };
+        let behind = |shape: &[f64]| GearLoad::of(shape).losses(&Scale::UNIT, &at).driving;
+        assert_eq!(behind(&[BEHIND, 0.0, 0.25]), 2.0, "a rotor of 0.25 kg.m2 takes 1 N.m of 3");
     }
 
     #[test]

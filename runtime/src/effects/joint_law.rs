@@ -25,6 +25,9 @@ pub struct Scale {
     /// What the recorded torque varies by faster than the signals that laws are evaluated on: its standard deviation,
     /// N.m or N. Zero where it is not known.
     pub fast: f64,
+    /// Least inertia that the joint moves, kg.m2 or kg, where that of its rotor is a part of it and no parameter of its own;
+    /// zero where it is one.
+    pub inertia: f64,
     /// Whether the joint turns or slides.
     pub kind: JointKind,
 }
@@ -40,6 +43,7 @@ impl Scale {
         duration: 1.0,
         gear: 1.0,
         fast: 0.0,
+        inertia: 0.0,
         kind: JointKind::Revolute,
     };
 
@@ -58,6 +62,8 @@ pub struct At {
     pub q: f64,
     /// Velocity.
     pub dq: f64,
+    /// Acceleration.
+    pub ddq: f64,
     /// Direction of motion: -1 or 1; at rest the direction that is asked about.
     pub sign: f64,
     /// Torque of inertia and gravity, that of the joint's own rotor included, no friction.

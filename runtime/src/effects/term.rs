@@ -170,6 +170,8 @@ impl From<TermScale> for Scale {
             duration: s.duration,
             gear: s.gear,
             fast: s.fast,
+            // Shapes are found with it, and need it no more.
+            inertia: 0.0,
             kind: s.kind(),
         }
     }

@@ -236,6 +236,14 @@ fn better(
         })
         .collect();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    // Angles are fitted: what takes no number, and does nearly as well, comes first.
+    let best = all.first().map_or(0.0, |first| first.0);
+    let takes_none = |(better, instead, _): &(f64, Instead, f64)| {
+        !matches!(instead, Instead::Zeros(_)) && *better > best.powf(NEARLY)
+    };
+    if all.iter().any(takes_none) {
+        all.retain(|(_, instead, _)| !matches!(instead, Instead::Zeros(_)));
+    }
     let best = all.first().map_or(0.0, |first| first.0);
     let Some(first) = all.first().map(|(_, instead, _)| instead.clone()) else { return Vec::new() };
     let least = match first {

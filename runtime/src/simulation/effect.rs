@@ -72,6 +72,7 @@ impl EffectTorque {
             time: at.time,
             q: at.q[self.of],
             dq,
+            ddq: at.ddq[self.of],
             sign,
             load,
             link: at.link[self.of],

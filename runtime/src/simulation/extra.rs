@@ -10,6 +10,8 @@ pub struct Instant<'a> {
     pub q: &'a [f64],
     /// Velocities on the motor side.
     pub dq: &'a [f64],
+    /// Accelerations of the joints at the last step.
+    pub ddq: &'a [f64],
     /// Torque that each joint transmits to the links (inertia and gravity, no friction) at the last step,
     /// N.m or N.
     pub load: &'a [f64],

@@ -222,6 +222,7 @@ impl Plant<'_> {
             &mut work.link_mass,
             &mut work.link_bias,
         );
+        work.seen.ddq.copy_from_slice(&ddq[..n]);
         for j in 0..n {
             let inertial: f64 = (0..n).map(|s| work.link_mass[j * n + s] * ddq[s]).sum();
             work.seen.load[j] = work.link_bias[j] + inertial;

@@ -34,6 +34,7 @@ pub(super) struct Work {
 pub(super) struct Seen {
     pub(super) q: Vec<f64>,
     pub(super) dq: Vec<f64>,
+    pub(super) ddq: Vec<f64>,
     pub(super) load: Vec<f64>,
     pub(super) link: Vec<f64>,
     pub(super) gravity: Vec<f64>,
@@ -61,6 +62,7 @@ impl Work {
             seen: Seen {
                 q: vec![0.0; n],
                 dq: vec![0.0; n],
+                ddq: vec![0.0; n],
                 load: vec![0.0; n],
                 link: vec![0.0; n],
                 gravity: vec![0.0; n],
@@ -77,8 +79,8 @@ impl Work {
 impl Seen {
     /// At a time.
     pub(super) fn at(&self, time: f64) -> Instant<'_> {
-        let Self { q, dq, load, link, gravity, effects } = self;
-        Instant { time, q, dq, load, link, gravity, effects }
+        let Self { q, dq, ddq, load, link, gravity, effects } = self;
+        Instant { time, q, dq, ddq, load, link, gravity, effects }
     }
 }
 

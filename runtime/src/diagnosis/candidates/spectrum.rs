@@ -120,6 +120,7 @@ mod tests {
         duration: 40.0,
         gear: 50.0,
         fast: 0.0,
+        inertia: 0.0,
         kind: crate::model::JointKind::Revolute,
     };
 

@@ -104,6 +104,7 @@ impl Context<'_> {
                 time: s.time(t),
                 q: s.q[j][t],
                 dq,
+                ddq: s.ddq[j][t],
                 sign: if dq > 0.0 { 1.0 } else { -1.0 },
                 load: torques.rigid[j][t],
                 link: torques.link[j][t],

@@ -3,7 +3,7 @@
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{SIGMA_PER_MAD, TOP_SPEED_PERCENT};
 use crate::effects::Scale;
-use crate::model::Model;
+use crate::model::{Model, ParameterKind};
 use crate::statistics::median::median;
 
 /// Scales of every joint over motions, for given standard parameters.
@@ -47,7 +47,7 @@ fn over(model: &dyn Model, signals: &[&Signals], chi: &[f64]) -> Vec<Scale> {
             torque[j] = series.iter().fold(torque[j], |a, b| a.max(b.abs()));
         }
     }
-    let fast = fast_torques(signals, n);
+    let (fast, inertia) = (fast_torques(signals, n), inertias_with_rotors(model, signals, chi));
     (0..n)
         .map(|j| {
             let positions = signals.iter().flat_map(|s| s.q[j].iter());
@@ -62,10 +62,37 @@ fn over(model: &dyn Model, signals: &[&Signals], chi: &[f64]) -> Vec<Scale> {
                 duration,
                 gear: robot.drive.gear.get(j * n + j).map_or(1.0, |g| g.abs()),
                 fast: fast[j],
+                inertia: inertia[j],
                 kind: kinds[j],
             }
         })
         .collect()
+}
+
+/// Samples of a motion on which inertias are worked out. Numerics.
+const INERTIAS: usize = 50;
+
+/// Least inertia that each joint moves, where that of its rotor is no parameter of its own; zero for other joints.
+fn inertias_with_rotors(model: &dyn Model, signals: &[&Signals], chi: &[f64]) -> Vec<f64> {
+    let robot = model.robot();
+    let n = robot.joints();
+    let (still, mut bias, mut mass) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n]);
+    let mut least = vec![f64::INFINITY; n];
+    for s in signals {
+        for t in (0..s.len()).step_by(s.len().div_ceil(INERTIAS).max(1)) {
+            let q: Vec<f64> = s.q.iter().map(|q| q[t]).collect();
+            model.mass_and_bias(chi, &q, &still, &mut mass, &mut bias);
+            least.iter_mut().enumerate().for_each(|(j, least)| *least = least.min(mass[j * n + j]));
+        }
+    }
+    let joint_of = robot.joint_of_frame();
+    let rotors =
+        robot.base.iter().map(|b| &robot.standard[b.standard]).filter(|p| p.kind == ParameterKind::Ia);
+    let own: Vec<usize> = rotors.filter_map(|p| joint_of[p.frame]).collect();
+    let has_its_own = |j: usize| own.contains(&j);
+    let known =
+        |(j, least): (usize, f64)| if has_its_own(j) || !least.is_finite() { 0.0 } else { least.max(0.0) };
+    least.into_iter().enumerate().map(known).collect()
 }
 
 /// Standard deviation of what the recorded torque of a joint has above the cut-off of the signals, from its median: a few

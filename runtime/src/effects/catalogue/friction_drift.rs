@@ -136,6 +136,7 @@ mod tests {
                 time,
                 q: 0.0,
                 dq: 1.0,
+                ddq: 0.0,
                 sign: 1.0,
                 load: 0.0,
                 link: 0.0,
