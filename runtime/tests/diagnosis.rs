@@ -420,6 +420,19 @@ fn friction_that_grows_with_the_weight_alone_is_told_as_that() {
 }
 
 #[test]
+fn friction_that_grows_with_what_the_gear_transmits_is_told_with_the_rotor_in_front_of_it() {
+    let robot = planar();
+    // The inertia of this rotor is a part of ZZ1R: no parameter tells it from that of the link.
+    let hidden =
+        Hidden::effect(EffectKind::LoadDependentFriction, Place::Joint(0), &[4.0, 0.0, 0.4], &[0.15]);
+    let diagnosis = diagnosed(robot, &hidden);
+    assert_only(&diagnosis, EffectKind::LoadDependentFriction, &[1]);
+    assert_within_four_sigma(&diagnosis, "mu", 0.15);
+    let rotor = diagnosis.findings[0].parameters["rotor_inertia"].value;
+    assert!((rotor - 0.4).abs() < 0.05, "{rotor}");
+}
+
+#[test]
 fn losses_that_differ_by_direction_are_an_efficiency_and_equal_ones_are_friction() {
     let robot = planar();
     let hidden =
