@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::io::Write as _;
 use std::process::{Command, Stdio};
 
 use common::Folder;
@@ -46,7 +47,7 @@ fn a_pipe_gets_no_control_codes() {
 fn a_terminal_gets_none_either_where_no_color_is_set() {
     let folder = Folder::new("colour-terminal");
     if written(&folder, "--help", true, false).is_none_or(|text| !text.contains("dynid")) {
-        println!("skipped: there is no `script` to make a terminal with");
+        let _ = writeln!(std::io::stderr(), "skipped: there is no `script` to make a terminal with");
         return;
     }
     // That these are terminals: codes come where they are not asked to stay away.

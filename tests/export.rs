@@ -20,7 +20,7 @@ fn compiler() -> Option<String> {
     let name = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
     let found = Command::new(&name).arg("--version").output().is_ok_and(|o| o.status.success());
     if !found {
-        println!("skipped: there is no C compiler {name}");
+        let _ = writeln!(std::io::stderr(), "skipped: there is no C compiler {name}");
     }
     found.then_some(name)
 }
@@ -30,7 +30,7 @@ fn compilers() -> Vec<String> {
     let Some(own) = compiler() else { return Vec::new() };
     let clang = Command::new("clang").arg("--version").output().is_ok_and(|o| o.status.success());
     if !clang {
-        println!("skipped: there is no clang");
+        let _ = writeln!(std::io::stderr(), "skipped: there is no clang");
     }
     let other = (clang && own != "clang").then(|| "clang".to_owned());
     [own].into_iter().chain(other).collect()
@@ -241,7 +241,7 @@ fn has_sanitizers(cc: &str, folder: &Folder) -> bool {
     let made = trial.output().is_ok_and(|o| o.status.success());
     let runs = made && Command::new(folder.path("empty")).output().is_ok_and(|o| o.status.success());
     if !runs {
-        println!("skipped: {cc} has no sanitizers");
+        let _ = writeln!(std::io::stderr(), "skipped: {cc} has no sanitizers");
     }
     runs
 }
@@ -383,7 +383,10 @@ fn casadi_loads_the_functions_that_are_exported_for_it() {
         let python = std::env::var("DYNID_PYTHON").unwrap_or_else(|_| "python3".to_owned());
         let there = Command::new(&python).args(["-c", "import casadi"]).output();
         if !there.is_ok_and(|o| o.status.success()) {
-            println!("skipped: {python} has no casadi (DYNID_PYTHON names one that has)");
+            let _ = writeln!(
+                std::io::stderr(),
+                "skipped: {python} has no casadi (DYNID_PYTHON names one that has)"
+            );
             continue;
         }
         let ran = done(Command::new(&python).args(["-c", CASADI_SCRIPT]).current_dir(&folder.0));

@@ -6,6 +6,7 @@ mod common;
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Write as _;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -57,7 +58,7 @@ fn unfinished(folder: &Path) -> usize {
 #[test]
 fn a_full_device_is_an_error_and_never_a_panic() {
     if !Path::new("/dev/full").exists() {
-        eprintln!("skipped: there is no /dev/full");
+        let _ = writeln!(std::io::stderr(), "skipped: there is no /dev/full");
         return;
     }
     let folder = recorded("full-device");
@@ -131,7 +132,7 @@ fn a_file_system_without_room_leaves_the_old_model() {
     let output = command.current_dir(&folder.0).output();
     let status = fs::read_to_string(folder.path("status")).unwrap_or_default();
     if status.is_empty() || !folder.path("before.json").exists() {
-        eprintln!("skipped: a tmpfs cannot be mounted here: {output:?}");
+        let _ = writeln!(std::io::stderr(), "skipped: a tmpfs cannot be mounted here: {output:?}");
         return;
     }
     assert_eq!(status.trim(), "2", "{output:?}");

@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::io::Write as _;
 use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
 
@@ -283,7 +284,7 @@ fn what_is_no_file_is_not_read_and_what_is_too_much_is_said() {
     let folder = Folder::new("endless");
     folder.write("motion.csv", &moving(600)).write("recording.yaml", MANIFEST);
     if !std::path::Path::new("/dev/zero").exists() {
-        eprintln!("skipped: there is no /dev/zero");
+        let _ = writeln!(std::io::stderr(), "skipped: there is no /dev/zero");
         return;
     }
     folder.write("robot.yaml", &MANIFEST.replace("robot: planar_2r", "robot: /dev/zero"));
@@ -328,7 +329,7 @@ fn an_array_whose_header_promises_too_many_columns_is_refused() {
     // A file of that length with nothing in it takes no room on the disk.
     let file = std::fs::File::options().write(true).open(folder.path("motion.npy")).unwrap();
     if file.set_len(bytes.len() as u64 + 8_000_000_000).is_err() {
-        eprintln!("skipped: no file of 8 GB without content can be made here");
+        let _ = writeln!(std::io::stderr(), "skipped: no file of 8 GB without content can be made here");
         return;
     }
     let columns = MANIFEST.replace("motion.csv", "motion.npy").replace("column: t", "column: 0");

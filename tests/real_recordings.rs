@@ -4,6 +4,7 @@
 //! they were skipped.
 #![allow(clippy::unwrap_used)]
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use dynid::models;
@@ -27,7 +28,7 @@ struct Recorded {
 fn recorded(name: &str, bandwidth: Option<Bandwidth>) -> Option<Recorded> {
     let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
     if !path.exists() {
-        eprintln!("skipped: {} is not there", path.display());
+        let _ = writeln!(std::io::stderr(), "skipped: {} is not there", path.display());
         return None;
     }
     let manifest = Manifest::read(&path).unwrap();

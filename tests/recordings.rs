@@ -3,6 +3,7 @@
 
 mod common;
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -211,7 +212,10 @@ fn completions_and_the_manual_name_every_command() {
 #[test]
 fn official_packages_read_what_is_written() {
     let Some(python) = std::env::var_os("DYNID_PYTHON") else {
-        eprintln!("skipped: DYNID_PYTHON names no Python with mcap, mcap-ros2-support and pyarrow");
+        let _ = writeln!(
+            std::io::stderr(),
+            "skipped: DYNID_PYTHON names no Python with mcap, mcap-ros2-support and pyarrow"
+        );
         return;
     };
     let folder = Folder::new("official");

@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 use std::sync::LazyLock;
@@ -312,7 +313,10 @@ fn by_its_tool(file: &str, joints: &[&str], states: &[[Vec<f64>; 3]]) -> Option<
     let output = match output {
         Ok(output) if output.status.code() != Some(3) => output,
         _ => {
-            eprintln!("skipped: {python} has no tool that loads {file} (DYNID_PYTHON names one that has)");
+            let _ = writeln!(
+                std::io::stderr(),
+                "skipped: {python} has no tool that loads {file} (DYNID_PYTHON names one that has)"
+            );
             return None;
         }
     };

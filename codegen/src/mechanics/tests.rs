@@ -3,6 +3,7 @@
 use super::model::Equations;
 use crate::robot::RobotTable;
 use crate::testing::{Random, Row, all_parameters, numeric_base, planar_2r, serial, tx40};
+use std::io::Write as _;
 use std::path::Path;
 
 /// Robots, states and regressors of an independent engine; `None` where the file is not at hand.
@@ -11,7 +12,7 @@ fn reference() -> Option<serde_yaml::Value> {
     match std::fs::read_to_string(&path) {
         Ok(text) => Some(serde_yaml::from_str(&text).unwrap()),
         Err(_) => {
-            eprintln!("skipped: {} is not there", path.display());
+            let _ = writeln!(std::io::stderr(), "skipped: {} is not there", path.display());
             None
         }
     }

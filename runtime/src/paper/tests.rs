@@ -5,6 +5,7 @@ use super::*;
 use crate::model::Model;
 use crate::signal::{Preparation, prepare};
 use crate::simulation::testing::tx40;
+use std::io::Write as _;
 
 const SEEDS: [u64; 2] = [1, 2];
 
@@ -64,7 +65,7 @@ fn cases_one_three_and_five_fail_and_hold_on_the_real_robot_as_in_the_paper() {
     use crate::recording::{Manifest, load};
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/tx40/recording.yaml");
     if !path.exists() {
-        eprintln!("skipped: {} is absent", path.display());
+        let _ = writeln!(std::io::stderr(), "skipped: {} is absent", path.display());
         return;
     }
     let (model, _) = tx40();

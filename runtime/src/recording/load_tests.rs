@@ -1,4 +1,5 @@
 use std::borrow::Cow;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::{Loader, Recording, load};
@@ -48,7 +49,7 @@ fn shared(path: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    eprintln!("skipped: {} is absent", path.display());
+    let _ = writeln!(std::io::stderr(), "skipped: {} is absent", path.display());
     None
 }
 

@@ -101,7 +101,7 @@ fn a_joint_that_hears_another_has_a_part_of_its_torque() {
             time: 0.0,
             q: &still,
             dq: &still,
-            ddq: &[0.0],
+            ddq: &still,
             load: &load,
             link: &load,
             gravity: &still,

@@ -8,6 +8,7 @@ use crate::model::{
 };
 use approx::assert_abs_diff_eq;
 use serde_json::Value;
+use std::io::Write as _;
 
 fn frame(sigma: u8, alpha: f64, d: f64, theta: f64, r: f64, parent: Option<usize>) -> Frame {
     let kind = [JointKind::Revolute, JointKind::Prismatic, JointKind::Fixed][sigma as usize];
@@ -73,7 +74,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn rows_and_energy_agree_with_an_independent_engine() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference/regressors.json");
     let Ok(text) = std::fs::read_to_string(path) else {
-        eprintln!("skipped: {path} is not there");
+        let _ = writeln!(std::io::stderr(), "skipped: {path} is not there");
         return;
     };
     let all: Value = serde_json::from_str(&text).unwrap();
