@@ -3,9 +3,9 @@
 use super::motions::Motions;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
-use super::rules::{ERROR_REFINED, GAIN_STEP, GAIN_STEPS, LEAST_SCANNED, SCANNED_INSTANTS, ZERO_ANGLES};
+use super::rules::{ERROR_REFINED, GAIN_STEP, GAIN_STEPS, ZERO_ANGLES};
 use crate::effects::{EffectKind, Place, corrected_at};
-use crate::far_off::{AS_LITTLE, Descent, Instants, LEAVES, Number, Wrong, Zeros, zeros};
+use crate::far_off::{AS_LITTLE, Descent, INSTANTS, Instants, LEAST, LEAVES, Number, Wrong, Zeros, zeros};
 use crate::model::{JointKind, Model, RecursiveModel};
 use crate::parallel;
 use crate::statistics::golden;
@@ -135,7 +135,7 @@ fn one_number(
     let &(sum, by, number) = tried.first()?;
     let worsens_none = descent.worsens_none(&instants.residual(model, &[(number, by)])?);
     let by = if number.wrong == Wrong::Zero && by > 0.5 * TAU { by - TAU } else { by };
-    let certain = sum < LEAVES.ln() && worsens_none && by.abs() > LEAST_SCANNED;
+    let certain = sum < LEAVES.ln() && worsens_none && by.abs() > LEAST;
     let rivals = tried.iter().skip(1).filter(|other| other.0 - sum < AS_LITTLE).map(|other| other.2);
     certain.then(|| One { number, by, sum, rivals: rivals.collect() })
 }
@@ -173,7 +173,7 @@ fn instants(motions: &Motions, (design, fit): (&Design, &Fit), chi: Option<Vec<f
             rows.entry((row.signal, row.centre)).or_default().push((joint, torque));
         }
     }
-    let every = rows.len().div_ceil(SCANNED_INSTANTS).max(1);
+    let every = rows.len().div_ceil(INSTANTS).max(1);
     let kept: Vec<_> = rows.into_iter().step_by(every).collect();
     let of = |k: usize, j: usize| -> Vec<f64> {
         let at = |&((signal, centre), _): &((usize, usize), _)| {

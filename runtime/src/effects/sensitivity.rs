@@ -152,20 +152,8 @@ pub fn corrected_at(
 }
 
 impl Corrected {
-    /// The robot as it is written.
-    pub fn nothing(robot: &crate::model::Robot) -> Self {
-        Self { robot: robot.clone(), beyond_encoder: vec![0.0; robot.joints()] }
-    }
-
-    /// Whether nothing of it is other than it is written.
-    pub fn is_as_written(&self, robot: &crate::model::Robot) -> bool {
-        self.robot.gravity == robot.gravity
-            && self.robot.frames == robot.frames
-            && self.beyond_encoder.iter().all(|&x| x == 0.0)
-    }
-
     /// With more errors, of the numbers of an effect that are wrong at a place. `None` where these are not the robot's.
-    pub fn then(self, effect: &dyn Sensitivity, v: usize, errors: &[f64]) -> Option<Self> {
+    pub fn then(&self, effect: &dyn Sensitivity, v: usize, errors: &[f64]) -> Option<Self> {
         let mut more = corrected_at(&self.robot, effect, v, errors)?;
         more.beyond_encoder.iter_mut().zip(&self.beyond_encoder).for_each(|(all, before)| *all += before);
         Some(more)

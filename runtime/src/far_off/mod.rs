@@ -19,6 +19,10 @@ pub(crate) use instants::{Number, Wrong};
 pub(crate) use zeros::Zeros;
 pub(crate) use zeros::zeros;
 
+/// Instants that numbers are tried on. Numerics: some rows for every parameter.
+pub(crate) const INSTANTS: usize = 240;
+/// Least angle, rad, and logarithm of a factor that are taken: derivatives at nothing lead to smaller ones. Mechanics.
+pub(crate) const LEAST: f64 = 0.35;
 /// A number is taken for wrong where one joint is left with this part of its squares by it, the others as they are. Judgement: a
 /// smaller error is a law among others, and no other physics is imitated so well.
 pub(crate) const LEAVES: f64 = 0.5;

@@ -93,8 +93,8 @@ pub enum Verdict {
 ///
 /// The free fit is compared with the best one that a real robot can have ([`physical_fit`]). Where physics costs
 /// something or a joint is explained poorly, other robots of the same joints are tried, other directions of gravity, and
-/// signs and units of single joints, other zeros; where it costs much or a joint is explained badly, so are orders of columns, units
-/// of angles and offsets.
+/// signs and units of single joints, other zeros; where it costs much or a joint is explained badly, so are orders of
+/// columns, units of angles and offsets.
 pub fn judge(
     judged: &Judged<'_>,
     torques: &Observation,
@@ -235,15 +235,12 @@ fn better(
             (better >= enough && explains).then_some((better, candidate, error))
         })
         .collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
     // Angles are fitted: what takes no number, and does nearly as well, comes first.
-    let best = all.first().map_or(0.0, |first| first.0);
-    let takes_none = |(better, instead, _): &(f64, Instead, f64)| {
-        !matches!(instead, Instead::Zeros(_)) && *better > best.powf(NEARLY)
+    let rank = |(better, instead, _): &(f64, Instead, f64)| match instead {
+        Instead::Zeros(_) => better.powf(NEARLY),
+        _ => *better,
     };
-    if all.iter().any(takes_none) {
-        all.retain(|(_, instead, _)| !matches!(instead, Instead::Zeros(_)));
-    }
+    all.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
     let best = all.first().map_or(0.0, |first| first.0);
     let Some(first) = all.first().map(|(_, instead, _)| instead.clone()) else { return Vec::new() };
     let least = match first {

@@ -2,16 +2,12 @@
 
 use super::judged::Judged;
 use crate::estimation::PhysicalFit;
-use crate::far_off::{Instants, zeros};
+use crate::far_off::{INSTANTS, Instants, LEAST, zeros};
 use crate::model::JointIndex;
 use crate::signal::{Decimator, Motion};
 
-/// Instants that angles are tried on. Numerics: some rows for every parameter.
-const INSTANTS: usize = 240;
 /// Rows of a joint that is slower than this part of its top speed are left out: which way its friction points is not certain.
 const SLOW: f64 = 0.02;
-/// Least angle of which one is, rad: derivatives lead to smaller ones, which a diagnosis finds.
-const LEAST: f64 = 0.35;
 
 /// The zeros that leave far less of the torques, rad; `own` is the fit with those that were declared.
 pub(super) fn other_zeros(judged: &Judged<'_>, own: &PhysicalFit) -> Option<Vec<(JointIndex, f64)>> {

@@ -1,7 +1,7 @@
 //! What a robot has beyond its base parameters and other laws feel: bodies that its joints carry, and torques of its drives.
 
 use crate::diagnosis::rules::LARGE_ERROR;
-use crate::effects::{Corrected, EffectKind, EffectTerm, Form, Place, TermScale, numbers_at};
+use crate::effects::{Corrected, EffectKind, EffectTerm, Form, Place, TermScale, corrected_at, numbers_at};
 use crate::model::Robot;
 
 /// Bodies and laws that are known of a robot beside its parameters.
@@ -116,10 +116,12 @@ impl NumberError {
         self.errors.iter().any(|e| e.abs() >= LARGE_ERROR)
     }
 
-    /// The robot with these numbers as they are, too.
-    pub fn put_in(&self, robot: Corrected) -> Corrected {
-        let law = self.effect.form().sensitivity().zip(self.place.variant());
-        let there = law.and_then(|(law, v)| robot.clone().then(law, v, &self.errors));
-        there.unwrap_or(robot)
+    /// The robot with these numbers as they are, one after the other; `None` where none of them is the robot's.
+    pub fn put_in<'e>(robot: &Robot, errors: impl Iterator<Item = &'e Self>) -> Option<Corrected> {
+        let of_robot = |e: &'e Self| Some((e.effect.form().sensitivity()?, e.place.variant()?, &e.errors));
+        errors.filter_map(of_robot).fold(None, |before: Option<Corrected>, (law, v, errors)| match before {
+            Some(before) => before.then(law, v, errors).or(Some(before)),
+            None => corrected_at(robot, law, v, errors),
+        })
     }
 }

@@ -10,7 +10,7 @@ use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::signals::Signals;
 use crate::diagnosis::rules::NEAR_ERROR;
-use crate::effects::{Corrected, EffectKind};
+use crate::effects::EffectKind;
 use crate::model::RecursiveModel;
 use std::sync::Arc;
 
@@ -43,18 +43,17 @@ impl Context<'_> {
     /// them large; of a parameter that is known, what the errors add to its column. `plain` are those without. `None` where there
     /// are no errors of these.
     pub fn bent(&self, (design, plain): (&Design, &[Vec<f64>]), errors: Vec<NumberError>) -> Option<Bent> {
-        let first = errors.first()?;
         // All of them are changes, or none is.
-        let (is_change, robot) = (!first.in_baseline, self.model.robot());
+        let is_change = !errors.first()?.in_baseline;
         // The design has no columns of known parameters.
         let whole = (!design.known.is_empty()).then(|| design.columns_of(self.model, self.signals));
         let plain = whole.as_deref().unwrap_or(plain);
-        let there = errors.iter().fold(Corrected::nothing(robot), |robot, e| e.put_in(robot));
-        let mut columns = if there.is_as_written(robot) {
-            plain.to_vec()
-        } else {
-            let signals: Vec<Signals> = self.signals.iter().map(|s| s.seen_by(&there)).collect();
-            design.columns_of(&RecursiveModel::new(there.robot).ok()?, &signals)
+        let mut columns = match NumberError::put_in(self.model.robot(), errors.iter()) {
+            Some(there) => {
+                let signals: Vec<Signals> = self.signals.iter().map(|s| s.seen_by(&there)).collect();
+                design.columns_of(&RecursiveModel::new(there.robot).ok()?, &signals)
+            }
+            None => plain.to_vec(),
         };
         let of_drives = errors.iter().filter(|e| e.effect == EffectKind::TorqueConstantError);
         for (joint, error) in of_drives.filter_map(|e| e.place.joint().zip(e.errors.first())) {

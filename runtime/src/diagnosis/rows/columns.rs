@@ -8,10 +8,9 @@ use crate::diagnosis::rows::series::Series;
 use crate::diagnosis::rows::signals::ModelTorques;
 use crate::diagnosis::rows::user::user_columns;
 use crate::effects::{
-    At, Corrected, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale,
-    Sensitivity, TermScale, Transmission, body_columns, derivable, derivative, numbers_at,
+    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
+    TermScale, Transmission, body_columns, derivable, derivative, numbers_at,
 };
-use crate::model::RecursiveModel;
 use std::borrow::Cow;
 
 impl Context<'_> {
@@ -131,8 +130,8 @@ impl Context<'_> {
     ) -> Vec<Series> {
         let errors = &self.additions().errors;
         let own = errors.iter().position(|e| (e.effect, e.place) == (effect, Place::Variant(v)));
-        let before = self.with_errors(&errors[..own.unwrap_or(errors.len())], signal);
-        self.derivatives_from((signal, before), law, v, at)
+        let before = &errors[..own.unwrap_or(errors.len())];
+        self.derivatives_from((signal, before), (law, v), at, at)
     }
 
     /// The columns of an error of the robot's numbers where these are far off: the derivatives of the robot with all of them.
@@ -143,22 +142,22 @@ impl Context<'_> {
         v: usize,
         at: &[f64],
     ) -> Vec<Series> {
-        let there = self.with_errors(&self.additions().errors, signal);
-        let mut columns = self.derivatives_from((signal, there), law, v, &[]);
-        if !at.is_empty() {
-            columns.extend(self.uncovered(signal, law));
-        }
-        columns
+        self.derivatives_from((signal, &self.additions().errors), (law, v), &[], at)
     }
 
+    /// Derivatives along a way that begins at the robot with these errors, beside what an error `at` uncovers.
     fn derivatives_from(
         &self,
-        (signal, from): (usize, Option<(Corrected, RecursiveModel)>),
-        law: &dyn Sensitivity,
-        v: usize,
+        (signal, errors): (usize, &[NumberError]),
+        (law, v): (&dyn Sensitivity, usize),
+        way: &[f64],
         at: &[f64],
     ) -> Vec<Series> {
         let robot = self.model.robot();
+        let from = self.robot_with(errors, signal).and_then(|there| {
+            let engine = derivable(&there.robot).ok()?;
+            Some((there, engine))
+        });
         let (s, chi) = (&self.signals[signal], self.chi_in(signal));
         let (engine, gravity, q) = match &from {
             Some((there, engine)) => (engine, there.robot.gravity, Cow::Owned(there.real_positions(&s.q))),
@@ -172,7 +171,7 @@ impl Context<'_> {
                     engine,
                     gravity,
                     &chi,
-                    &Direction { effect: law, variants: &wanted, which, at },
+                    &Direction { effect: law, variants: &wanted, which, at: way },
                     [&*q, &s.dq, &s.ddq, &s.jerk],
                     &mut out,
                 );
@@ -180,23 +179,9 @@ impl Context<'_> {
             })
             .collect();
         if !at.is_empty() {
-            columns.extend(self.uncovered(signal, law));
+            columns.extend(law.uncovered(robot, &s.q).into_iter().map(|column| vec![column]));
         }
         columns
-    }
-
-    fn uncovered(&self, signal: usize, law: &dyn Sensitivity) -> impl Iterator<Item = Series> {
-        law.uncovered(self.model.robot(), &self.signals[signal].q).into_iter().map(|column| vec![column])
-    }
-
-    /// The robot with these errors as it was in a motion, and its model; `None` where there are none.
-    fn with_errors(&self, errors: &[NumberError], signal: usize) -> Option<(Corrected, RecursiveModel)> {
-        let is_there = |e: &&NumberError| e.in_baseline || self.signals[signal].is_target;
-        let mut errors = errors.iter().filter(is_there).peekable();
-        errors.peek()?;
-        let there = errors.fold(Corrected::nothing(self.model.robot()), |robot, e| e.put_in(robot));
-        let engine = derivable(&there.robot).ok()?;
-        Some((there, engine))
     }
 
     fn coupled(&self, signal: usize, [a, b]: [usize; 2], shape: &[f64]) -> Vec<Series> {

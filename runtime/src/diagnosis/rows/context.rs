@@ -27,9 +27,9 @@ pub(super) struct Made {
 }
 
 /// A robot whose numbers are not those of its table.
-pub(super) struct There {
-    pub corrected: Corrected,
-    pub model: RecursiveModel,
+struct There {
+    corrected: Corrected,
+    model: RecursiveModel,
 }
 
 impl Made {
@@ -146,10 +146,7 @@ impl<'a> Context<'a> {
     pub(super) fn as_it_is(&self, signal: usize) -> (&dyn Model, Cow<'_, Signals>) {
         let signals = &self.signals[signal];
         let there = self.made.there[usize::from(signals.is_target)].get_or_init(|| {
-            let all = self.additions.errors.iter().filter(|e| e.in_baseline || signals.is_target);
-            let mut all = all.peekable();
-            all.peek()?;
-            let corrected = all.fold(Corrected::nothing(self.model.robot()), |robot, e| e.put_in(robot));
+            let corrected = self.robot_with(&self.additions.errors, signal)?;
             let model = RecursiveModel::new(corrected.robot.clone()).ok()?;
             Some(There { corrected, model })
         });
@@ -157,6 +154,12 @@ impl<'a> Context<'a> {
             Some(There { corrected, model }) => (model, Cow::Owned(signals.seen_by(corrected))),
             None => (self.model, Cow::Borrowed(signals)),
         }
+    }
+
+    /// The robot with these errors as it was in a motion; `None` where it had none of them.
+    pub(super) fn robot_with(&self, errors: &[NumberError], signal: usize) -> Option<Corrected> {
+        let is_there = |e: &&NumberError| e.in_baseline || self.signals[signal].is_target;
+        NumberError::put_in(self.model.robot(), errors.iter().filter(is_there))
     }
 
     /// The torque of each drive, `[j][t]`, which channels hear: that of the standard model and of the laws that the joints

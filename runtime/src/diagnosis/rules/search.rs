@@ -48,10 +48,6 @@ pub(in crate::diagnosis) const GAIN_STEP: f64 = 0.35;
 pub(in crate::diagnosis) const GAIN_STEPS: i32 = 7;
 /// Golden sections of two steps: to a hundredth. Numerics: refits of the law go on from there.
 pub(in crate::diagnosis) const ERROR_REFINED: usize = 8;
-/// Instants that they are tried on. Numerics: some rows for every parameter.
-pub(in crate::diagnosis) const SCANNED_INSTANTS: usize = 240;
-/// Least angle, rad, and logarithm of a factor that are taken: derivatives at nothing lead to smaller ones. Mechanics.
-pub(in crate::diagnosis) const LEAST_SCANNED: f64 = 0.35;
 /// From this error on, in units of its number, the columns of the base parameters are those of the robot that has it. Numerics:
 /// below, parameters that follow it one refit later have converged to a thousandth after three.
 pub(in crate::diagnosis) const LARGE_ERROR: f64 = 0.1;

@@ -92,9 +92,11 @@ impl<'a> ExtendedModel<'a> {
     /// [`SingularDesign`] where there is no fit.
     pub fn refit(&mut self) -> Result<(), SingularDesign> {
         let mut deviation = GAIN_DEVIATION;
-        let of_robot = self.terms.iter().filter(|term| recorded_larger_on(term).is_none());
-        let errors = of_robot.filter_map(|term| self.large_error(term)).collect();
-        self.context.take_errors(errors);
+        let robot = self.context.model.robot();
+        let of_robot = |term: &Accepted| {
+            NumberError::of_robot(robot, (term.effect, term.place), &term.shape, !self.change)
+        };
+        self.context.take_errors(self.terms.iter().filter_map(of_robot).collect());
         for round in 1..=REFITS_OF_BENT_COLUMNS {
             put_terms(&mut self.slow, (&self.context, self.change), (&self.terms, &self.factors), deviation)?;
             deviation = self.deviation_of_gains(deviation);
@@ -141,11 +143,8 @@ impl<'a> ExtendedModel<'a> {
 
     /// Whether a term is an error of a number of the robot or of a drive that is not small.
     pub fn is_large_error(&self, k: usize) -> bool {
-        self.large_error(&self.terms[k]).is_some()
-    }
-
-    fn large_error(&self, term: &Accepted) -> Option<NumberError> {
-        large_error(self.context.model.robot(), term, &self.factors, self.change)
+        let robot = self.context.model.robot();
+        large_error(robot, &self.terms[k], &self.factors, self.change).is_some()
     }
 
     /// An error that is not small bends its own column: derivatives are taken along the way to it. Says whether all errors stay
