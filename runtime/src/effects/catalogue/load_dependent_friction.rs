@@ -23,7 +23,10 @@ const WORDS: Words = Words {
         ("link load", "load without that of the rotor's inertia"),
         ("load_of_gravity_alone", "there where the load is that of gravity alone"),
         ("load_without_rotor", "there where the load is that of the links alone"),
-        ("rotor_inertia", "inertia of the rotor that the link load is without, where the robot has no parameter for it"),
+        (
+            "rotor_inertia",
+            "inertia of the rotor that the link load is without, where the robot has no parameter for it",
+        ),
         ("fast_torque", "standard deviation of the torques in the gear that are faster than the signals"),
         ("fast", "those torques: the mean over all that they may be counts"),
     ],
