@@ -63,9 +63,11 @@ impl Motions {
         let mut signals: Vec<Signals> = old.chain(new).collect::<Result<_, _>>()?;
         if let Some(reference) = &settings.reference {
             let known = reference.torques(model, &signals)?;
-            for (motion, known) in signals.iter_mut().zip(known) {
+            let unknown = reference.unknown(model, &signals)?;
+            for ((motion, known), unknown) in signals.iter_mut().zip(known).zip(unknown) {
                 motion.set_delay(reference.delay())?;
                 motion.take_out(known);
+                motion.unknown = unknown;
             }
         }
         // The rows of a baseline say what a reference was identified from.

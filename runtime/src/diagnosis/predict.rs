@@ -1,5 +1,6 @@
 //! Accepted effects as part of a model: their torques on any motion.
 
+use super::contact::silent::Silent;
 use super::error::DiagnosisError;
 use super::reference::Reference;
 use super::rows::additions::Additions;
@@ -80,5 +81,37 @@ impl Reference {
         signals: &[Signals],
     ) -> Result<Vec<Vec<Vec<f64>>>, DiagnosisError> {
         torques_on(model, self.chi(), self.effects(), signals)
+    }
+
+    /// Samples beyond the values that its curves were fitted to, of motions of the recording that is diagnosed: how a curve goes on
+    /// there is no news. `[motion][j][t]`; those of a motion are empty where it has none. Where most of a joint's motion is beyond,
+    /// its curves go on as they end.
+    pub(super) fn unknown(
+        &self,
+        model: &dyn Model,
+        signals: &[Signals],
+    ) -> Result<Vec<Vec<Vec<bool>>>, DiagnosisError> {
+        let n = model.robot().joints();
+        let mut unknown = vec![Vec::new(); signals.len()];
+        if self.effects().iter().all(|term| term.intervals(n).is_empty()) {
+            return Ok(unknown);
+        }
+        let scales = scales(model, signals, self.chi());
+        let mut context = Context::new(model, signals, scales, self.chi().to_vec())?;
+        context.take(Additions::among(model.robot(), self.effects()));
+        let silent = Silent::of(self.effects(), n);
+        let targets: Vec<usize> = (0..signals.len()).filter(|&k| signals[k].is_target).collect();
+        let mut beyond: Vec<Vec<Vec<bool>>> = (targets.iter())
+            .map(|&k| (0..n).map(|j| silent.beyond_curves(&context, j, k)).collect())
+            .collect();
+        for j in 0..n {
+            let samples = beyond.iter().flat_map(|motion| &motion[j]);
+            let (beyond_here, all) = samples.fold((0, 0), |(b, n), x| (b + usize::from(*x), n + 1));
+            if 2 * beyond_here > all {
+                beyond.iter_mut().for_each(|motion| motion[j].fill(false));
+            }
+        }
+        targets.into_iter().zip(beyond).for_each(|(k, beyond)| unknown[k] = beyond);
+        Ok(unknown)
     }
 }

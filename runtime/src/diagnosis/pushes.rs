@@ -5,9 +5,11 @@ use super::candidates::trial::dense_columns;
 use super::contact::felt::Around;
 use super::contact::moving;
 use super::contact::search::{self as contact_search, Contacts};
+use super::contact::silent::Silent;
 use super::contact::standing;
 use super::contact::track::Left;
 use super::error::DiagnosisError;
+use super::explanation::finding::terms;
 use super::preparation::Prepared;
 use super::rows::design::Design;
 use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
@@ -104,8 +106,8 @@ impl Pushes {
     /// All of them, and those at rest.
     pub fn with_those_at_rest(&self, prepared: &Prepared, search: &Search<'_>) -> Option<Contacts> {
         let motions = &prepared.motions;
-        let rest =
-            standing::at_rest(&search.model.context, &prepared.moving.friction_known, &motions.slowest);
+        let (context, laws) = (&search.model.context, terms(&search.model));
+        let rest = standing::at_rest(context, &laws, &prepared.moving.friction_known, &motions.slowest);
         Contacts::joined(
             Contacts::joined(self.contacts.clone(), self.of_single_joints.clone()),
             rest.contacts(motions.signals.len()),
@@ -133,10 +135,13 @@ fn pushed_in_motion(
         let orders: Vec<f64> = lines.iter().map(|line| line.order).collect();
         beside.extend(dense_columns(context, &outside, ripple, Place::Joint(joint), &orders, false));
     }
+    let laws = terms(&search.model);
+    let standing = context.reference.iter().flat_map(|reference| reference.effects().iter().cloned());
     let left = Left {
         residual: &search.model.residual_on(&outside),
         beside: &beside,
         fitted: &search.model.fitted_on(&outside),
+        silent: &Silent::of(&laws.into_iter().chain(standing).collect::<Vec<_>>(), outside.joints),
     };
     let look = moving::look(context, &outside, &left, level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);

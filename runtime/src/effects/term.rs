@@ -60,6 +60,19 @@ impl EffectTerm {
         }
     }
 
+    /// Other joints whose direction of motion its torque on a joint changes with, in a robot of so many joints: where these turn
+    /// round it is as uncertain as their friction.
+    pub fn turns_with(&self, joint: usize, joints: usize) -> Vec<usize> {
+        if let Some([own, heard]) = self.place.hears() {
+            return if own == joint { vec![heard] } else { Vec::new() };
+        }
+        let is_own = matches!(self.effect.form(), Form::Free) && self.place.joint() == Some(joint);
+        let axes = if is_own { self.intervals(joints) } else { Vec::new() };
+        let turns = |variable: Variable| variable.has_direction() || matches!(variable, Variable::Torque(_));
+        let variables = axes.into_iter().map(|axis| axis.variable).filter(|variable| turns(*variable));
+        variables.filter_map(Variable::joint).filter(|other| *other != joint).collect()
+    }
+
     /// Its name in the JSON: that of the effect, or of the user's law. A curve over nothing but the position of its joint has
     /// the name of the effect that says so.
     pub fn id(&self) -> &'static str {

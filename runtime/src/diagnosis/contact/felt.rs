@@ -54,6 +54,7 @@ impl Felt {
             let sigma = noise.sigma(joint, rows.len()).filter(|_| !rows.is_empty())?;
             let left = rows.iter().map(|&r| around.residual[r]).sum::<f64>() / rows.len() as f64;
             let [mean, sigma] = noise.pushed(joint, motion, places).unwrap_or([left, sigma]);
+            let sigma = sigma.hypot(around.context.signals[motion].rounding[joint]);
             let y = rows.iter().map(|&r| design.torque(r)).sum::<f64>() / rows.len() as f64;
             Some((joint, rows, JointRow { joint, residual: mean, y, sigma: sigma.max(1e-12) }))
         };

@@ -14,6 +14,7 @@ pub(in crate::diagnosis) mod residual;
 pub(in crate::diagnosis) mod rest;
 pub(in crate::diagnosis) mod scan;
 pub(in crate::diagnosis) mod search;
+pub(in crate::diagnosis) mod silent;
 pub(in crate::diagnosis) mod spread;
 pub(in crate::diagnosis) mod squares;
 pub(in crate::diagnosis) mod standing;

@@ -4,10 +4,11 @@ use crate::diagnosis::contact::force::{JointRow, as_torques, best_link};
 use crate::diagnosis::contact::rest::{Load, Push, Seen, Standing, look, stretches};
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::contact::squares::{Squares, mean_beside};
+use crate::diagnosis::predict::torques_on;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, STICTION};
-use crate::effects::{ContactForce, JointTorque};
+use crate::effects::{ContactForce, EffectTerm, JointTorque};
 use nalgebra::Vector3;
 
 /// What is seen of the outside while the robot holds still.
@@ -40,10 +41,15 @@ impl AtRest {
     }
 }
 
-/// Looks at all motions of the recording that is diagnosed. `known` are the joints whose friction is known;
-/// below the speeds of `slowest` a joint stands.
-pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, known: &[bool], slowest: &[f64]) -> AtRest {
-    let laws = laws_at_rest(context);
+/// Looks at all motions of the recording that is diagnosed. `laws` are those that were found beside those of a reference, `known`
+/// the joints whose friction is known; below the speeds of `slowest` a joint stands.
+pub(in crate::diagnosis) fn at_rest(
+    context: &Context<'_>,
+    laws: &[EffectTerm],
+    known: &[bool],
+    slowest: &[f64],
+) -> AtRest {
+    let laws = laws_at_rest(context, laws);
     let coulomb: Vec<Option<f64>> = coulomb(context)
         .into_iter()
         .zip(&laws.friction)
@@ -103,7 +109,7 @@ pub(in crate::diagnosis) fn at_rest(context: &Context<'_>, known: &[bool], slowe
     found
 }
 
-/// What the laws of a reference are at rest.
+/// What laws are at rest.
 struct LawsAtRest {
     /// Torque in the middle of the band of dry friction, `[motion][j][t]`; none without laws.
     torque: Vec<Vec<Vec<f64>>>,
@@ -111,13 +117,15 @@ struct LawsAtRest {
     friction: Vec<f64>,
 }
 
-/// The laws of a reference as nothing moves: the mean of both directions, and half of the difference, which is friction.
-fn laws_at_rest(context: &Context<'_>) -> LawsAtRest {
+/// These laws and those of a reference as nothing moves: the mean of both directions, and half of the difference, which is
+/// friction.
+fn laws_at_rest(context: &Context<'_>, laws: &[EffectTerm]) -> LawsAtRest {
     let mut friction = vec![0.0_f64; context.model.robot().joints()];
+    let mut terms = laws.to_vec();
+    terms.extend(context.reference.iter().flat_map(|reference| reference.effects().iter().cloned()));
     let toward = |speed: f64| {
-        let reference = context.reference.as_ref()?;
         let at: Vec<Signals> = context.signals.iter().map(|s| resting(s, s.q.clone(), speed)).collect();
-        reference.torques(context.model, &at).ok()
+        torques_on(context.model, &context.chi, &terms, &at).ok().filter(|_| !terms.is_empty())
     };
     let (Some(mut torque), Some(back)) = (toward(SLOW), toward(-SLOW)) else {
         return LawsAtRest { torque: Vec::new(), friction };

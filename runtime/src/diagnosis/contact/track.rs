@@ -1,10 +1,10 @@
 //! The rows of a joint that pushes are looked for in.
 
 use crate::diagnosis::contact::curves::curves;
+use crate::diagnosis::contact::silent::Silent;
 use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{CREEPING, REVERSAL_LEFT_OUT, SETTLING};
 
 /// Rows of one joint, and what its residual is judged beside.
 pub(in crate::diagnosis) struct Track {
@@ -30,29 +30,22 @@ pub(in crate::diagnosis) struct Left<'a> {
     pub beside: &'a [Vec<f64>],
     /// Columns on the same rows that the model was fitted with.
     pub fitted: &'a [Vec<f64>],
+    /// Where the model says nothing.
+    pub silent: &'a Silent,
 }
 
 impl Track {
-    /// The rows of a joint, but for those at which it creeps or is near its own reversals, and those near the beginning and the
-    /// end of a motion: what friction, play and flexible gears do there comes and goes as a push does.
+    /// The rows of a joint at which the model is not silent.
     pub fn of(context: &Context<'_>, design: &Design, left: &Left<'_>, joint: usize) -> Self {
         let signals = context.signals;
         let places = Places::of(design, joint);
         let mut kept: Vec<usize> = Vec::new();
-        let creeping = CREEPING * context.scales[joint].speed;
         let mut of_motion = |(k, rows): (usize, &Vec<(usize, usize)>)| {
-            let s = &signals[k];
-            let reach = (REVERSAL_LEFT_OUT * s.rate) as usize;
-            let mut near = near_reversals(&s.dq[joint], reach);
-            near.iter_mut().zip(&s.dq[joint]).for_each(|(near, dq)| *near |= dq.abs() < creeping);
-            let settling = ((SETTLING * s.rate) as usize + s.edge_samples).min(near.len());
-            near[..settling].fill(true);
-            let end = near.len() - settling;
-            near[end..].fill(true);
-            let rows = rows.iter().filter(|(_, r)| !near[design.rows[*r].centre]);
+            let silent = left.silent.samples(context, joint, k);
+            let rows = rows.iter().filter(|(_, r)| !silent[design.rows[*r].centre]);
             let rows: Vec<(usize, usize)> = rows.copied().collect();
             kept.extend(rows.iter().map(|&(_, r)| r));
-            (s.is_target, rows.iter().map(|&(place, r)| (place, left.residual[r])).collect())
+            (signals[k].is_target, rows.iter().map(|&(place, r)| (place, left.residual[r])).collect())
         };
         let motions = places.motions().iter().enumerate().map(&mut of_motion).collect();
         let at: Vec<(usize, usize)> =
@@ -75,28 +68,5 @@ impl Track {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.motions.iter().map(|motion| motion.1.len()).sum()
-    }
-}
-
-/// Whether a speed changes its sign within so many samples of each.
-fn near_reversals(dq: &[f64], reach: usize) -> Vec<bool> {
-    let mut near = vec![false; dq.len()];
-    for t in (1..dq.len()).filter(|&t| dq[t] * dq[t - 1] <= 0.0) {
-        near[t.saturating_sub(reach)..(t + reach).min(dq.len())].fill(true);
-    }
-    near
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn samples_around_a_change_of_sign_are_near_a_reversal() {
-        let dq: Vec<f64> = (0..20).map(|k| f64::from(k) - 9.5).collect();
-        let near = near_reversals(&dq, 3);
-        assert_eq!((0..20).filter(|&k| near[k]).collect::<Vec<_>>(), vec![7, 8, 9, 10, 11, 12]);
-        assert!(near_reversals(&[1.0; 9], 3).iter().all(|x| !x));
-        assert!(near_reversals(&[], 3).is_empty());
     }
 }

@@ -72,10 +72,7 @@ pub(in crate::diagnosis) fn of_term(
         more_curves: free_form::curves(model, k).into_iter().skip(1).collect(),
         variables: variables(model.context.model.robot(), accepted),
         proposal: free_form::proposal(model, k),
-        without: Some(WithoutIt {
-            chi: estimated(&reduced.slow).chi,
-            effects: (0..reduced.terms.len()).map(|i| bare_term(&reduced, i)).collect(),
-        }),
+        without: Some(WithoutIt { chi: estimated(&reduced.slow).chi, effects: terms(&reduced) }),
         ..Finding::of(with_amplitude(model, accepted, amplitude, sigma))
     };
     finding.sentence = words::sentence(model.context.model.robot(), accepted.effect, &finding);
@@ -91,7 +88,12 @@ fn variables(robot: &Robot, accepted: &Accepted) -> Vec<String> {
     }
 }
 
-/// Term k of a model with its amplitudes, whose uncertainty nobody asks for.
+/// All laws of a model with their amplitudes, whose uncertainty nobody asks for.
+pub(in crate::diagnosis) fn terms(model: &ExtendedModel<'_>) -> Vec<EffectTerm> {
+    (0..model.terms.len()).map(|k| bare_term(model, k)).collect()
+}
+
+/// One of them.
 fn bare_term(model: &ExtendedModel<'_>, k: usize) -> EffectTerm {
     let accepted = &model.terms[k];
     let regression = model.regression(accepted.effect.properties().window);

@@ -17,10 +17,13 @@ pub(in crate::diagnosis) struct RowSelection<'a> {
 }
 
 impl RowSelection<'_> {
-    /// Whether a row of a joint may lie at an instant: the joint moves, and nothing excluded lies in the window.
+    /// Whether a row of a joint may lie at an instant: the joint moves, what is known of the robot says something of its torque, and
+    /// nothing excluded lies in the window.
     pub fn accepts(&self, joint: usize, signal: usize, s: &Signals, centre: usize, half: usize) -> bool {
         let (from, to) = (s.time(centre - half), s.time(centre + half));
-        moves(s, centre, half, &self.directions[joint], self.slowest)
+        let is_known = |unknown: &Vec<bool>| !unknown[centre - half..=centre + half].contains(&true);
+        s.unknown.get(joint).is_none_or(is_known)
+            && moves(s, centre, half, &self.directions[joint], self.slowest)
             && !self.excluded[signal].iter().any(|w| w[0] < to && w[1] > from)
     }
 }

@@ -5,7 +5,9 @@ use crate::diagnosis::rules::{RATE_PER_CUTOFF, RECORDED_BAND, SAMPLES_PER_SECOND
 use crate::effects::Corrected;
 use crate::model::{Model, ParameterKind, Robot, StandardParameter, States};
 use crate::recording::Trajectory;
-use crate::signal::{Butterworth, Motion, Preparation, Stencil, central_difference, prepare};
+use crate::signal::{
+    Butterworth, Motion, Preparation, Stencil, central_difference, prepare, rounding_of_means,
+};
 
 /// One motion: positions filtered and differentiated three times, torques through the same filter. `[j][t]`.
 #[derive(Clone)]
@@ -20,6 +22,10 @@ pub(in crate::diagnosis) struct Signals {
     pub ddq: Vec<Vec<f64>>,
     pub jerk: Vec<Vec<f64>>,
     pub torque: Vec<Vec<f64>>,
+    /// Standard deviation of the error of slow torques by the steps that they are recorded in, per joint.
+    pub rounding: Vec<f64>,
+    /// Samples at which what is known of the robot says nothing of a joint's torque, `[j][t]`; empty where there are none.
+    pub unknown: Vec<Vec<bool>>,
     /// Samples at each end that the filters' edge effects reach.
     pub edge_samples: usize,
     /// Torques that are known and not part of `torque`, where there are any.
@@ -86,6 +92,7 @@ impl Signals {
         let cutoff = (rate / RATE_PER_CUTOFF).min(cutoff);
         let filter = Butterworth::low_pass(settings.order, cutoff, rate)?;
         let jerk = motion.ddq.iter().map(|x| differentiated(x, rate)).collect();
+        let rounding = motion.torque.iter().map(|x| rounding_of_means(x)).collect();
         let recorded = Recorded { torque: motion.torque, rate, stride, filter, cutoff, delay };
         Ok(Self {
             name: motion.name,
@@ -97,6 +104,8 @@ impl Signals {
             ddq: thinned(motion.ddq, stride),
             jerk: thinned(jerk, stride),
             torque: recorded.delayed(delay)?,
+            rounding,
+            unknown: Vec::new(),
             edge_samples: motion.edge_samples.div_ceil(stride),
             known: None,
             recorded: Some(recorded),
@@ -168,6 +177,8 @@ impl Signals {
             ddq: motion.ddq.clone(),
             jerk,
             torque: motion.torque.clone(),
+            rounding: vec![0.0; motion.torque.len()],
+            unknown: Vec::new(),
             edge_samples: motion.edge_samples,
             known: None,
             recorded: None,
@@ -186,7 +197,9 @@ impl Signals {
             dq,
             ddq,
             jerk: nothing.clone(),
+            rounding: vec![0.0; nothing.len()],
             torque: nothing,
+            unknown: Vec::new(),
             edge_samples: 0,
             known: None,
             recorded: None,

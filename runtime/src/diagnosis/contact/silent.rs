@@ -1,0 +1,87 @@
+//! Samples of a motion at which a model says nothing of a joint's torque that a push could be told from.
+//!
+//! Near a reversal, where a joint creeps, and where a motion begins or ends, friction, play and flexible gears come and go as a
+//! push does; what a joint hears of another one is as uncertain where that one turns round. And a curve says nothing of values
+//! beyond those that it was fitted to.
+
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::free::values;
+use crate::diagnosis::rules::{CREEPING, REVERSAL_LEFT_OUT, SETTLING};
+use crate::effects::{Axis, EffectTerm};
+
+/// Where a model with laws is silent.
+pub(in crate::diagnosis) struct Silent {
+    /// For each joint itself and those whose direction of motion its torque changes with.
+    turning: Vec<Vec<usize>>,
+    /// Variables of each joint's curves with the intervals of values that these were fitted to.
+    curves: Vec<Vec<Axis>>,
+}
+
+impl Silent {
+    /// Of a model with these laws, in a robot of so many joints.
+    pub fn of(laws: &[EffectTerm], joints: usize) -> Self {
+        let turning = |joint| {
+            let others = laws.iter().flat_map(|law| law.turns_with(joint, joints));
+            std::iter::once(joint).chain(others).collect()
+        };
+        let of_joint = |joint| {
+            let own = laws.iter().filter(move |law| law.place.joint() == Some(joint));
+            own.flat_map(|law| law.intervals(joints)).collect()
+        };
+        Self { turning: (0..joints).map(turning).collect(), curves: (0..joints).map(of_joint).collect() }
+    }
+
+    /// Whether it is at each sample of a motion.
+    pub fn samples(&self, context: &Context<'_>, joint: usize, signal: usize) -> Vec<bool> {
+        let s = &context.signals[signal];
+        let reach = (REVERSAL_LEFT_OUT * s.rate) as usize;
+        let mut silent = vec![false; s.len()];
+        for &j in &self.turning[joint] {
+            let creeping = CREEPING * context.scales[j].speed;
+            let turns = near_reversals(&s.dq[j], reach);
+            let samples = silent.iter_mut().zip(turns.iter().zip(&s.dq[j]));
+            samples.for_each(|(silent, (turns, dq))| *silent |= *turns || dq.abs() < creeping);
+        }
+        let beyond = self.beyond_curves(context, joint, signal);
+        silent.iter_mut().zip(beyond).for_each(|(silent, beyond)| *silent |= beyond);
+        let settling = ((SETTLING * s.rate) as usize + s.edge_samples).min(silent.len());
+        silent[..settling].fill(true);
+        let end = silent.len() - settling;
+        silent[end..].fill(true);
+        silent
+    }
+
+    /// Whether a variable of one of the joint's curves is beyond its interval.
+    pub fn beyond_curves(&self, context: &Context<'_>, joint: usize, signal: usize) -> Vec<bool> {
+        let mut all = vec![false; context.signals[signal].len()];
+        for axis in &self.curves[joint] {
+            let beyond = |x: f64| (x - axis.centre).abs() > axis.half;
+            let values = values(context, signal, axis.variable);
+            all.iter_mut().zip(values).for_each(|(all, x)| *all |= beyond(x));
+        }
+        all
+    }
+}
+
+/// Whether a speed changes its sign within so many samples of each.
+fn near_reversals(dq: &[f64], reach: usize) -> Vec<bool> {
+    let mut near = vec![false; dq.len()];
+    for t in (1..dq.len()).filter(|&t| dq[t] * dq[t - 1] <= 0.0) {
+        near[t.saturating_sub(reach)..(t + reach).min(dq.len())].fill(true);
+    }
+    near
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_around_a_change_of_sign_are_near_a_reversal() {
+        let dq: Vec<f64> = (0..20).map(|k| f64::from(k) - 9.5).collect();
+        let near = near_reversals(&dq, 3);
+        assert_eq!((0..20).filter(|&k| near[k]).collect::<Vec<_>>(), vec![7, 8, 9, 10, 11, 12]);
+        assert!(near_reversals(&[1.0; 9], 3).iter().all(|x| !x));
+        assert!(near_reversals(&[], 3).is_empty());
+    }
+}
