@@ -84,9 +84,11 @@ fn standing(pushes: &[(usize, f64, f64)]) -> Diagnosis {
     diagnosed(&robot, at_rest(&robot, pushes, [0.0; 2]), &baseline).unwrap()
 }
 
-/// The same beside a model of the robot, which has a spring on joint 2.
+/// Of a spring on joint 2, N.m/rad.
+const STIFFNESS: f64 = 12.0;
+
+/// The same beside a model of the robot, which has the spring.
 fn standing_beside_a_model(pushes: &[(usize, f64, f64)]) -> Diagnosis {
-    const STIFFNESS: f64 = 12.0;
     let robot = planar();
     let spring = Hidden::effect(EffectKind::Spring, Place::Joint(1), &[], &[STIFFNESS, 0.0]);
     let moving = robot.record(&robot.motions(3, 8.0, 51), &spring, 51);
@@ -133,6 +135,23 @@ fn a_robot_that_holds_still_is_judged_against_a_model_with_its_laws() {
     assert_eq!(pushed.findings.iter().map(|f| f.effect.as_str()).collect::<Vec<_>>(), ["contact"]);
     assert_eq!(pushed.findings[0].contacts.len(), 1);
     assert!(pushed.held_out.how.contains("reference"));
+}
+
+#[test]
+fn what_a_law_that_is_found_holds_at_rest_is_no_push() {
+    let robot = planar();
+    let spring = Hidden::effect(EffectKind::Spring, Place::Joint(1), &[], &[STIFFNESS, 0.0]);
+    let mut recording = robot.record(&robot.motions(3, 8.0, 52), &spring, 52);
+    let mut settings = Settings::default();
+    settings.threads = 1;
+    let mut named = |pushes: &[(usize, f64, f64)]| -> Vec<String> {
+        recording.truncate(3);
+        recording.push(at_rest(&robot, pushes, [0.0, STIFFNESS * POSE[1]]));
+        let diagnosis = diagnose(&robot.model, &recording, &[], &settings, &Silent).unwrap();
+        diagnosis.findings.into_iter().map(|f| f.effect).collect()
+    };
+    assert_eq!(named(&[]), ["spring"]);
+    assert_eq!(named(&[(0, 4.0, 9.0)]), ["contact", "spring"]);
 }
 
 #[test]

@@ -115,3 +115,57 @@ impl Reference {
         Ok(unknown)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Axis, EffectKind, FreeLaw, Place, Variable};
+    use crate::model::Robot;
+    use crate::simulation::testing::arm;
+    use nalgebra::DMatrix;
+
+    /// What a reference with a curve of joint 1 over the position of joint 2, up to `half` from 0, knows of a motion in which that
+    /// goes from -1 to 1.
+    fn unknown(half: f64, is_target: bool) -> Vec<Vec<bool>> {
+        let (model, standard) = arm();
+        let robot: &Robot = model.robot();
+        let n = robot.joints();
+        let axis = Axis { variable: Variable::Position(1), centre: 0.0, half };
+        let law = FreeLaw::one(axis);
+        let curve = EffectTerm {
+            effect: EffectKind::FreeForm,
+            place: Place::Joint(0),
+            joints: vec![1],
+            shape: law.shape(),
+            amplitude: vec![0.0; law.amplitudes()],
+            sigma: vec![0.0; law.amplitudes()],
+            scale: None,
+            wrenches: Vec::new(),
+        };
+        let chi = robot.base_from_standard(&standard);
+        let size = chi.len() + law.amplitudes();
+        let reference = Reference::new(chi, vec![curve], 0.0, DMatrix::identity(size, size), false)
+            .expect("a covariance of the right size");
+        let ramp: Vec<f64> = (0..201).map(|t| -1.0 + 0.01 * f64::from(t)).collect();
+        let still = vec![vec![0.1; ramp.len()]; n];
+        let mut q = still.clone();
+        q[1] = ramp;
+        let mut signals = Signals::without_torque("m", 100.0, 0.0, [q, still.clone(), still]);
+        signals.is_target = is_target;
+        reference.unknown(&model, &[signals]).expect("a motion of the robot").swap_remove(0)
+    }
+
+    #[test]
+    fn beyond_what_a_curve_was_fitted_to_nothing_is_known_of_its_joint() {
+        let beyond = unknown(0.755, true);
+        let here = |j: usize| beyond[j].iter().filter(|x| **x).count();
+        assert_eq!((here(0), here(1)), (50, 0));
+        assert!(beyond[0][0] && !beyond[0][100] && beyond[0][200]);
+    }
+
+    #[test]
+    fn a_baseline_is_where_it_was_fitted_and_a_curve_over_little_of_a_motion_goes_on_as_it_ends() {
+        assert!(unknown(0.755, false).is_empty());
+        assert!(unknown(0.2, true).iter().flatten().all(|x| !x));
+    }
+}

@@ -189,3 +189,29 @@ impl From<TermScale> for Scale {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::Together;
+
+    fn term(effect: EffectKind, place: Place, shape: Vec<f64>) -> EffectTerm {
+        let (joints, wrenches) = (Vec::new(), Vec::new());
+        EffectTerm { effect, place, joints, shape, amplitude: vec![], sigma: vec![], scale: None, wrenches }
+    }
+
+    #[test]
+    fn what_hears_a_joint_or_depends_on_its_direction_turns_with_it() {
+        let crosstalk = term(EffectKind::TorqueCrosstalk, Place::Hears(1, 2), vec![]);
+        assert_eq!(crosstalk.turns_with(1, 3), [2]);
+        assert!(crosstalk.turns_with(2, 3).is_empty());
+        let axis = |variable| Axis { variable, centre: 0.0, half: 1.0 };
+        let over = |axes: [Variable; 2]| FreeLaw::two(Together::Lines, axes.map(axis)).shape();
+        let free = |axes| term(EffectKind::FreeForm, Place::Joint(0), over(axes));
+        let speeds = free([Variable::Speed(0), Variable::Speed(2)]);
+        assert_eq!(speeds.turns_with(0, 3), [2]);
+        assert!(speeds.turns_with(1, 3).is_empty());
+        assert!(free([Variable::Position(1), Variable::Load(0)]).turns_with(0, 3).is_empty());
+        assert!(term(EffectKind::Spring, Place::Joint(0), vec![]).turns_with(0, 3).is_empty());
+    }
+}
