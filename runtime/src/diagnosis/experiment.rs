@@ -12,7 +12,7 @@ use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
 use super::rows::scales::{scales, top_speeds};
-use super::rows::selection::{RowSelection, hann};
+use super::rows::selection::{Cut, RowSelection, hann};
 use super::rows::signals::{Signals, directions};
 use super::rules::{FAST_STANDSTILL_DIVISOR, FAST_WINDOW, STANDSTILL};
 use crate::effects::{EffectKind, EffectTerm, Form, Place, TermScale};
@@ -106,7 +106,7 @@ pub fn distances(question: &Question<'_>, motion: &Motion) -> Result<Distances, 
         half: FAST_WINDOW,
         slowest: &limits,
         directions: &forms,
-        segments: 1,
+        cut: Cut::NOT,
         excluded: &[vec![]],
     };
     let mut design = Design::new(model, &signals, &selection);

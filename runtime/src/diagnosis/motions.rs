@@ -6,7 +6,7 @@ use super::outcome::Sampling;
 use super::rows::design::Design;
 use super::rows::prior::Prior;
 use super::rows::scales::top_speeds;
-use super::rows::selection::RowSelection;
+use super::rows::selection::{Cut, RowSelection};
 use super::rows::signals::{Signals, directions};
 use super::rules;
 use super::settings::{Settings, fitted_to, given_speeds};
@@ -35,10 +35,22 @@ pub(super) struct Motions {
     prior: Option<Arc<Prior>>,
     /// Linear forms of dq whose sign enters each joint's row.
     directions: Vec<Vec<Vec<f64>>>,
-    /// Segments per motion of the recording that is diagnosed.
-    segments: usize,
+    /// How the motions of the recording that is diagnosed are held out.
+    cut: Cut,
     /// Whether the recording has no rows to spare: slow effects are then smoothed no more than fast ones.
     short: bool,
+}
+
+/// In how many motions the joint moves that moves in fewest: for at least a part of the time that it does where it moves most.
+fn least_motions_of_a_joint(signals: &[Signals], slowest: &[f64]) -> usize {
+    let of_joint = |(j, slowest): (usize, &f64)| {
+        let moving = |s: &Signals| s.dq[j].iter().filter(|v| v.abs() > *slowest).count() as f64 / s.rate;
+        let times: Vec<f64> = signals.iter().map(moving).collect();
+        let most = times.iter().copied().fold(0.0, f64::max);
+        let moves = times.iter().filter(|time| **time > rules::MOVES_IN_MOTION * most).count();
+        (most > 0.0).then_some(moves)
+    };
+    slowest.iter().enumerate().filter_map(of_joint).min().unwrap_or(signals.len())
 }
 
 /// The rows of both windows.
@@ -87,7 +99,14 @@ impl Motions {
         };
         let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
         let count = trajectories.len();
-        let few = count < rules::ENOUGH_MOTIONS;
+        let alone = baseline.is_empty() && settings.reference.is_none();
+        let cut = if count < rules::ENOUGH_MOTIONS {
+            Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS / count, together: false }
+        } else if alone && least_motions_of_a_joint(&signals, &slowest) < rules::ENOUGH_MOTIONS {
+            Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true }
+        } else {
+            Cut::NOT
+        };
         Ok(Self {
             signals,
             settings,
@@ -98,7 +117,7 @@ impl Motions {
             slowest,
             slowest_fast,
             directions: directions(model.robot()),
-            segments: if few { rules::SEGMENTS_OF_FEW_MOTIONS / count } else { 1 },
+            cut,
             short: duration < rules::SHORT_RECORDING,
         })
     }
@@ -111,7 +130,7 @@ impl Motions {
             half,
             slowest: if fast { &self.slowest_fast } else { &self.slowest },
             directions: &self.directions,
-            segments: self.segments,
+            cut: self.cut,
             excluded: excluded.unwrap_or(&nothing),
         };
         let mut design = Design::new(model, &self.signals, &selection);

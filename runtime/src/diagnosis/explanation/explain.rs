@@ -325,6 +325,8 @@ fn how(model: &ExtendedModel<'_>) -> String {
         "every new motion predicted from the baseline and the other new motions".into()
     } else if design.is_single_motion() {
         "forward in time".into()
+    } else if design.together {
+        "every stretch of the motions predicted from the others".into()
     } else {
         "every motion predicted from the others".into()
     }

@@ -21,17 +21,17 @@ impl Fold {
     }
 }
 
-/// Every segment of the recording that is diagnosed held out once: a whole motion, or a stretch of one.
+/// Every segment of the recording that is diagnosed held out once: a whole motion, a stretch of one, or of all.
 ///
 /// # Errors
 /// [`SingularDesign`] where a fold has no fit.
 pub(in crate::diagnosis) fn folds(design: &Design, sigma: &[f64]) -> Result<Vec<Fold>, SingularDesign> {
-    let fold = |held: usize| {
-        let test: Vec<bool> = (0..design.segments.len()).map(|g| g == held).collect();
+    let fold = |held: Vec<usize>| {
+        let test: Vec<bool> = (0..design.segments.len()).map(|g| held.contains(&g)).collect();
         let train: Vec<bool> = test.iter().map(|t| !t).collect();
         Ok(Fold { test, fit: Fit::new(design, sigma, train)? })
     };
-    design.target_segments().into_iter().map(fold).collect()
+    design.held_out_together().into_iter().map(fold).collect()
 }
 
 /// Where a single motion of so many segments is cut: what comes before is fitted, and predicts what comes after.

@@ -28,7 +28,8 @@ pub(in crate::diagnosis) struct Units {
 }
 
 impl Units {
-    /// Units of a design: as long as the recording's motions where there is a baseline, else about ten.
+    /// Units of a design: as long as the recording's motions where there is a baseline, else about ten; where joints move one after
+    /// the other, about ten of each joint.
     pub fn of(design: &Design) -> Self {
         let spans = design.spans();
         let files = spans.len();
@@ -42,7 +43,11 @@ impl Units {
         let wanted = if change {
             target_duration.min(sum(false) / UNITS_WANTED).clamp(UNIT_OF_BASELINE[0], UNIT_OF_BASELINE[1])
         } else {
-            (sum(true) / UNITS_WANTED).clamp(UNIT_OF_ITSELF[0], UNIT_OF_ITSELF[1])
+            let of_joint = |j: usize| design.of_joint(j).count() as f64 * design.step;
+            let times = (0..design.joints).map(of_joint).filter(|time| *time > 0.0);
+            let least = times.fold(sum(true), f64::min);
+            (if design.together { least } else { sum(true) } / UNITS_WANTED)
+                .clamp(UNIT_OF_ITSELF[0], UNIT_OF_ITSELF[1])
         };
         let mut units = Vec::new();
         let mut first_unit = vec![0; files];

@@ -27,6 +27,8 @@ pub(in crate::diagnosis) struct Segment {
     pub signal: usize,
     /// Whether it belongs to the recording that is diagnosed; otherwise to the baseline.
     pub is_target: bool,
+    /// Its number among the segments of its motion.
+    pub part: usize,
 }
 
 /// Rows of all joints and their columns. Rows are sorted by joint, then segment, then time.
@@ -39,6 +41,8 @@ pub(in crate::diagnosis) struct Design {
     /// `ranges[joint][segment]`.
     pub ranges: Vec<Vec<Range<usize>>>,
     pub segments: Vec<Segment>,
+    /// Whether segments with one number are held out together.
+    pub together: bool,
     /// One value per row.
     pub columns: Vec<Vec<f64>>,
     /// Columns of curves, whose amplitudes are kept from what no motion determines.
@@ -76,6 +80,7 @@ impl Design {
             rows: Vec::new(),
             ranges: Vec::new(),
             segments: Vec::new(),
+            together: selection.cut.together,
             columns: vec![Vec::new(); parameters],
             shrunk: Vec::new(),
             y: Vec::new(),
@@ -104,10 +109,10 @@ impl Design {
             let half = self.kernels[k].len() / 2;
             let first = s.edge_samples.max(half);
             let last = s.len().saturating_sub(first).max(first);
-            let count = if s.is_target { selection.segments.max(1) } else { 1 };
+            let count = if s.is_target { selection.cut.segments.max(1) } else { 1 };
             let bounds: Vec<usize> = (0..=count).map(|c| first + (last - first) * c / count).collect();
-            for bound in bounds.windows(2) {
-                self.segments.push(Segment { signal: k, is_target: s.is_target });
+            for (part, bound) in bounds.windows(2).enumerate() {
+                self.segments.push(Segment { signal: k, is_target: s.is_target, part });
                 for (j, kept) in kept.iter_mut().enumerate() {
                     let rows = (bound[0]..bound[1])
                         .filter(|t| (t - first).is_multiple_of(half.max(1)))
@@ -209,6 +214,18 @@ impl Design {
     /// Whether all segments are stretches of one motion.
     pub fn is_single_motion(&self) -> bool {
         self.segments.windows(2).all(|s| s[0].signal == s[1].signal)
+    }
+
+    /// Segments of the recording that is diagnosed, those that are held out together in one list.
+    pub fn held_out_together(&self) -> Vec<Vec<usize>> {
+        let targets = self.target_segments();
+        if !self.together {
+            return targets.into_iter().map(|g| vec![g]).collect();
+        }
+        let parts = self.segments.iter().map(|s| s.part + 1).max().unwrap_or(0);
+        (0..parts)
+            .map(|k| targets.iter().copied().filter(|&g| self.segments[g].part == k).collect())
+            .collect()
     }
 
     /// Segments of the recording that is diagnosed.
@@ -369,7 +386,8 @@ impl Design {
             parameters: columns.len(),
             rows: Vec::new(),
             ranges: vec![Vec::new(); joints],
-            segments: segments.iter().map(|&(signal, is_target)| Segment { signal, is_target }).collect(),
+            segments: Vec::new(),
+            together: false,
             columns,
             shrunk: Vec::new(),
             y,
@@ -382,6 +400,10 @@ impl Design {
             grams: Vec::new(),
             sums: Vec::new(),
         };
+        for &(signal, is_target) in segments {
+            let part = design.segments.iter().filter(|s| s.signal == signal).count();
+            design.segments.push(Segment { signal, is_target, part });
+        }
         for j in 0..joints {
             let mut next = vec![0; signals];
             for &(signal, _) in segments {

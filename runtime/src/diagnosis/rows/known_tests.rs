@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rows::selection::Cut;
 use crate::diagnosis::rows::signals::directions;
 use crate::model::{RecursiveModel, Robot, StateSlices, torques};
 use crate::signal::Motion;
@@ -35,7 +36,7 @@ fn design(model: &RecursiveModel, motion: &Motion) -> Design {
         half: 0.05,
         slowest: &slowest,
         directions: &directions(model.robot()),
-        segments: 3,
+        cut: Cut { segments: 3, together: false },
         excluded: &[vec![]],
     };
     Design::new(model, &[Signals::of_motion(motion)], &selection)

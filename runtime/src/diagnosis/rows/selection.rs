@@ -2,6 +2,21 @@
 
 use crate::diagnosis::rows::signals::Signals;
 
+/// How motions are cut into segments that are held out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::diagnosis) struct Cut {
+    /// Segments per motion: one, or more where there are few motions to hold out.
+    pub segments: usize,
+    /// Whether the segments with one number are held out together, those of all motions: where no other motion shows what one
+    /// does, as when each moves a joint of its own.
+    pub together: bool,
+}
+
+impl Cut {
+    /// Whole motions.
+    pub const NOT: Self = Self { segments: 1, together: false };
+}
+
 /// What decides where rows are.
 pub(in crate::diagnosis) struct RowSelection<'a> {
     /// Half-width of the window, s; rows are as far apart.
@@ -10,8 +25,8 @@ pub(in crate::diagnosis) struct RowSelection<'a> {
     pub slowest: &'a [f64],
     /// Linear forms of dq whose sign enters each joint's row.
     pub directions: &'a [Vec<Vec<f64>>],
-    /// Segments per motion of the recording that is diagnosed, where there are few motions to hold out.
-    pub segments: usize,
+    /// How the motions of the recording that is diagnosed are cut.
+    pub cut: Cut,
     /// Times that no row may use, per signal: `[from, to]`.
     pub excluded: &'a [Vec<[f64; 2]>],
 }

@@ -16,6 +16,9 @@ pub(in crate::diagnosis) const SHORT_RECORDING: f64 = 12.0;
 /// Segments that few motions are split into, all together: enough that two may disagree.
 /// Judgement; `docs/concealment_short.md`.
 pub(in crate::diagnosis) const SEGMENTS_OF_FEW_MOTIONS: usize = 8;
+/// A joint moves in a motion where it does so for more than this part of the time that it does in that in which it moves most.
+/// Judgement: less tells little of its parameters.
+pub(in crate::diagnosis) const MOVES_IN_MOTION: f64 = 0.1;
 /// From this many motions on, whole motions are held out: two remain to fit. Statistics.
 pub(in crate::diagnosis) const ENOUGH_MOTIONS: usize = 3;
 /// Least rows of a joint that laws are looked for on. Statistics: three for each number that only its own rows can
