@@ -162,19 +162,27 @@ fn without_a_baseline_a_robot_that_holds_still_is_refused_in_words() {
     assert!(matches!(refused, DiagnosisError::NothingMoves { .. }), "{refused}");
 }
 
-/// Strokes of the second joint of the SCARA, four waves, with a spring of this stiffness, N.m/rad; the others hold still.
-fn strokes(stiffness: f64, seed: u64) -> Diagnosis {
+/// Strokes of one joint of the SCARA, four waves, with a spring of this stiffness on the second one, N.m/rad; the others hold
+/// still.
+fn strokes_of(joint: usize, seconds: f64, stiffness: f64, seed: u64) -> Trajectory {
     const WAVES: [[f64; 3]; 4] = [[0.5, 1.7, 0.3], [0.25, 3.1, 1.9], [0.15, 4.9, 4.0], [0.1, 6.6, 5.1]];
-    let robot = scara();
-    let stroke = |t: f64| {
-        let sum = |of: fn([f64; 3], f64) -> f64| WAVES.iter().map(|&wave| of(wave, t)).sum::<f64>();
+    let size = [1.0, 1.0, 0.1][joint];
+    let stroke = move |t: f64| {
+        let sum = |of: fn([f64; 3], f64) -> f64| size * WAVES.iter().map(|&wave| of(wave, t)).sum::<f64>();
+        let alone = |rest: [f64; 3], moving: f64| -> Vec<f64> {
+            (0..3).map(|j| if j == joint { moving } else { rest[j] }).collect()
+        };
         let q = sum(|[a, w, p], t| a * (w * t + p).sin());
         let dq = sum(|[a, w, p], t| a * w * (w * t + p).cos());
         let ddq = sum(|[a, w, p], t| -a * w * w * (w * t + p).sin());
-        [vec![0.3, q, 0.05], vec![0.0, dq, 0.0], vec![0.0, ddq, 0.0]]
+        [alone([0.3, 0.2, 0.05], q), alone([0.0; 3], dq), alone([0.0; 3], ddq)]
     };
     let spring = |t: f64| vec![0.0, stiffness * stroke(t)[0][1], 0.0];
-    diagnosed(&robot, recorded(&robot, 24.0, seed, stroke, spring), &[]).unwrap()
+    recorded(&scara(), seconds, seed, stroke, spring)
+}
+
+fn strokes(stiffness: f64, seed: u64) -> Diagnosis {
+    diagnosed(&scara(), strokes_of(1, 24.0, stiffness, seed), &[]).unwrap()
 }
 
 #[test]
@@ -190,5 +198,23 @@ fn strokes_of_one_joint_name_what_that_joint_has_and_say_that_the_others_are_not
         assert_eq!(not_judged, [1, 3]);
     }
     let nothing = strokes(0.0, 6);
+    assert!(nothing.findings.is_empty(), "{:?}", nothing.verdict);
+}
+
+#[test]
+fn motions_that_move_a_joint_each_are_held_out_in_stretches() {
+    let mut settings = Settings::default();
+    settings.threads = 1;
+    let diagnosed = |stiffness: f64| {
+        let motions: Vec<Trajectory> =
+            (0..3).map(|j| strokes_of(j, 10.0, stiffness, 60 + j as u64)).collect();
+        diagnose(&scara().model, &motions, &[], &settings, &Silent).unwrap()
+    };
+    let found = diagnosed(2.0);
+    let named: Vec<_> = found.findings.iter().map(|f| (f.effect.as_str(), f.joints.as_slice())).collect();
+    assert_eq!(named, [("spring", &[2][..])], "{:?}", found.verdict);
+    assert_eq!(found.held_out.how, "every stretch of the motions predicted from the others");
+    assert!(found.held_out.after < 0.1, "{}", found.held_out.after);
+    let nothing = diagnosed(0.0);
     assert!(nothing.findings.is_empty(), "{:?}", nothing.verdict);
 }

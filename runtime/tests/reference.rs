@@ -208,3 +208,17 @@ fn beside_its_motions_a_change_is_judged_by_how_much_they_differ() {
     assert_ne!(named(&unaware), [], "who does not know how much it differs believes it");
     assert_eq!(named(&against(knowing, &before)), []);
 }
+
+#[test]
+fn friction_that_bends_now_where_it_was_viscous_is_one_law() {
+    // The table's viscous friction of joint 2 is 1.2 N.m.s/rad.
+    let bent = |world: &mut World<'_>| {
+        world.put(&law(EffectKind::NonlinearViscous, 1, &[0.5, 1.0], &[3.0, -1.2]));
+    };
+    let found = against(reference(), &with_laws(MU, bent));
+    assert_eq!(named(&found), [("nonlinear_viscous", &[2][..])]);
+    let numbers = &found.findings[0].parameters;
+    let (power, viscous) = (&numbers["p"], &numbers["viscous_change"]);
+    assert!((power.value - 0.5).abs() < 4.0 * power.sigma + 0.01, "{power:?}");
+    assert!((viscous.value + 1.2).abs() < 4.0 * viscous.sigma + 0.02, "{viscous:?}");
+}

@@ -128,6 +128,12 @@ pub trait JointLaw: Sync {
     /// How each number of the shape is varied between the values of the grid; empty where it is not.
     fn steps(&self, scale: &Scale) -> Vec<Step>;
 
+    /// The shape of the same law with the viscous friction whose place it takes as an amplitude of its own, the last one; `None`
+    /// where it takes the place of none, or has it.
+    fn in_place_of_viscous(&self, _shape: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
     /// Whether only a positive amplitude is this effect: a negative one is something else.
     fn only_positive(&self) -> bool;
 

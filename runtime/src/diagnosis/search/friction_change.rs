@@ -24,7 +24,7 @@ use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectKind, Place, SmoothingWindow};
+use crate::effects::{EffectKind, Form, Place, SmoothingWindow};
 use crate::parallel;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -129,11 +129,15 @@ impl Search<'_> {
         for found in changed {
             let joint = found.joint;
             let before = self.friction_of_baseline(joint);
-            let size = self.friction_change(joint, before);
+            let size = self.friction_change(joint, before, true);
             if size.law < size.needed {
                 let (effect, place) = (EffectKind::FrictionLevelChange, Place::Joint(joint));
                 self.small.push(SmallLaw { effect, place, own: vec![joint], size });
-            } else {
+                continue;
+            }
+            let nothing_else = found.change != Change::DriveGain
+                && self.friction_change(joint, before, false).law < size.needed;
+            if !(nothing_else && self.bend_in_place_of_viscous(joint)?) {
                 self.take(&found, before)?;
             }
         }
@@ -198,6 +202,25 @@ impl Search<'_> {
         self.refit_and_update()
     }
 
+    /// Where the friction of a joint bends, and nothing but its viscous part has changed besides, that is a part of the law: it has
+    /// taken the place of it. Says whether there is such a law.
+    fn bend_in_place_of_viscous(&mut self, joint: usize) -> Result<bool, SingularDesign> {
+        let in_its_place = |term: &Accepted| match term.effect.form() {
+            Form::Joint(law) if term.place == Place::Joint(joint) => law.in_place_of_viscous(&term.shape),
+            _ => None,
+        };
+        let bent = self.model.terms.iter().enumerate().find_map(|(k, term)| Some((k, in_its_place(term)?)));
+        let Some((k, shape)) = bent else { return Ok(false) };
+        let viscous = |columns: Range<usize>| columns.start..columns.end.min(columns.start + 1);
+        let [slow, fast] = [SmoothingWindow::Slow, SmoothingWindow::Fast]
+            .map(|window| viscous(self.model.bench(window).own_friction_of(joint)));
+        self.model.slow.silence(slow);
+        self.model.fast.silence(fast);
+        self.model.terms[k].shape = shape;
+        self.refit_and_update()?;
+        Ok(true)
+    }
+
     fn own_friction(&self, joint: usize) -> Range<usize> {
         self.model.benches[0].own_friction_of(joint)
     }
@@ -240,12 +263,14 @@ impl Search<'_> {
         Some((evidence, change))
     }
 
-    /// Change of a joint's friction torque in the recording, and what of its friction torque in the baseline is worth a name.
-    fn friction_change(&self, joint: usize, [viscous, coulomb]: [f64; 2]) -> Size {
+    /// Change of a joint's friction torque in the recording, or without `by_speed` of its Coulomb part, and what of its friction
+    /// torque in the baseline is worth a name.
+    fn friction_change(&self, joint: usize, [viscous, coulomb]: [f64; 2], by_speed: bool) -> Size {
         let regression = &self.model.slow;
         let design = &regression.design;
         let own: Vec<f64> = self.own_friction(joint).map(|k| regression.fit.chi[k]).collect();
-        let [by_speed, level] = own[..] else { return Size { law: 0.0, needed: 0.0 } };
+        let &[of_speed, level] = &own[..] else { return Size { law: 0.0, needed: 0.0 } };
+        let by_speed = if by_speed { of_speed } else { 0.0 };
         let columns = &self.model.bench(SmoothingWindow::Slow).friction[joint];
         let (mut changed, mut whole, mut count) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (row, r) in design.of_joint(joint).enumerate() {

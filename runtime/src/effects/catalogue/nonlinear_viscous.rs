@@ -1,4 +1,5 @@
-//! Viscous friction that is not proportional to speed: f·|v/v0|^p·sign v beside the linear term.
+//! Viscous friction that is not proportional to speed: f·|v/v0|^p·sign v beside the linear term, or, where it has come since a
+//! baseline, in the place of a part of it.
 
 use crate::effects::closed_form::number;
 use crate::effects::{
@@ -19,6 +20,10 @@ const WORDS: Words = Words {
         ("f", "friction at the speed v0 beyond the linear part"),
         ("v0", "top speed of the recording"),
         ("p", "power of the speed"),
+        (
+            "viscous_change",
+            "change of the viscous friction whose place it takes, where it has come since a baseline",
+        ),
     ],
     put_in: "the law as a torque of the joint",
 };
@@ -53,17 +58,28 @@ impl Effect for NonlinearViscous {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("friction bends with speed to the power {}", q.text("p"))
+        let instead = if q.has("viscous_change") {
+            format!(", in the place of viscous friction, which has changed by {}", q.text("viscous_change"))
+        } else {
+            String::new()
+        };
+        format!("friction bends with speed to the power {}{instead}", q.text("p"))
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        format!("{}·|dq / {}|^{}·sign(dq)", q.value("f"), q.value("v0"), q.value("p"))
+        let bent = format!("{}·|dq / {}|^{}·sign(dq)", q.value("f"), q.value("v0"), q.value("p"));
+        if q.has("viscous_change") { format!("{bent} {}·dq", q.added("viscous_change")) } else { bent }
     }
 }
 
 impl JointLaw for NonlinearViscous {
-    fn amplitudes(&self, _: &[f64]) -> usize {
-        1
+    fn amplitudes(&self, shape: &[f64]) -> usize {
+        if shape.len() == 2 { 2 } else { 1 }
+    }
+
+    /// Marked by one more number.
+    fn in_place_of_viscous(&self, shape: &[f64]) -> Option<Vec<f64>> {
+        if let &[power] = shape { Some(vec![power, 1.0]) } else { None }
     }
 
     fn shapes(&self, _: &Scale) -> Vec<Vec<f64>> {
@@ -71,7 +87,7 @@ impl JointLaw for NonlinearViscous {
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
-        vec![Step::Times(1.2)]
+        vec![Step::Times(1.2), Step::Keep]
     }
 
     fn only_positive(&self) -> bool {
@@ -80,11 +96,18 @@ impl JointLaw for NonlinearViscous {
 
     fn law(&self, scale: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
         out[0] = (at.dq / scale.speed).abs().powf(shape[0]) * at.sign;
+        if let Some(viscous) = out.get_mut(1) {
+            *viscous = at.dq;
+        }
     }
 
     fn closed_form(&self, scale: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
         let [f, v0, p] = [*amplitude.first()?, scale.speed, *shape.first()?].map(number);
-        Some(format!("{f}*(abs(dq{j})/{v0})^{p}*sign(dq{j})"))
+        let bent = format!("{f}*(abs(dq{j})/{v0})^{p}*sign(dq{j})");
+        Some(match amplitude.get(1) {
+            Some(&viscous) => format!("{bent} + {}*dq{j}", number(viscous)),
+            None => bent,
+        })
     }
 
     /// A power below 1 rises from rest so steeply that it sticks; what bends upwards, or takes off, is smooth there.
@@ -93,10 +116,14 @@ impl JointLaw for NonlinearViscous {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        vec![
+        let mut parameters = vec![
             Parameter::new("f", a[0], s[0], scale.kind.torque_unit()),
             Parameter::new("v0", scale.speed, 0.0, scale.kind.speed_unit()),
             Parameter::new("p", shape[0], 0.0, "1"),
-        ]
+        ];
+        if let ([_, viscous], [_, sigma]) = (a, s) {
+            parameters.push(Parameter::new("viscous_change", *viscous, *sigma, scale.kind.viscous_unit()));
+        }
+        parameters
     }
 }
