@@ -99,10 +99,9 @@ impl Motions {
         };
         let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
         let count = trajectories.len();
-        let alone = baseline.is_empty() && settings.reference.is_none();
         let cut = if count < rules::ENOUGH_MOTIONS {
             Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS / count, together: false }
-        } else if alone && least_motions_of_a_joint(&signals, &slowest) < rules::ENOUGH_MOTIONS {
+        } else if least_motions_of_a_joint(&signals[baseline.len()..], &slowest) < rules::ENOUGH_MOTIONS {
             Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true }
         } else {
             Cut::NOT

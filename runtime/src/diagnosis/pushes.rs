@@ -10,10 +10,12 @@ use super::contact::standing;
 use super::contact::track::Left;
 use super::error::DiagnosisError;
 use super::explanation::finding::terms;
+use super::judging::regression::Regression;
 use super::preparation::Prepared;
 use super::rows::design::Design;
-use super::rules::{SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
+use super::rules::{MOSTLY_UNEXPLAINED, SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
 use super::search::extended_model::ExtendedModel;
+use super::search::free_form::slow_part;
 use super::search::state::Search;
 use super::search::tangents::{along_starts, tangents};
 use super::settings::Settings;
@@ -88,7 +90,19 @@ impl Pushes {
         if self.scanned && self.of_single_joints.is_none() && self.contacts.is_none() {
             return false;
         }
-        let (confirmed, found) = pushed_in_motion(model, prepared, self.contacts.as_ref(), search, settings);
+        // What was found among the rows is not among them any more, and what else remains on a joint is seen.
+        let is_unexplained = |regression: &Regression| {
+            let residual = regression.residual();
+            let slow = |j| slow_part(regression, &residual, j);
+            (0..regression.design.joints).any(|j| slow(j) >= MOSTLY_UNEXPLAINED)
+        };
+        let level = if self.scanned && is_unexplained(&search.model.slow) || !is_alone(search) {
+            SCAN_LEVEL_BESIDE_LAWS
+        } else {
+            SCAN_LEVEL
+        };
+        let (confirmed, found) =
+            pushed_in_motion(model, prepared, self.contacts.as_ref(), (search, level), settings);
         let refuted = self.contacts.is_some() && confirmed.is_none();
         self.contacts = confirmed;
         if self.scanned || !settings.single_joint_contacts {
@@ -121,13 +135,11 @@ fn pushed_in_motion(
     model: &dyn Model,
     prepared: &Prepared,
     contacts: Option<&Contacts>,
-    search: &Search<'_>,
+    (search, level): (&Search<'_>, f64),
     settings: &Settings,
 ) -> (Option<Contacts>, Option<Contacts>) {
     let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
     let context = &search.model.context;
-    let nothing_else = search.model.terms.is_empty() && search.ties.is_empty() && search.rejected.is_empty();
-    let level = if nothing_else { SCAN_LEVEL } else { SCAN_LEVEL_BESIDE_LAWS };
     let mut beside = uncertain(&search.model, &outside);
     // A wave over the angle of a joint that creeps comes and goes as slowly as a push.
     let ripple = EffectKind::TorqueRipple;
@@ -150,6 +162,11 @@ fn pushed_in_motion(
     let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
     let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
     (confirmed, moving::seen(&around, &look))
+}
+
+/// Whether there are no laws beside pushes, found or not told apart or kept.
+fn is_alone(search: &Search<'_>) -> bool {
+    search.model.terms.is_empty() && search.ties.is_empty() && search.rejected.is_empty()
 }
 
 /// What transmissions with spring or play do on the rows of a design, and what an error of their numbers would: they ring

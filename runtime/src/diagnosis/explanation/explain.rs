@@ -314,22 +314,32 @@ fn how(model: &ExtendedModel<'_>) -> String {
     let design = &model.slow.design;
     let mut targets = design.segments.iter().filter(|s| s.is_target).map(|s| s.signal);
     let first = targets.next();
+    let one_motion = targets.all(|s| Some(s) == first);
     let only_reference = model.context.reference.is_some() && model.context.is_alone();
-    if only_reference && targets.all(|s| Some(s) == first) {
-        "every stretch of the motion predicted from the reference and its other stretches".into()
-    } else if only_reference {
-        "every motion predicted from the reference and the other motions".into()
-    } else if model.change && targets.all(|s| Some(s) == first) {
-        "every stretch of the new motion predicted from the baseline and its other stretches".into()
+    let told = if only_reference {
+        match (one_motion, design.together) {
+            (true, _) => "every stretch of the motion predicted from the reference and its other stretches",
+            (_, true) => "every stretch of the motions predicted from the reference and the other stretches",
+            _ => "every motion predicted from the reference and the other motions",
+        }
     } else if model.change {
-        "every new motion predicted from the baseline and the other new motions".into()
+        match (one_motion, design.together) {
+            (true, _) => {
+                "every stretch of the new motion predicted from the baseline and its other stretches"
+            }
+            (_, true) => {
+                "every stretch of the new motions predicted from the baseline and the other stretches"
+            }
+            _ => "every new motion predicted from the baseline and the other new motions",
+        }
     } else if design.is_single_motion() {
-        "forward in time".into()
+        "forward in time"
     } else if design.together {
-        "every stretch of the motions predicted from the others".into()
+        "every stretch of the motions predicted from the others"
     } else {
-        "every motion predicted from the others".into()
-    }
+        "every motion predicted from the others"
+    };
+    told.into()
 }
 
 fn by_motion(

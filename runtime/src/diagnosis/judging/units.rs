@@ -40,14 +40,20 @@ impl Units {
         let motions = fresh.iter().filter(|f| **f).count().max(1) as f64;
         let target_duration = sum(true) / motions;
         let change = fresh.iter().any(|f| !f);
+        // Of the joint that moves least, where joints move one after the other.
+        let time_of = |target: bool, j: usize| {
+            let rows = design.of_joint(j).filter(|&r| fresh[design.rows[r].signal] == target);
+            rows.count() as f64 * design.step
+        };
+        let seconds_told = |target: bool| {
+            let times = (0..design.joints).map(|j| time_of(target, j)).filter(|time| *time > 0.0);
+            if design.together { times.fold(sum(target), f64::min) } else { sum(target) }
+        };
         let wanted = if change {
-            target_duration.min(sum(false) / UNITS_WANTED).clamp(UNIT_OF_BASELINE[0], UNIT_OF_BASELINE[1])
+            let [least, most] = UNIT_OF_BASELINE;
+            target_duration.min(seconds_told(false) / UNITS_WANTED).clamp(least, most)
         } else {
-            let of_joint = |j: usize| design.of_joint(j).count() as f64 * design.step;
-            let times = (0..design.joints).map(of_joint).filter(|time| *time > 0.0);
-            let least = times.fold(sum(true), f64::min);
-            (if design.together { least } else { sum(true) } / UNITS_WANTED)
-                .clamp(UNIT_OF_ITSELF[0], UNIT_OF_ITSELF[1])
+            (seconds_told(true) / UNITS_WANTED).clamp(UNIT_OF_ITSELF[0], UNIT_OF_ITSELF[1])
         };
         let mut units = Vec::new();
         let mut first_unit = vec![0; files];

@@ -99,10 +99,13 @@ pub(in crate::diagnosis) const SCAN_PRESENT: f64 = 0.7;
 /// False alarms per recording in which nothing else was found. Statistics: one in five thousand, of which the candidates that
 /// are left out of what they are compared with make one in a thousand; size and power in the tests of `scan`.
 pub(in crate::diagnosis) const SCAN_LEVEL: f64 = 2e-4;
-/// The same beside laws, and where laws were found that could not be told apart or kept. Judgement: a law that is fitted nearly
+/// The same beside laws, where laws were found that could not be told apart or kept, and where something remains on a joint that
+/// nothing explains. Judgement: a law that is fitted nearly
 /// right, or not at all, leaves short waves where it acts, which the law of the largest means knows nothing of, and of which
 /// joints feel the same; pushes of a hand are mostly far beyond.
 pub(in crate::diagnosis) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-6;
+/// Something remains on a joint where this part of its residual is the same two rows later. Judgement: most of it is no noise.
+pub(in crate::diagnosis) const MOSTLY_UNEXPLAINED: f64 = 0.5;
 /// Pushes on single joints, at least so many, are a law where one over any variables leaves at most one in so many of them.
 /// Judgement: a hand does not come back with the state of the robot, and what does is predicted on motion that was held out.
 pub(in crate::diagnosis) const RECURRING: usize = 2;

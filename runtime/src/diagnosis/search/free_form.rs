@@ -206,7 +206,7 @@ fn not_told_from_first(regression: &Regression, laws: &[Judged], threads: usize)
 
 /// Part of a joint's residual that is the same two rows later, whose windows do not overlap: no more of it can depend on
 /// what changes as slowly as the motion.
-fn slow_part(regression: &Regression, residual: &[f64], joint: usize) -> f64 {
+pub(in crate::diagnosis) fn slow_part(regression: &Regression, residual: &[f64], joint: usize) -> f64 {
     let design = &regression.design;
     let (mut products, mut squares) = (0.0, 0.0);
     for g in design.target_segments() {
