@@ -30,7 +30,7 @@ use crate::pages::diagnosis::{Extras, page, summary};
 use crate::recorded::{Measured, left_out_words, measure, of_the_same_robot};
 use crate::speeds::{and_of_speeds, speed_words};
 
-use compare::{Test, no_gain_words, tested};
+use compare::{Test, test_words, tested};
 
 /// What to diagnose and where to put it.
 #[derive(Debug, Args)]
@@ -128,7 +128,7 @@ pub(super) fn run(arguments: &Arguments, words: &[String]) -> Result<(), Failure
         (Some(test), Some(path)) => Some(tested(test, path, &diagnosis)?),
         _ => None,
     };
-    diagnosis.verdict.extend(tested.as_ref().and_then(|tested| no_gain_words(tested, &diagnosis)));
+    diagnosis.verdict.extend(tested.as_ref().and_then(|tested| test_words(tested, &diagnosis)));
     let extras = extras::of(arguments, words, &measured, &diagnosis, tested)?;
     hand_out(arguments, &measured, &diagnosis, &extras)
 }

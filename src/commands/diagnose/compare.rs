@@ -62,12 +62,20 @@ pub fn tested(test: &Test, path: &Path, diagnosis: &Diagnosis) -> Result<Tested,
     Ok(Tested { name: test.measured.title.clone(), evaluation })
 }
 
-/// That all findings together do not help on the test recording, where that is so. Pushes belong to the recording that they were
+/// What a test recording cannot judge, or that all findings together do not help on it, where that is so. Pushes belong to the recording that they were
 /// seen in.
-pub fn no_gain_words(tested: &Tested, diagnosis: &Diagnosis) -> Option<String> {
+pub fn test_words(tested: &Tested, diagnosis: &Diagnosis) -> Option<String> {
     let errors: Vec<Option<f64>> =
         tested.evaluation.predictions.iter().map(|p| p.errors.relative_error).collect();
     let &[Some(before), Some(after)] = errors.as_slice() else { return None };
+    // Zero torques would be as good.
+    if before >= 1.0 && after >= 1.0 {
+        return Some(
+            "The motion of the test recording asks for parameters that this recording does not determine: its errors say \
+             nothing of what was found. Record motions in which all joints move together."
+                .into(),
+        );
+    }
     let is_push = |finding: &Finding| finding.term.effect == EffectKind::Contact;
     (!diagnosis.findings.iter().all(is_push) && after >= before).then(|| {
         format!(
