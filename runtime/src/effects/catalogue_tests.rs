@@ -26,7 +26,11 @@ fn everywhere(kind: EffectKind) -> Vec<(Place, Vec<Scale>, Vec<Vec<f64>>)> {
     let robot = robot();
     let scales = vec![SCALE; robot.joints()];
     let places = kind.form().places(&robot);
-    places.into_iter().map(|place| (place, scales.clone(), kind.form().shapes(place, &scales))).collect()
+    let shapes = |place: Place| match (kind.form(), place.law_of()) {
+        (Form::Joint(law) | Form::Heard(law), Some(_)) => law.all_shapes(&SCALE),
+        (form, _) => form.shapes(place, &scales),
+    };
+    places.into_iter().map(|place| (place, scales.clone(), shapes(place))).collect()
 }
 
 /// Quantities as of a finding at a place with a shape, all amplitudes 0.5.
@@ -194,7 +198,7 @@ fn every_law_of_a_joint_fills_its_columns() {
     };
     for kind in EffectKind::ALL {
         let (Form::Joint(law) | Form::Heard(law)) = kind.form() else { continue };
-        for shape in law.shapes(&SCALE) {
+        for shape in law.all_shapes(&SCALE) {
             let mut out = vec![f64::NAN; law.amplitudes(&shape)];
             law.law(&SCALE, &shape, &at, 0.5, &mut out);
             assert!(out.iter().all(|x| x.is_finite()), "{kind:?} {shape:?}: {out:?}");
@@ -209,7 +213,7 @@ fn closed_forms_are_the_laws_that_the_effects_have() {
     let mut compared = Vec::new();
     for kind in EffectKind::ALL {
         let Form::Joint(law) = kind.form() else { continue };
-        for shape in law.shapes(&SCALE) {
+        for shape in law.all_shapes(&SCALE) {
             let amplitude: Vec<f64> =
                 (0..law.amplitudes(&shape)).map(|k| (1.3 * k as f64 + 0.4).cos()).collect();
             let term = EffectTerm {

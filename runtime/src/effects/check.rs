@@ -89,9 +89,7 @@ impl EffectTerm {
 
     /// A law of a joint: its shape is one that the law offers, and its torque is finite.
     fn check_law(&self, law: &dyn JointLaw) -> Result<(), TermError> {
-        let shapes = law.shapes(&WIDE);
-        let with_viscous = shapes.iter().filter_map(|shape| law.in_place_of_viscous(shape));
-        let lengths: Vec<usize> = shapes.iter().cloned().chain(with_viscous).map(|s| s.len()).collect();
+        let lengths: Vec<usize> = law.all_shapes(&WIDE).iter().map(Vec::len).collect();
         if self.shape.is_empty() || !law.repeats_its_shape() {
             self.check_shape(&lengths)?;
         }

@@ -134,6 +134,14 @@ pub trait JointLaw: Sync {
         None
     }
 
+    /// One shape of every kind that a model may have, and all of those that are tried.
+    fn all_shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
+        let mut shapes = self.shapes(scale);
+        let with_viscous: Vec<Vec<f64>> = shapes.iter().filter_map(|s| self.in_place_of_viscous(s)).collect();
+        shapes.extend(with_viscous);
+        shapes
+    }
+
     /// Whether only a positive amplitude is this effect: a negative one is something else.
     fn only_positive(&self) -> bool;
 
