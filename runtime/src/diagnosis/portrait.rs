@@ -172,11 +172,8 @@ fn at_place(context: &Context<'_>, effect: EffectKind, place: Place, size: f64) 
     let drawn = torques[joint].iter().enumerate();
     let points = drawn.map(|(t, torque)| (abscissa(context, law, joint, (0, t)), sign(t) * factor * torque));
     let parameters = quantities(context, law, &amplitude);
-    let every = match (effect.form(), place.law_of()) {
-        (Form::Joint(law) | Form::Heard(law), Some(of)) => law.all_shapes(&context.scales[of]),
-        _ => shapes.clone(),
-    };
-    let (laws, all) = forms(context, (effect, place), &every);
+    let all_shapes = effect.form().all_shapes(place, &context.scales);
+    let (laws, all) = forms(context, (effect, place), &all_shapes);
     let scale = &context.scales[joint];
     Some(Portrait {
         joint: context.model.robot().joint_number(JointIndex(joint)).0,

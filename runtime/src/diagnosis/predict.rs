@@ -1,14 +1,14 @@
 //! Accepted effects as part of a model: their torques on any motion.
 
-use super::contact::silent::Silent;
 use super::error::DiagnosisError;
 use super::reference::Reference;
 use super::rows::additions::Additions;
 use super::rows::context::Context;
+use super::rows::free::beyond;
 use super::rows::scales::scales;
 use super::rows::series::add_to;
 use super::rows::signals::Signals;
-use crate::effects::{EffectTerm, Scale};
+use crate::effects::{EffectTerm, Scale, intervals_by_joint};
 use crate::model::Model;
 use crate::signal::Motion;
 
@@ -93,25 +93,24 @@ impl Reference {
     ) -> Result<Vec<Vec<Vec<bool>>>, DiagnosisError> {
         let n = model.robot().joints();
         let mut unknown = vec![Vec::new(); signals.len()];
-        if self.effects().iter().all(|term| term.intervals(n).is_empty()) {
+        let curves = intervals_by_joint(self.effects(), n);
+        if curves.iter().all(Vec::is_empty) {
             return Ok(unknown);
         }
         let scales = scales(model, signals, self.chi());
         let mut context = Context::new(model, signals, scales, self.chi().to_vec())?;
         context.take(Additions::among(model.robot(), self.effects()));
-        let silent = Silent::of(self.effects(), n);
         let targets: Vec<usize> = (0..signals.len()).filter(|&k| signals[k].is_target).collect();
-        let mut beyond: Vec<Vec<Vec<bool>>> = (targets.iter())
-            .map(|&k| (0..n).map(|j| silent.beyond_curves(&context, j, k)).collect())
+        let mut all: Vec<Vec<Vec<bool>>> = (targets.iter())
+            .map(|&k| curves.iter().map(|axes| beyond(&context, k, axes)).collect())
             .collect();
         for j in 0..n {
-            let samples = beyond.iter().flat_map(|motion| &motion[j]);
-            let (beyond_here, all) = samples.fold((0, 0), |(b, n), x| (b + usize::from(*x), n + 1));
-            if 2 * beyond_here > all {
-                beyond.iter_mut().for_each(|motion| motion[j].fill(false));
+            let samples = || all.iter().flat_map(|motion| &motion[j]);
+            if 2 * samples().filter(|beyond| **beyond).count() > samples().count() {
+                all.iter_mut().for_each(|motion| motion[j].fill(false));
             }
         }
-        targets.into_iter().zip(beyond).for_each(|(k, beyond)| unknown[k] = beyond);
+        targets.into_iter().zip(all).for_each(|(k, beyond)| unknown[k] = beyond);
         Ok(unknown)
     }
 }

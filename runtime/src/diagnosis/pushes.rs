@@ -19,7 +19,7 @@ use super::search::free_form::slow_part;
 use super::search::state::Search;
 use super::search::tangents::{along_starts, tangents};
 use super::settings::Settings;
-use crate::effects::{EffectKind, Place};
+use crate::effects::{EffectKind, EffectTerm, Place};
 use crate::model::Model;
 
 /// Windows in which something outside seems to have pushed the robot.
@@ -90,17 +90,9 @@ impl Pushes {
         if self.scanned && self.of_single_joints.is_none() && self.contacts.is_none() {
             return false;
         }
-        // What was found among the rows is not among them any more, and what else remains on a joint is seen.
-        let is_unexplained = |regression: &Regression| {
-            let residual = regression.residual();
-            let slow = |j| slow_part(regression, &residual, j);
-            (0..regression.design.joints).any(|j| slow(j) >= MOSTLY_UNEXPLAINED)
-        };
-        let level = if self.scanned && is_unexplained(&search.model.slow) || !is_alone(search) {
-            SCAN_LEVEL_BESIDE_LAWS
-        } else {
-            SCAN_LEVEL
-        };
+        // Once what was found is no longer among the rows, they show what else remains on a joint.
+        let beside_laws = !is_alone(search) || self.scanned && is_unexplained(&search.model.slow);
+        let level = if beside_laws { SCAN_LEVEL_BESIDE_LAWS } else { SCAN_LEVEL };
         let (confirmed, found) =
             pushed_in_motion(model, prepared, self.contacts.as_ref(), (search, level), settings);
         let refuted = self.contacts.is_some() && confirmed.is_none();
@@ -120,7 +112,7 @@ impl Pushes {
     /// All of them, and those at rest.
     pub fn with_those_at_rest(&self, prepared: &Prepared, search: &Search<'_>) -> Option<Contacts> {
         let motions = &prepared.motions;
-        let (context, laws) = (&search.model.context, terms(&search.model));
+        let (context, laws) = (&search.model.context, laws(&search.model));
         let rest = standing::at_rest(context, &laws, &prepared.moving.friction_known, &motions.slowest);
         Contacts::joined(
             Contacts::joined(self.contacts.clone(), self.of_single_joints.clone()),
@@ -147,13 +139,11 @@ fn pushed_in_motion(
         let orders: Vec<f64> = lines.iter().map(|line| line.order).collect();
         beside.extend(dense_columns(context, &outside, ripple, Place::Joint(joint), &orders, false));
     }
-    let laws = terms(&search.model);
-    let standing = context.reference.iter().flat_map(|reference| reference.effects().iter().cloned());
     let left = Left {
         residual: &search.model.residual_on(&outside),
         beside: &beside,
         fitted: &search.model.fitted_on(&outside),
-        silent: &Silent::of(&laws.into_iter().chain(standing).collect::<Vec<_>>(), outside.joints),
+        silent: &Silent::of(&laws(&search.model), outside.joints),
     };
     let look = moving::look(context, &outside, &left, level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
@@ -167,6 +157,19 @@ fn pushed_in_motion(
 /// Whether there are no laws beside pushes, found or not told apart or kept.
 fn is_alone(search: &Search<'_>) -> bool {
     search.model.terms.is_empty() && search.ties.is_empty() && search.rejected.is_empty()
+}
+
+/// Whether most of what remains on a joint is no noise.
+fn is_unexplained(regression: &Regression) -> bool {
+    let residual = regression.residual();
+    let slow = |j| slow_part(regression, &residual, j);
+    (0..regression.design.joints).any(|j| slow(j) >= MOSTLY_UNEXPLAINED)
+}
+
+/// The laws of a model and those of its reference.
+fn laws(model: &ExtendedModel<'_>) -> Vec<EffectTerm> {
+    let standing = model.context.reference.iter().flat_map(|reference| reference.effects().iter().cloned());
+    terms(model).into_iter().chain(standing).collect()
 }
 
 /// What transmissions with spring or play do on the rows of a design, and what an error of their numbers would: they ring

@@ -288,7 +288,8 @@ fn harmful(diagnosis: &Diagnosis) -> Vec<Objection> {
 fn at_rest(model: &dyn Model, prepared: &Prepared) -> Result<Diagnosis, DiagnosisError> {
     let motions = &prepared.motions;
     let context = prepared.context(model)?;
-    let rest = standing::at_rest(&context, &[], &prepared.moving.friction_known, &motions.slowest);
+    let laws = context.reference.as_ref().map_or(&[][..], |reference| reference.effects());
+    let rest = standing::at_rest(&context, laws, &prepared.moving.friction_known, &motions.slowest);
     let sampling = motions.sampling(&motions.rows(model, None));
     let mut diagnosis = standstill::explain(&context, &rest, &prepared.chi_sigma, sampling)
         .ok_or_else(|| nothing_moves(model, &prepared.moving))?;

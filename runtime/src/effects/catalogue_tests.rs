@@ -26,11 +26,7 @@ fn everywhere(kind: EffectKind) -> Vec<(Place, Vec<Scale>, Vec<Vec<f64>>)> {
     let robot = robot();
     let scales = vec![SCALE; robot.joints()];
     let places = kind.form().places(&robot);
-    let shapes = |place: Place| match (kind.form(), place.law_of()) {
-        (Form::Joint(law) | Form::Heard(law), Some(_)) => law.all_shapes(&SCALE),
-        (form, _) => form.shapes(place, &scales),
-    };
-    places.into_iter().map(|place| (place, scales.clone(), shapes(place))).collect()
+    places.into_iter().map(|place| (place, scales.clone(), kind.form().all_shapes(place, &scales))).collect()
 }
 
 /// Quantities as of a finding at a place with a shape, all amplitudes 0.5.

@@ -88,6 +88,14 @@ impl Form {
         }
     }
 
+    /// Shapes that a model may have at a place: beside those to try, those that a search makes of them.
+    pub fn all_shapes(self, place: Place, scales: &[Scale]) -> Vec<Vec<f64>> {
+        match (self, place.law_of().and_then(|j| scales.get(j))) {
+            (Self::Joint(law) | Self::Heard(law), Some(scale)) => law.all_shapes(scale),
+            (form, _) => form.shapes(place, scales),
+        }
+    }
+
     /// Shapes to try besides where the residual of a joint has waves of these orders.
     pub fn shapes_of_orders(self, orders: &[f64]) -> Vec<Vec<f64>> {
         match self {

@@ -62,7 +62,7 @@ pub use sensitivity::{
 pub use shape::{Move, ShapeSearch, Step};
 #[cfg(feature = "diagnosis")]
 pub(crate) use term::named;
-pub use term::{EffectTerm, TermScale, times_faster};
+pub use term::{EffectTerm, TermScale, intervals_by_joint, times_faster};
 pub use together::Together;
 pub use user_law::{LawError, UserLaw};
 pub use variable::{SinceReversal, Variable};

@@ -115,6 +115,12 @@ impl EffectTerm {
     }
 }
 
+/// The variables of the curves on each of so many joints, as [`EffectTerm::intervals`] has them.
+pub fn intervals_by_joint(effects: &[EffectTerm], joints: usize) -> Vec<Vec<Axis>> {
+    let on = |joint: usize| effects.iter().filter(move |term| term.place.joint() == Some(joint));
+    (0..joints).map(|joint| on(joint).flat_map(|term| term.intervals(joints)).collect()).collect()
+}
+
 /// How many times faster a robot with these effects moved than the times of its recording say.
 pub fn times_faster(effects: &[EffectTerm]) -> f64 {
     let factor = |distortion| match distortion {

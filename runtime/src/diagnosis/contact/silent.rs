@@ -5,9 +5,9 @@
 //! beyond those that it was fitted to.
 
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::rows::free::values;
+use crate::diagnosis::rows::free::beyond;
 use crate::diagnosis::rules::{CREEPING, REVERSAL_LEFT_OUT, SETTLING};
-use crate::effects::{Axis, EffectTerm};
+use crate::effects::{Axis, EffectTerm, intervals_by_joint};
 
 /// Where a model with laws is silent.
 pub(in crate::diagnosis) struct Silent {
@@ -24,11 +24,7 @@ impl Silent {
             let others = laws.iter().flat_map(|law| law.turns_with(joint, joints));
             std::iter::once(joint).chain(others).collect()
         };
-        let of_joint = |joint| {
-            let own = laws.iter().filter(move |law| law.place.joint() == Some(joint));
-            own.flat_map(|law| law.intervals(joints)).collect()
-        };
-        Self { turning: (0..joints).map(turning).collect(), curves: (0..joints).map(of_joint).collect() }
+        Self { turning: (0..joints).map(turning).collect(), curves: intervals_by_joint(laws, joints) }
     }
 
     /// Whether it is at each sample of a motion.
@@ -42,24 +38,13 @@ impl Silent {
             let samples = silent.iter_mut().zip(turns.iter().zip(&s.dq[j]));
             samples.for_each(|(silent, (turns, dq))| *silent |= *turns || dq.abs() < creeping);
         }
-        let beyond = self.beyond_curves(context, joint, signal);
+        let beyond = beyond(context, signal, &self.curves[joint]);
         silent.iter_mut().zip(beyond).for_each(|(silent, beyond)| *silent |= beyond);
         let settling = ((SETTLING * s.rate) as usize + s.edge_samples).min(silent.len());
         silent[..settling].fill(true);
         let end = silent.len() - settling;
         silent[end..].fill(true);
         silent
-    }
-
-    /// Whether a variable of one of the joint's curves is beyond its interval.
-    pub fn beyond_curves(&self, context: &Context<'_>, joint: usize, signal: usize) -> Vec<bool> {
-        let mut all = vec![false; context.signals[signal].len()];
-        for axis in &self.curves[joint] {
-            let beyond = |x: f64| (x - axis.centre).abs() > axis.half;
-            let values = values(context, signal, axis.variable);
-            all.iter_mut().zip(values).for_each(|(all, x)| *all |= beyond(x));
-        }
-        all
     }
 }
 

@@ -41,8 +41,8 @@ impl AtRest {
     }
 }
 
-/// Looks at all motions of the recording that is diagnosed. `laws` are those that were found beside those of a reference, `known`
-/// the joints whose friction is known; below the speeds of `slowest` a joint stands.
+/// Looks at all motions of the recording that is diagnosed. `laws` are those that it has beside its parameters, `known` the
+/// joints whose friction is known; below the speeds of `slowest` a joint stands.
 pub(in crate::diagnosis) fn at_rest(
     context: &Context<'_>,
     laws: &[EffectTerm],
@@ -117,15 +117,12 @@ struct LawsAtRest {
     friction: Vec<f64>,
 }
 
-/// These laws and those of a reference as nothing moves: the mean of both directions, and half of the difference, which is
-/// friction.
+/// The laws as nothing moves: the mean of both directions, and half of the difference, which is friction.
 fn laws_at_rest(context: &Context<'_>, laws: &[EffectTerm]) -> LawsAtRest {
     let mut friction = vec![0.0_f64; context.model.robot().joints()];
-    let mut terms = laws.to_vec();
-    terms.extend(context.reference.iter().flat_map(|reference| reference.effects().iter().cloned()));
     let toward = |speed: f64| {
         let at: Vec<Signals> = context.signals.iter().map(|s| resting(s, s.q.clone(), speed)).collect();
-        torques_on(context.model, &context.chi, &terms, &at).ok().filter(|_| !terms.is_empty())
+        torques_on(context.model, &context.chi, laws, &at).ok().filter(|_| !laws.is_empty())
     };
     let (Some(mut torque), Some(back)) = (toward(SLOW), toward(-SLOW)) else {
         return LawsAtRest { torque: Vec::new(), friction };

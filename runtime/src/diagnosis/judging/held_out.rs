@@ -108,12 +108,10 @@ fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {
         vec![(design.segments.iter().map(|s| !s.is_target).collect(), targets)]
     } else if design.is_single_motion() && targets.len() > 1 {
         forward_cuts(targets.len()).map(|cut| without(&|g| targets[cut..].contains(&g))).to_vec()
-    } else if design.together {
-        design.held_out_together().iter().map(|held| without(&|g| held.contains(&g))).collect()
-    } else if motions.len() > 1 {
+    } else if motions.len() > 1 && !design.together {
         motions.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
     } else {
-        targets.iter().map(|&held| without(&|g| g == held)).collect()
+        design.held_out_together().iter().map(|held| without(&|g| held.contains(&g))).collect()
     }
 }
 

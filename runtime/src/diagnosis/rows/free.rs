@@ -2,7 +2,7 @@
 
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::series::Series;
-use crate::effects::{FreeLaw, Seen, SinceReversal, Variable};
+use crate::effects::{Axis, FreeLaw, Seen, SinceReversal, Variable};
 
 /// The columns of a law on joint `j` with a shape in one motion; `None` where the shape means no law.
 pub(in crate::diagnosis) fn free_columns(
@@ -53,4 +53,14 @@ pub(in crate::diagnosis) fn values(context: &Context<'_>, signal: usize, variabl
         Variable::TimeSinceReversal(j) => since(j, |s| s.time),
         Variable::TravelSinceReversal(j) => since(j, |s| s.travel),
     }
+}
+
+/// Whether one of the variables of curves is beyond the interval that these were fitted to, at every sample of a motion.
+pub(in crate::diagnosis) fn beyond(context: &Context<'_>, signal: usize, axes: &[Axis]) -> Vec<bool> {
+    let mut all = vec![false; context.signals[signal].len()];
+    for axis in axes {
+        let values = values(context, signal, axis.variable);
+        all.iter_mut().zip(values).for_each(|(all, x)| *all |= (x - axis.centre).abs() > axis.half);
+    }
+    all
 }

@@ -163,14 +163,7 @@ impl Search<'_> {
         let ratios = self.own_friction(joint).map(|k| chi[k].abs() / variances[k].max(1e-300).sqrt());
         let white = ratios.fold(0.0, f64::max);
         let inflation = if significance > 0.0 { (white / significance).max(1.0) } else { 1.0 };
-        for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
-            let columns = self.model.bench(window).own_friction_of(joint);
-            let regression = match window {
-                SmoothingWindow::Slow => &mut self.model.slow,
-                SmoothingWindow::Fast => &mut self.model.fast,
-            };
-            regression.silence(columns);
-        }
+        self.take_over_friction(joint, 2);
         let rival = |effect| Rival {
             effect,
             place: Place::Joint(joint),
@@ -211,14 +204,22 @@ impl Search<'_> {
         };
         let bent = self.model.terms.iter().enumerate().find_map(|(k, term)| Some((k, in_its_place(term)?)));
         let Some((k, shape)) = bent else { return Ok(false) };
-        let viscous = |columns: Range<usize>| columns.start..columns.end.min(columns.start + 1);
-        let [slow, fast] = [SmoothingWindow::Slow, SmoothingWindow::Fast]
-            .map(|window| viscous(self.model.bench(window).own_friction_of(joint)));
-        self.model.slow.silence(slow);
-        self.model.fast.silence(fast);
+        self.take_over_friction(joint, 1);
         self.model.terms[k].shape = shape;
         self.refit_and_update()?;
         Ok(true)
+    }
+
+    /// Takes the first `numbers` of the viscous and Coulomb friction of a joint out of what is free in the recording: a law has them.
+    fn take_over_friction(&mut self, joint: usize, numbers: usize) {
+        for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
+            let columns = self.model.bench(window).own_friction_of(joint);
+            let regression = match window {
+                SmoothingWindow::Slow => &mut self.model.slow,
+                SmoothingWindow::Fast => &mut self.model.fast,
+            };
+            regression.silence(columns.start..columns.end.min(columns.start + numbers));
+        }
     }
 
     fn own_friction(&self, joint: usize) -> Range<usize> {
