@@ -89,9 +89,9 @@ pub struct Properties {
     /// Whether it is drawn along the motion, torque times the direction. Friction opposes the motion: over anything
     /// but the speed, both directions would hide each other.
     pub along_motion: bool,
-    /// Whether it is a law of friction that any recording of a robot may have: against a baseline it is then fitted to
-    /// both, and only what differs is a change.
-    pub standing_friction: bool,
+    /// Whether any recording of a robot may have it, small as it may be: against a baseline it is then fitted to both,
+    /// and only what differs is a change.
+    pub may_stand: bool,
     /// Whether it is a factor on a recorded torque and nothing else. Whatever grows with the torque looks like one in a
     /// single motion; only a factor is the same in every other.
     pub is_factor: bool,

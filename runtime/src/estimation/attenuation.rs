@@ -13,8 +13,10 @@ pub(super) struct Attenuation {
     pub chi: Vec<f64>,
     /// What that added to each.
     pub missing: Vec<f64>,
-    /// Of each parameter the part in directions of which more than half is noise, which nothing was added for.
-    pub unresolved: Vec<f64>,
+    /// Standard deviation of each parameter that is due to the noise in the columns.
+    pub deviation: Vec<f64>,
+    /// Whether noise hides some directions: parameters that it alone tells apart.
+    pub hides_some: bool,
 }
 
 /// Standard deviation of a correction, as a share of it.
@@ -28,19 +30,6 @@ pub(super) const UNCERTAINTY: f64 = 0.577_350_269_189_625_8;
 
 /// Share of a direction's information that noise may be for it to be corrected.
 const MOST: f64 = 0.5;
-
-impl Attenuation {
-    /// Standard deviation of a parameter that is due to the noise in the columns: that of its correction, and that of what
-    /// the estimate has of it in directions that noise hides, which is as likely nothing as twice as much.
-    pub fn deviation(&self, place: usize) -> f64 {
-        UNCERTAINTY * self.missing[place].hypot(self.unresolved[place])
-    }
-
-    /// Whether noise hides some directions: parameters that it alone tells apart.
-    pub fn hides_some(&self) -> bool {
-        self.unresolved.iter().any(|&x| x != 0.0)
-    }
-}
 
 /// The parameters of least squares corrected for noise of known size in the columns (Fuller 1987, Measurement Error
 /// Models, section 2.2): WT W is expected to be that of the true columns plus that of the noise, N, which pulls
@@ -83,44 +72,86 @@ pub(super) fn given_back(of_information: DMatrix<f64>, stacked: &Factor, chi: &[
     // Unit columns: the condition is that of the scaled W, squared.
     let scale = information.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
     let scaled = |matrix: &DMatrix<f64>| DMatrix::from_fn(k, k, |i, l| scale[i] * matrix[(i, l)] * scale[l]);
-    let drowned = Cholesky::new(scaled(&(&information - 2.0 * &of_information))).is_none();
-    let (of_information, unresolved) = if drowned {
-        let estimate = DVector::from_column_slice(chi).component_div(&scale);
-        let parted = parted(&scaled(&information), &scaled(&of_information), &estimate)?;
-        let noise = DMatrix::from_fn(k, k, |i, l| parted.noise[(i, l)] / (scale[i] * scale[l]));
-        (noise, parted.unresolved.component_mul(&scale))
-    } else {
-        (of_information, DVector::zeros(k))
+    let hides_some = Cholesky::new(scaled(&(&information - 2.0 * &of_information))).is_none();
+    let directions = match hides_some {
+        true => Some(Directions::new(&scaled(&information), &scaled(&of_information))?),
+        false => None,
+    };
+    let of_information = match &directions {
+        Some(directions) => {
+            let noise = directions.visible_noise();
+            DMatrix::from_fn(k, k, |i, l| noise[(i, l)] / (scale[i] * scale[l]))
+        }
+        None => of_information,
     };
     let pull = (&of_information * DVector::from_column_slice(chi)).component_mul(&scale);
     let left = Cholesky::new(scaled(&(&information - &of_information)))?;
     let missing = left.solve(&pull).component_mul(&scale);
-    let missing = missing.as_slice().to_vec();
+    let deviation = match &directions {
+        Some(directions) => {
+            let freedom = stacked.rows().saturating_sub(k).max(1) as f64;
+            let variance = stacked.residual_norm(chi).powi(2) / freedom;
+            let estimate = DVector::from_column_slice(chi).component_div(&scale);
+            directions.deviation(&estimate, variance).component_mul(&scale)
+        }
+        None => UNCERTAINTY * missing.abs(),
+    };
+    let list = |of: &DVector<f64>| of.as_slice().to_vec();
     let chi = chi.iter().zip(&missing).map(|(x, d)| x + d).collect();
-    Some(Attenuation { of_information, chi, missing, unresolved: unresolved.as_slice().to_vec() })
+    Some(Attenuation {
+        of_information,
+        chi,
+        missing: list(&missing),
+        deviation: list(&deviation),
+        hides_some,
+    })
 }
 
-/// The directions in which there is more than noise, and the others.
-struct Parted {
-    /// The noise in the former.
-    noise: DMatrix<f64>,
-    /// The part of the estimate in the latter.
-    unresolved: DVector<f64>,
+/// The directions among unknowns which are independent in the estimate and in the noise of the columns.
+struct Directions {
+    /// Lower triangular root of the information.
+    root: DMatrix<f64>,
+    /// Unknowns by direction, each as large as one unit of information.
+    unknowns: DMatrix<f64>,
+    /// Directions by unit information.
+    turn: DMatrix<f64>,
+    /// Of the information of each the share that is noise; more than all of it where less noise than is expected is there.
+    shares: DVector<f64>,
 }
 
-/// Parts the directions by whether noise is at most half of their information.
-///
-/// Where all that there is in a direction is noise, the noise that is expected is as likely more than what there is: a
-/// correction has no moments there (Fuller 1987, section 2.5).
-fn parted(information: &DMatrix<f64>, noise: &DMatrix<f64>, estimate: &DVector<f64>) -> Option<Parted> {
-    let root = Cholesky::new(information.clone())?.l();
-    let inverse = root.clone().try_inverse()?;
-    let mut of_unit = SymmetricEigen::new(&inverse * noise * inverse.transpose());
-    let hidden = of_unit.eigenvalues.map(|share| if share > MOST { 1.0 } else { 0.0 });
-    of_unit.eigenvalues.zip_apply(&hidden, |share, hidden| *share *= 1.0 - hidden);
-    let turned = of_unit.eigenvectors.tr_mul(&root.tr_mul(estimate));
-    let unresolved = inverse.tr_mul(&(&of_unit.eigenvectors * turned.component_mul(&hidden)));
-    Some(Parted { noise: &root * of_unit.recompose() * root.transpose(), unresolved })
+impl Directions {
+    fn new(information: &DMatrix<f64>, noise: &DMatrix<f64>) -> Option<Self> {
+        let root = Cholesky::new(information.clone())?.l();
+        let inverse = root.clone().try_inverse()?;
+        let of_unit = SymmetricEigen::new(&inverse * noise * inverse.transpose());
+        let unknowns = inverse.tr_mul(&of_unit.eigenvectors);
+        Some(Self { root, unknowns, turn: of_unit.eigenvectors, shares: of_unit.eigenvalues })
+    }
+
+    /// The noise in the directions that it does not hide.
+    ///
+    /// Where all that there is in a direction is noise, the noise that is expected is as likely more than what there
+    /// is: a correction has no moments there (Fuller 1987, section 2.5).
+    fn visible_noise(&self) -> DMatrix<f64> {
+        let visible = self.shares.map(|share| if share > MOST { 0.0 } else { share });
+        let turn = &self.root * &self.turn;
+        &turn * DMatrix::from_diagonal(&visible) * turn.transpose()
+    }
+
+    /// Standard deviation of unknowns that is due to the noise of the columns: of a correction as of what an estimate has
+    /// in a direction that noise hides, which is anything between nothing and twice as much.
+    ///
+    /// Every direction has noise of other joints at other frequencies, for which S is another. What it has of the
+    /// estimate is more than what is true by the estimate's own errors, of `variance` for a unit of information.
+    fn deviation(&self, estimate: &DVector<f64>, variance: f64) -> DVector<f64> {
+        let found = self.turn.tr_mul(&self.root.tr_mul(estimate));
+        let uncertain = self.shares.zip_map(&found, |share, found| {
+            let corrected = if share > MOST { 1.0 } else { share / (1.0 - share) };
+            corrected.powi(2) * (found.powi(2) - variance)
+        });
+        let variance = self.unknowns.component_mul(&self.unknowns) * uncertain;
+        variance.map(|v| UNCERTAINTY * v.max(0.0).sqrt())
+    }
 }
 
 #[cfg(test)]
@@ -190,9 +221,9 @@ mod tests {
         let stacked = stack(&observation, &sigma);
         let chi = stacked.solve().chi;
         let found = corrected(&observation, &[0, 1], &sigma, &stacked, &chi).expect("known noise");
-        assert!(found.hides_some());
+        assert!(found.hides_some);
         assert!((found.chi[0] / chi[0] - 1.0).abs() < 0.01, "{chi:?} {:?}", found.chi);
-        assert!((found.deviation(0) / (UNCERTAINTY * chi[0]) - 1.0).abs() < 0.01);
-        assert!(found.deviation(1) < 0.1 * chi[1]);
+        assert!((found.deviation[0] / (UNCERTAINTY * chi[0]) - 1.0).abs() < 0.01);
+        assert!(found.deviation[1] < 0.1 * chi[1]);
     }
 }

@@ -29,7 +29,7 @@ impl Deviations {
     fn headline(&self, place: usize) -> f64 {
         let of = |all: &Option<Vec<f64>>| all.as_ref().map(|all| all[place]);
         let noise = of(&self.lasting).or(of(&self.blocks)).unwrap_or(self.white[place]);
-        noise.hypot(self.attenuation.as_ref().map_or(0.0, |a| a.deviation(place)))
+        noise.hypot(self.attenuation.as_ref().map_or(0.0, |a| a.deviation[place]))
     }
 
     /// By how much that is more than for noise that is independent from row to row.

@@ -121,7 +121,7 @@ fn solve(observation: &Observation, settings: &EstimateSettings, warnings: &mut 
         warnings.push(Warning::NoDeviations);
     } else {
         attenuation = corrected(counted, &active, &weights.sigma, &rows, &solution.chi);
-        if attenuation.as_ref().is_some_and(Attenuation::hides_some) {
+        if attenuation.as_ref().is_some_and(|a| a.hides_some) {
             warnings.push(Warning::NoisyColumns);
         }
     }

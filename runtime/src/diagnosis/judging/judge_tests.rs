@@ -79,7 +79,7 @@ fn beside_a_curve_other_laws_are_not_judged_where_it_says_nothing() {
     let mut judged_beside = |curve_on| {
         let besides = Besides { known: None, gains: Vec::new(), deviation: 1.0, bent: None };
         let term = TermColumns {
-            columns: columns.clone(),
+            columns: columns.clone().into(),
             fixed: None,
             derived_at: Vec::new(),
             is_curve: false,

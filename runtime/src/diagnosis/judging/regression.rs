@@ -66,7 +66,7 @@ pub(in crate::diagnosis) struct Besides {
 
 /// The columns of a term on the rows, and its amplitude where the law leaves none free.
 pub(in crate::diagnosis) struct TermColumns {
-    pub columns: Vec<Vec<f64>>,
+    pub columns: Arc<Vec<Vec<f64>>>,
     pub fixed: Option<f64>,
     /// Amplitudes at which the columns are derivatives beside bent columns of the base parameters; nothing for other columns.
     pub derived_at: Vec<f64>,
@@ -140,10 +140,10 @@ impl Regression {
             for (column, at) in term.columns.iter().zip(&term.derived_at) {
                 self.design.y.iter_mut().zip(column).for_each(|(y, c)| *y += at * c);
             }
-            for column in term.columns {
+            for column in term.columns.iter() {
                 match term.fixed {
-                    Some(a) => self.design.y.iter_mut().zip(&column).for_each(|(y, c)| *y -= a * c),
-                    None => self.design.push(column),
+                    Some(a) => self.design.y.iter_mut().zip(column).for_each(|(y, c)| *y -= a * c),
+                    None => self.design.push(column.clone()),
                 }
             }
             self.term_columns.push(start..self.design.columns.len());

@@ -5,9 +5,9 @@ use crate::diagnosis::candidates::gains::{deviation_of_gains, gain_columns};
 use crate::diagnosis::candidates::nuisances::{
     NUISANCES, SKEW_COLUMNS, always_there, more_of_standing_laws, standing_curves, standing_from,
 };
-use crate::diagnosis::candidates::trial::{columns_there, dense_columns};
+use crate::diagnosis::candidates::trial::dense_columns;
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
+use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::skew::usual_deviation;
 use crate::diagnosis::rows::additions::{Additions, NumberError};
 use crate::diagnosis::rows::context::Context;
@@ -18,8 +18,8 @@ use crate::diagnosis::rules::{
 };
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::{EffectKind, SmoothingWindow};
-use crate::model::Robot;
+use crate::diagnosis::search::term_columns::{LastingColumns, large_error, put_terms, recorded_larger_on};
+use crate::effects::SmoothingWindow;
 use crate::parallel;
 use std::sync::Arc;
 
@@ -36,6 +36,8 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
     pub factors: Vec<f64>,
     /// Whether only what changed since a baseline is looked for.
     pub change: bool,
+    /// Columns of the terms on the slow and on the fast rows that stay what they are while parameters are fitted.
+    lasting: [LastingColumns; 2],
 }
 
 impl<'a> ExtendedModel<'a> {
@@ -67,7 +69,8 @@ impl<'a> ExtendedModel<'a> {
         let bench = |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design), change);
         let benches = [bench(&slow), bench(&fast)];
         let factors = vec![0.0; slow.design.joints];
-        Ok(Self { context, slow, fast, benches, terms: Vec::new(), factors, change })
+        let (terms, lasting) = (Vec::new(), [Vec::new(), Vec::new()]);
+        Ok(Self { context, slow, fast, benches, terms, factors, change, lasting })
     }
 
     /// The regression on the rows of a window.
@@ -98,7 +101,8 @@ impl<'a> ExtendedModel<'a> {
         };
         self.context.take_errors(self.terms.iter().filter_map(of_robot).collect());
         for round in 1..=REFITS_OF_BENT_COLUMNS {
-            put_terms(&mut self.slow, (&self.context, self.change), (&self.terms, &self.factors), deviation)?;
+            let terms = (&self.terms[..], &self.factors[..], &mut self.lasting[0]);
+            put_terms(&mut self.slow, (&self.context, self.change), terms, deviation)?;
             deviation = self.deviation_of_gains(deviation);
             let settled = self.follow_parameters();
             self.follow_factors();
@@ -109,12 +113,14 @@ impl<'a> ExtendedModel<'a> {
             }
         }
         let factors = &self.factors;
-        let mut fits = [(&mut self.slow, Ok(())), (&mut self.fast, Ok(()))];
-        parallel::for_each(self.context.threads, &mut fits, |(regression, outcome)| {
-            *outcome = put_terms(regression, (&self.context, self.change), (&self.terms, factors), deviation)
+        let [slow, fast] = &mut self.lasting;
+        let mut fits = [(&mut self.slow, slow, Ok(())), (&mut self.fast, fast, Ok(()))];
+        parallel::for_each(self.context.threads, &mut fits, |(regression, lasting, outcome)| {
+            let terms = (&self.terms[..], &factors[..], &mut **lasting);
+            *outcome = put_terms(regression, (&self.context, self.change), terms, deviation)
                 .and_then(|()| regression.hold_out());
         });
-        fits.into_iter().try_for_each(|(_, outcome)| outcome)
+        fits.into_iter().try_for_each(|(_, _, outcome)| outcome)
     }
 
     /// Takes the parameters that were fitted for those that columns are made of. Says whether these are what they were, within a
@@ -270,55 +276,4 @@ impl<'a> ExtendedModel<'a> {
         }
         residual
     }
-}
-
-/// The joint whose torques are recorded larger, where a term is that.
-fn recorded_larger_on(term: &Accepted) -> Option<usize> {
-    term.place.joint().filter(|_| term.effect == EffectKind::TorqueConstantError)
-}
-
-/// A term that is a large error of the robot's numbers, or of a drive.
-fn large_error(robot: &Robot, term: &Accepted, factors: &[f64], change: bool) -> Option<NumberError> {
-    let (effect, place) = (term.effect, term.place);
-    match recorded_larger_on(term) {
-        Some(joint) => {
-            let (errors, in_baseline) = (vec![factors[joint]], !change);
-            Some(NumberError { effect, place, errors, in_baseline }).filter(NumberError::is_large)
-        }
-        None => NumberError::of_robot(robot, (effect, place), &term.shape, !change),
-    }
-}
-
-/// Puts the terms into a regression.
-fn put_terms(
-    regression: &mut Regression,
-    (context, change): (&Context<'_>, bool),
-    (terms, factors): (&[Accepted], &[f64]),
-    deviation: f64,
-) -> Result<(), SingularDesign> {
-    let design = &regression.design;
-    let known = more_of_standing_laws(context, design);
-    let robot = context.model.robot();
-    let errors: Vec<_> = terms.iter().filter_map(|term| large_error(robot, term, factors, change)).collect();
-    let bent = match regression.bent.as_ref().filter(|bent| bent.is_near(&errors)) {
-        Some(bent) => Some(bent.clone()),
-        None => context.bent((design, regression.plain()), errors),
-    };
-    let columns = parallel::map(context.threads, terms.len(), |k| {
-        let term = &terms[k];
-        let law = (term.effect, term.place);
-        let large = bent.as_ref().and_then(|bent| bent.errors.iter().find(|e| (e.effect, e.place) == law));
-        let there = large.and_then(|_| columns_there(context, design, law, &term.shape, change));
-        TermColumns {
-            columns: there.unwrap_or_else(|| {
-                dense_columns(context, design, term.effect, term.place, &term.shape, change)
-            }),
-            derived_at: large.map_or_else(Vec::new, |e| e.errors.clone()),
-            fixed: term.fixed,
-            is_curve: term.effect.form().is_curve(),
-            curve_on: term.curve_on(),
-        }
-    });
-    let besides = Besides { known, gains: gain_columns(context, design), deviation, bent };
-    regression.set_terms(columns, besides)
 }

@@ -14,7 +14,7 @@ use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{Form, SmoothingWindow};
+use crate::effects::{EffectTerm, Form, SmoothingWindow};
 use crate::parallel;
 use std::sync::OnceLock;
 
@@ -144,10 +144,10 @@ impl Search<'_> {
 
     fn work_out(&self, against: &RoundEvidence, ranked: &Ranked) -> Option<Gate> {
         let (regression, candidate) = self.of(ranked);
-        if self.stands_already(candidate, &candidate.trials[ranked.verdict.trial].shape) {
+        let (bench, design) = (self.model.bench(ranked.window), &regression.design);
+        if self.stands_already(regression, candidate, ranked.verdict.trial) {
             return None;
         }
-        let (bench, design) = (self.model.bench(ranked.window), &regression.design);
         let OwnPart { gain, change, left } = own_part(regression, candidate, ranked.verdict.trial)?;
         let columns = self.columns(ranked);
         if !is_seen(candidate, design, &columns) {
@@ -166,19 +166,34 @@ impl Search<'_> {
         Some(Gate { gain, calibrated, size, left, is_event })
     }
 
-    /// Whether a law repeats itself with its shape, as waves do, and the reference has it. The phase of a wave of a motor may
-    /// be another one after each start, so that it looks new.
-    fn stands_already(&self, candidate: &Candidate, shape: &[f64]) -> bool {
+    /// Whether a law repeats itself with its shape, as waves do, and is no more than the same waves of the reference with other
+    /// phases. The phase of a wave of a motor may be another one after each start: the wave before and the wave now
+    /// differ by up to twice its amplitude.
+    fn stands_already(&self, regression: &Regression, candidate: &Candidate, trial: usize) -> bool {
         let (Form::Joint(law), Some(joint)) = (candidate.effect.form(), candidate.place.joint()) else {
             return false;
         };
+        if !law.repeats_its_shape() {
+            return false;
+        }
         let near = LINE_COVERED as f64 * self.lines[joint].resolution;
-        let standing = self.model.context.reference.iter().flat_map(|reference| reference.effects());
-        law.repeats_its_shape()
-            && standing
-                .filter(|term| term.effect == candidate.effect && term.place == candidate.place)
-                .flat_map(|term| &term.shape)
-                .any(|order| shape.iter().any(|own| (own - order).abs() <= near))
+        let standing: Vec<&EffectTerm> = (self.model.context.reference.iter())
+            .flat_map(|reference| reference.effects())
+            .filter(|term| term.effect == candidate.effect && term.place == candidate.place)
+            .collect();
+        let before = |order: f64| -> f64 {
+            let waves =
+                standing.iter().flat_map(|term| term.shape.iter().zip(term.amplitude.chunks_exact(2)));
+            waves.filter(|(own, _)| (order - *own).abs() <= near).map(|(_, a)| a[0].hypot(a[1])).sum()
+        };
+        let columns = &candidate.trials[trial];
+        let part = regression.fit.project_out(columns);
+        part.and_then(|part| part.solve(candidate)).is_some_and(|(now, _)| {
+            columns.shape.iter().zip(now.as_slice().chunks_exact(2)).any(|(&order, a)| {
+                let before = before(order);
+                before > 0.0 && a[0].hypot(a[1]) <= 2.0 * before
+            })
+        })
     }
 
     /// A candidate of a round as columns over all rows, those of a baseline too.
@@ -196,7 +211,7 @@ impl Search<'_> {
         Law {
             columns,
             residual,
-            common: self.model.change && properties.standing_friction,
+            common: self.model.change && properties.may_stand,
             is_trend: candidate.is_trend(),
             trend_of: if candidate.is_trend() && candidate.own.len() == 1 { LEVELS } else { 0 },
         }

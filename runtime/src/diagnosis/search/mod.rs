@@ -25,5 +25,6 @@ pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod state;
 pub(in crate::diagnosis) mod tangents;
 pub(in crate::diagnosis) mod term;
+mod term_columns;
 pub(in crate::diagnosis) mod transient;
 pub(in crate::diagnosis) mod tuning;

@@ -14,6 +14,7 @@ use crate::diagnosis::search::gate::{OwnPart, own_part};
 use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::Accepted;
+use crate::parallel;
 
 impl Search<'_> {
     /// Takes out the laws that are no larger than what stays unexplained on any of their joints, one at a time, first the one
@@ -26,9 +27,10 @@ impl Search<'_> {
             return Ok(());
         }
         loop {
+            let sizes = parallel::map(self.threads(), self.model.terms.len(), |k| self.size_of(k));
             let mut least: Option<(usize, Size, f64)> = None;
-            for k in 0..self.model.terms.len() {
-                let Some((size, gain)) = self.size_of(k)? else { continue };
+            for (k, size) in sizes.into_iter().enumerate() {
+                let Some((size, gain)) = size? else { continue };
                 if size.law < size.needed && least.is_none_or(|(_, _, g)| gain < g) {
                     least = Some((k, size, gain));
                 }
@@ -41,28 +43,24 @@ impl Search<'_> {
     }
 
     /// How large a term is beside all others, and what it gains in units of the noise variance.
-    fn size_of(&mut self, k: usize) -> Result<Option<(Size, f64)>, SingularDesign> {
-        let window = self.model.terms[k].effect.properties().window;
-        let with = self.model.is_large_error(k).then(|| self.model.regression(window).clone());
-        let term = self.model.terms.remove(k);
-        self.model.refit()?;
-        let (context, change) = (&self.model.context, self.model.change);
-        let regression = self.model.regression(window);
+    fn size_of(&self, k: usize) -> Result<Option<(Size, f64)>, SingularDesign> {
+        let term = &self.model.terms[k];
+        let window = term.effect.properties().window;
+        let model = self.model.without(k)?;
+        let regression = model.regression(window);
         let design = &regression.design;
         let shape = std::slice::from_ref(&term.shape);
-        let candidate = make(context, design, term.effect, term.place, shape, change);
-        let part = match &with {
+        let candidate = make(&model.context, design, term.effect, term.place, shape, model.change);
+        let part = if self.model.is_large_error(k) {
             // Parameters that were fitted without it make something else of it.
-            Some(with) => Some(part_of_large_error(regression, with)?),
-            None => own_part(regression, &candidate, 0),
+            Some(part_of_large_error(regression, self.model.regression(window))?)
+        } else {
+            own_part(regression, &candidate, 0)
         };
-        let size = part.and_then(|part| {
-            let bench = self.model.bench(window);
-            Some((bench.largest_size(design, &term.shows_on, &part.change, &part.left)?, part.gain))
-        });
-        self.model.terms.insert(k, term);
-        self.model.refit()?;
-        Ok(size)
+        Ok(part.and_then(|part| {
+            let size = model.bench(window).largest_size(design, &term.shows_on, &part.change, &part.left)?;
+            Some((size, part.gain))
+        }))
     }
 }
 

@@ -73,14 +73,18 @@ impl Search<'_> {
             {
                 continue;
             }
-            if self.nested_case_suffices(&ranked, k) {
+            let level = (settings.least_confidence, rounds);
+            if self
+                .nested_case_that_suffices(&ranked, k)
+                .is_some_and(|nested| !self.has_rival_elsewhere(&evidence_of_round, &ranked, nested, level))
+            {
                 continue;
             }
             // On one joint alone a law's rivals on others are not seen: what was tied with one stays so.
             if joint.is_some() && self.is_tied(candidate) {
                 continue;
             }
-            let weight = self.weight(&evidence_of_round, &ranked, k, (settings.least_confidence, rounds));
+            let weight = self.weight(&evidence_of_round, &ranked, k, level);
             let (confidence, significance, inflation) = match weight {
                 Weight::Named { confidence, significance, inflation } => {
                     (confidence, significance, inflation)
@@ -110,18 +114,11 @@ impl Search<'_> {
 
     /// What the variation that is there anyway says of a candidate of a round, and its rivals at other places, at a
     /// confidence over so many rounds.
-    fn weight(
-        &self,
-        round: &RoundEvidence,
-        ranked: &[Ranked],
-        k: usize,
-        (least_confidence, rounds): (f64, usize),
-    ) -> Weight {
-        let rounds = rounds.max(1) as f64;
-        let least = 1.0 - (1.0 - least_confidence) / rounds;
+    fn weight(&self, round: &RoundEvidence, ranked: &[Ranked], k: usize, level: (f64, usize)) -> Weight {
+        let least = level_of_round(level);
         let gate = self.judged_by_gate(round, ranked, k, least);
         let Outcome::Passes { confidence, significance, inflation } = gate else { return Weight::Fails };
-        let confidence = 1.0 - rounds * (1.0 - confidence);
+        let confidence = 1.0 - level.1.max(1) as f64 * (1.0 - confidence);
         if !self.is_told_from_simpler(round, ranked, k, least)
             || !self.is_told_from_noise(round, ranked, k, least)
         {
@@ -138,6 +135,19 @@ impl Search<'_> {
             }
             Standing::Beaten => Weight::Fails,
         }
+    }
+
+    /// Whether a candidate of a round is there, but not told from a law at another place.
+    fn has_rival_elsewhere(
+        &self,
+        round: &RoundEvidence,
+        ranked: &[Ranked],
+        k: usize,
+        level: (f64, usize),
+    ) -> bool {
+        let least = level_of_round(level);
+        matches!(self.judged_by_gate(round, ranked, k, least), Outcome::Passes { .. })
+            && self.standing(round, ranked, k, least) != Standing::Ahead
     }
 
     /// Whether a ranked candidate is a law that can be, with its standard deviations as much larger.
@@ -231,13 +241,13 @@ impl Search<'_> {
         })
     }
 
-    /// Whether the nested special case of a law explains nearly as much at the same place. Where the law's amplitudes
-    /// tell whether it is mostly that case, they decide.
-    fn nested_case_suffices(&self, ranked: &[Ranked], k: usize) -> bool {
+    /// The nested special case of a law, by its place in the ranking, that explains nearly as much at the same place. Where
+    /// the law's amplitudes tell whether it is mostly that case, they decide.
+    fn nested_case_that_suffices(&self, ranked: &[Ranked], k: usize) -> Option<usize> {
         let (regression, more) = self.of(&ranked[k]);
         let Some(ToldBy::Gain(suffices)) = more.effect.properties().special_case.map(|case| case.told_by)
         else {
-            return false;
+            return None;
         };
         let trial = &more.trials[ranked[k].verdict.trial];
         let amplitude = regression.fit.project_out(trial).and_then(|part| part.solve(more));
@@ -248,11 +258,11 @@ impl Search<'_> {
             _ => None,
         };
         let least = match mostly {
-            Some(false) => return false,
+            Some(false) => return None,
             Some(true) => 0.0,
             None => suffices * ranked[k].verdict.total(),
         };
-        ranked.iter().any(|other| {
+        ranked.iter().position(|other| {
             let candidate = self.of(other).1;
             let nested = more.effect.special_cases().any(|nested| nested == candidate.effect);
             nested && candidate.place == more.place && other.verdict.total() > least
@@ -291,6 +301,11 @@ impl Search<'_> {
             ..Accepted::tried(candidate, shape)
         }
     }
+}
+
+/// The confidence that is asked for where the candidates have been looked through so many times.
+fn level_of_round((least_confidence, rounds): (f64, usize)) -> f64 {
+    1.0 - (1.0 - least_confidence) / rounds.max(1) as f64
 }
 
 /// Whether a candidate explains enough, in nearly all folds, of what was fitted and of what was held out.

@@ -28,7 +28,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Position,
     along_motion: false,
-    standing_friction: false,
+    may_stand: false,
     is_factor: false,
 };
 

@@ -34,7 +34,7 @@ const PROPERTIES: Properties = Properties {
     }),
     abscissa: Abscissa::Load,
     along_motion: false,
-    standing_friction: false,
+    may_stand: true,
     is_factor: false,
 };
 

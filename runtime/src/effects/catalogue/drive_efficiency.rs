@@ -52,7 +52,7 @@ const PROPERTIES: Properties = Properties {
     }),
     abscissa: Abscissa::Load,
     along_motion: true,
-    standing_friction: true,
+    may_stand: true,
     is_factor: false,
 };
 

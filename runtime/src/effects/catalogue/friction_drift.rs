@@ -35,7 +35,7 @@ const PROPERTIES: Properties = Properties {
     }),
     abscissa: Abscissa::Time,
     along_motion: true,
-    standing_friction: true,
+    may_stand: true,
     is_factor: false,
 };
 

@@ -30,7 +30,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Acceleration,
     along_motion: false,
-    standing_friction: false,
+    may_stand: true,
     is_factor: false,
 };
 

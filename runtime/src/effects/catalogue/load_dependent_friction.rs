@@ -42,7 +42,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Load,
     along_motion: true,
-    standing_friction: true,
+    may_stand: true,
     is_factor: false,
 };
 

@@ -37,7 +37,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Speed,
     along_motion: false,
-    standing_friction: true,
+    may_stand: true,
     is_factor: false,
 };
 

@@ -33,7 +33,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Position,
     along_motion: true,
-    standing_friction: true,
+    may_stand: true,
     is_factor: false,
 };
 

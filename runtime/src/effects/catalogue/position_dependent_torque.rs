@@ -33,7 +33,7 @@ const PROPERTIES: Properties = Properties {
     special_case: Some(SpecialCase { effects: &[&super::spring::Spring], told_by: ToldBy::Gain(SPRING) }),
     abscissa: Abscissa::Position,
     along_motion: false,
-    standing_friction: false,
+    may_stand: true,
     is_factor: false,
 };
 

@@ -41,7 +41,7 @@ const PROPERTIES: Properties = Properties {
     }),
     abscissa: Abscissa::Time,
     along_motion: true,
-    standing_friction: false,
+    may_stand: false,
     is_factor: false,
 };
 

@@ -27,7 +27,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::ModelTorque,
     along_motion: false,
-    standing_friction: false,
+    may_stand: false,
     is_factor: true,
 };
 

@@ -27,7 +27,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::HeardTorque,
     along_motion: false,
-    standing_friction: false,
+    may_stand: true,
     is_factor: true,
 };
 

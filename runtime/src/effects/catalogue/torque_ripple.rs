@@ -33,7 +33,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::WaveAngle,
     along_motion: false,
-    standing_friction: false,
+    may_stand: true,
     is_factor: false,
 };
 

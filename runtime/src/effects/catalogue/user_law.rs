@@ -24,7 +24,7 @@ const PROPERTIES: Properties = Properties {
     special_case: None,
     abscissa: Abscissa::Position,
     along_motion: false,
-    standing_friction: false,
+    may_stand: true,
     is_factor: false,
 };
 

@@ -54,7 +54,7 @@ impl Reduced {
             inflations.push(inflation);
             let white = (variance * solution.variance[place]).sqrt();
             let correction = corrected.as_ref().map(|c| c.missing[place]);
-            let of_correction = corrected.as_ref().map_or(0.0, |c| c.deviation(place));
+            let of_correction = corrected.as_ref().map_or(0.0, |c| c.deviation[place]);
             let sigma = (white * inflation.sqrt()).hypot(of_correction);
             let value = chi[place];
             parameters[l] = ParameterEstimate {

@@ -1,0 +1,94 @@
+//! The columns of the terms of a model, put into the regression of a window.
+
+use crate::diagnosis::candidates::gains::gain_columns;
+use crate::diagnosis::candidates::nuisances::more_of_standing_laws;
+use crate::diagnosis::candidates::trial::{columns_there, dense_columns};
+use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
+use crate::diagnosis::rows::additions::NumberError;
+use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::search::state::Law;
+use crate::diagnosis::search::term::Accepted;
+use crate::effects::{EffectKind, Form, JointLaw};
+use crate::model::Robot;
+use crate::parallel;
+use std::sync::Arc;
+
+/// Columns of laws of joints over recorded quantities, by the law: they stay what they are while parameters are fitted.
+pub(super) type LastingColumns = Vec<(Law, Arc<Vec<Vec<f64>>>)>;
+
+/// The joint whose torques are recorded larger, where a term is that.
+pub(super) fn recorded_larger_on(term: &Accepted) -> Option<usize> {
+    term.place.joint().filter(|_| term.effect == EffectKind::TorqueConstantError)
+}
+
+/// A term that is a large error of the robot's numbers, or of a drive.
+pub(super) fn large_error(
+    robot: &Robot,
+    term: &Accepted,
+    factors: &[f64],
+    change: bool,
+) -> Option<NumberError> {
+    let (effect, place) = (term.effect, term.place);
+    match recorded_larger_on(term) {
+        Some(joint) => {
+            let (errors, in_baseline) = (vec![factors[joint]], !change);
+            Some(NumberError { effect, place, errors, in_baseline }).filter(NumberError::is_large)
+        }
+        None => NumberError::of_robot(robot, (effect, place), &term.shape, !change),
+    }
+}
+
+/// Whether the columns of a term are made of recorded quantities alone.
+fn lasts(term: &Accepted) -> bool {
+    let of_recorded = |law: &dyn JointLaw| !law.looks_at_torque() && !law.needs_gravity(&term.shape);
+    !term.effect.properties().follows_parameters
+        && matches!(term.effect.form(), Form::Joint(law) if of_recorded(law))
+}
+
+/// Puts the terms into a regression; `lasting` are columns that some of them had.
+pub(super) fn put_terms(
+    regression: &mut Regression,
+    (context, change): (&Context<'_>, bool),
+    (terms, factors, lasting): (&[Accepted], &[f64], &mut LastingColumns),
+    deviation: f64,
+) -> Result<(), SingularDesign> {
+    let design = &regression.design;
+    let known = more_of_standing_laws(context, design);
+    let robot = context.model.robot();
+    let errors: Vec<_> = terms.iter().filter_map(|term| large_error(robot, term, factors, change)).collect();
+    let bent = match regression.bent.as_ref().filter(|bent| bent.is_near(&errors)) {
+        Some(bent) => Some(bent.clone()),
+        None => context.bent((design, regression.plain()), errors),
+    };
+    let had = |term: &Accepted| {
+        let is_of = |((effect, place, shape), _): &&(Law, _)| {
+            (*effect, *place, shape) == (term.effect, term.place, &term.shape)
+        };
+        lasting.iter().find(is_of).map(|(_, columns)| columns.clone())
+    };
+    let columns = parallel::map(context.threads, terms.len(), |k| {
+        let term = &terms[k];
+        let law = (term.effect, term.place);
+        let large = bent.as_ref().and_then(|bent| bent.errors.iter().find(|e| (e.effect, e.place) == law));
+        let there =
+            large.and_then(|_| columns_there(context, design, law, &term.shape, change)).map(Arc::new);
+        let columns = there.or_else(|| had(term)).unwrap_or_else(|| {
+            Arc::new(dense_columns(context, design, term.effect, term.place, &term.shape, change))
+        });
+        TermColumns {
+            columns,
+            derived_at: large.map_or_else(Vec::new, |e| e.errors.clone()),
+            fixed: term.fixed,
+            is_curve: term.effect.form().is_curve(),
+            curve_on: term.curve_on(),
+        }
+    });
+    let law = |term: &Accepted| (term.effect, term.place, term.shape.clone());
+    *lasting = (terms.iter().zip(&columns))
+        .filter(|(term, _)| lasts(term))
+        .map(|(term, made)| (law(term), made.columns.clone()))
+        .collect();
+    let besides = Besides { known, gains: gain_columns(context, design), deviation, bent };
+    regression.set_terms(columns, besides)
+}
