@@ -226,4 +226,20 @@ mod tests {
         assert!((found.deviation[0] / (UNCERTAINTY * chi[0]) - 1.0).abs() < 0.01);
         assert!(found.deviation[1] < 0.1 * chi[1]);
     }
+
+    #[test]
+    fn what_an_estimate_owes_to_its_own_errors_makes_no_direction_uncertain() {
+        // Two unknowns of unit information: all of the first, and a tenth of the second is noise.
+        let shares = DVector::from_row_slice(&[1.2, 0.1]);
+        let directions =
+            Directions::new(&DMatrix::identity(2, 2), &DMatrix::from_diagonal(&shares)).expect("root");
+        let deviation = |found: [f64; 2]| directions.deviation(&DVector::from_row_slice(&found), 1.0);
+        assert_eq!(deviation([1.0, 1.0]).as_slice(), [0.0, 0.0]);
+        let far = deviation([3.0, 3.0]);
+        let beyond = 8_f64.sqrt();
+        assert!((far[0] - UNCERTAINTY * beyond).abs() < 1e-12, "hidden: anything up to twice as much");
+        assert!((far[1] - UNCERTAINTY * beyond / 9.0).abs() < 1e-12, "corrected by 0.1 / (1 - 0.1)");
+        let seen = directions.visible_noise();
+        assert!(seen[(0, 0)].abs() < 1e-12 && (seen[(1, 1)] - 0.1).abs() < 1e-12);
+    }
 }
