@@ -5,7 +5,7 @@ mod common;
 
 use std::sync::{Arc, LazyLock};
 
-use common::{Hidden, SimulatedRobot, term};
+use common::{Hidden, SimulatedRobot};
 use dynid_runtime::diagnosis::{Diagnosis, Reference, Settings, Silent, diagnose};
 use dynid_runtime::effects::{EffectKind, Place};
 use dynid_runtime::recording::Trajectory;
