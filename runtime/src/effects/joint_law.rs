@@ -109,6 +109,12 @@ pub trait JointLaw: Sync {
         false
     }
 
+    /// The waves of a law of these numbers, each with its order and its size: half of the swing.
+    fn waves(&self, shape: &[f64], amplitude: &[f64]) -> Vec<(f64, f64)> {
+        let _ = (shape, amplitude);
+        Vec::new()
+    }
+
     /// Whether all joints may have it together with the same numbers: what it is about is the robot's, as the temperature
     /// of its drives.
     fn may_be_common(&self) -> bool {

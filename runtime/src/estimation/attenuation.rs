@@ -72,10 +72,10 @@ pub(super) fn given_back(of_information: DMatrix<f64>, stacked: &Factor, chi: &[
     // Unit columns: the condition is that of the scaled W, squared.
     let scale = information.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
     let scaled = |matrix: &DMatrix<f64>| DMatrix::from_fn(k, k, |i, l| scale[i] * matrix[(i, l)] * scale[l]);
-    let hides_some = Cholesky::new(scaled(&(&information - 2.0 * &of_information))).is_none();
-    let directions = match hides_some {
-        true => Some(Directions::new(&scaled(&information), &scaled(&of_information))?),
-        false => None,
+    let directions = if Cholesky::new(scaled(&(&information - 2.0 * &of_information))).is_none() {
+        Some(Directions::new(&scaled(&information), &scaled(&of_information))?)
+    } else {
+        None
     };
     let of_information = match &directions {
         Some(directions) => {
@@ -103,7 +103,7 @@ pub(super) fn given_back(of_information: DMatrix<f64>, stacked: &Factor, chi: &[
         chi,
         missing: list(&missing),
         deviation: list(&deviation),
-        hides_some,
+        hides_some: directions.is_some(),
     })
 }
 

@@ -14,7 +14,7 @@ use crate::diagnosis::search::round::Ranked;
 use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::settings::Settings;
-use crate::effects::{EffectTerm, Form, SmoothingWindow};
+use crate::effects::{Form, SmoothingWindow};
 use crate::parallel;
 use std::sync::OnceLock;
 
@@ -166,33 +166,28 @@ impl Search<'_> {
         Some(Gate { gain, calibrated, size, left, is_event })
     }
 
-    /// Whether a law repeats itself with its shape, as waves do, and is no more than the same waves of the reference with other
-    /// phases. The phase of a wave of a motor may be another one after each start: the wave before and the wave now
-    /// differ by up to twice its amplitude.
+    /// Whether a law has waves that are no more than those of the reference with other phases. The phase of a wave of a motor
+    /// may be another one after each start: the wave before and the wave now differ by up to twice its amplitude.
     fn stands_already(&self, regression: &Regression, candidate: &Candidate, trial: usize) -> bool {
         let (Form::Joint(law), Some(joint)) = (candidate.effect.form(), candidate.place.joint()) else {
             return false;
         };
-        if !law.repeats_its_shape() {
-            return false;
-        }
-        let near = LINE_COVERED as f64 * self.lines[joint].resolution;
-        let standing: Vec<&EffectTerm> = (self.model.context.reference.iter())
+        let standing: Vec<(f64, f64)> = (self.model.context.reference.iter())
             .flat_map(|reference| reference.effects())
             .filter(|term| term.effect == candidate.effect && term.place == candidate.place)
+            .flat_map(|term| law.waves(&term.shape, &term.amplitude))
             .collect();
-        let before = |order: f64| -> f64 {
-            let waves =
-                standing.iter().flat_map(|term| term.shape.iter().zip(term.amplitude.chunks_exact(2)));
-            waves.filter(|(own, _)| (order - *own).abs() <= near).map(|(_, a)| a[0].hypot(a[1])).sum()
-        };
+        if standing.is_empty() {
+            return false;
+        }
         let columns = &candidate.trials[trial];
         let part = regression.fit.project_out(columns);
-        part.and_then(|part| part.solve(candidate)).is_some_and(|(now, _)| {
-            columns.shape.iter().zip(now.as_slice().chunks_exact(2)).any(|(&order, a)| {
-                let before = before(order);
-                before > 0.0 && a[0].hypot(a[1]) <= 2.0 * before
-            })
+        let Some((now, _)) = part.and_then(|part| part.solve(candidate)) else { return false };
+        let near = LINE_COVERED as f64 * self.lines[joint].resolution;
+        law.waves(&columns.shape, now.as_slice()).into_iter().any(|(order, size)| {
+            let same = standing.iter().filter(|(own, _)| (order - own).abs() <= near);
+            let before: f64 = same.map(|(_, size)| size).sum();
+            before > 0.0 && size <= 2.0 * before
         })
     }
 

@@ -5,8 +5,8 @@ use crate::diagnosis::candidates::trial::{Trial, columns};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rules::{EXPLAINS_MOST, GATES_AHEAD, MOST_EVALUATIONS, MOST_STARTS, SMALLEST_STEP};
 use crate::diagnosis::search::round::Ranked;
-use crate::diagnosis::search::state::{Law, Search};
-use crate::diagnosis::search::term::{Accepted, Mode};
+use crate::diagnosis::search::state::Search;
+use crate::diagnosis::search::term::{Accepted, Law, Mode};
 use crate::diagnosis::search::tuning::Tuning;
 use crate::diagnosis::settings::Settings;
 use crate::parallel;
@@ -15,7 +15,7 @@ impl Search<'_> {
     /// Narrow resonances fall between the values of a grid: the best shape of every compliant transmission is
     /// refined on what nothing else explains. Says whether there was anything to refine.
     pub(in crate::diagnosis) fn polish(&mut self) -> bool {
-        let laws: Vec<Law> = self.model.terms.iter().map(|t| (t.effect, t.place, t.shape.clone())).collect();
+        let laws: Vec<Law> = self.model.terms.iter().map(Accepted::law).collect();
         if self.polished_beside.contains(&laws) {
             return false;
         }

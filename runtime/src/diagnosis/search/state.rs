@@ -12,7 +12,7 @@ use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::line::{JointLines, all_lines};
 use crate::diagnosis::search::round::Tie;
 use crate::diagnosis::search::small_law::SmallLaw;
-use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::search::term::{Accepted, Law};
 use crate::diagnosis::settings::{Progress, Settings};
 use crate::effects::{EffectKind, Place, SmoothingWindow, UserLaw};
 use crate::model::JointIndex;
@@ -47,9 +47,6 @@ pub(in crate::diagnosis) struct Search<'a> {
     /// are.
     pub(super) polished_beside: Vec<Vec<Law>>,
 }
-
-/// A law of the model: effect, place and shape.
-pub(super) type Law = (EffectKind, Place, Vec<f64>);
 
 impl<'a> Search<'a> {
     /// Builds all candidates; `slowest` are the speeds of standstill, per joint.

@@ -3,6 +3,9 @@
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::effects::{EffectKind, Place};
 
+/// A law of the model: effect, place and shape.
+pub(super) type Law = (EffectKind, Place, Vec<f64>);
+
 /// An accepted effect.
 #[derive(Debug, Clone)]
 pub(in crate::diagnosis) struct Accepted {
@@ -31,6 +34,11 @@ pub(in crate::diagnosis) struct Accepted {
 }
 
 impl Accepted {
+    /// Which law it is.
+    pub(super) fn law(&self) -> Law {
+        (self.effect, self.place, self.shape.clone())
+    }
+
     /// The joint of a curve that says nothing of values which no motion has passed; `None` for every other law.
     pub fn curve_on(&self) -> Option<usize> {
         self.own.first().copied().filter(|_| self.effect.form().holds_only_where_seen())

@@ -7,8 +7,7 @@ use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::rows::additions::NumberError;
 use crate::diagnosis::rows::context::Context;
-use crate::diagnosis::search::state::Law;
-use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::search::term::{Accepted, Law};
 use crate::effects::{EffectKind, Form, JointLaw};
 use crate::model::Robot;
 use crate::parallel;
@@ -84,10 +83,9 @@ pub(super) fn put_terms(
             curve_on: term.curve_on(),
         }
     });
-    let law = |term: &Accepted| (term.effect, term.place, term.shape.clone());
     *lasting = (terms.iter().zip(&columns))
         .filter(|(term, _)| lasts(term))
-        .map(|(term, made)| (law(term), made.columns.clone()))
+        .map(|(term, made)| (term.law(), made.columns.clone()))
         .collect();
     let besides = Besides { known, gains: gain_columns(context, design), deviation, bent };
     regression.set_terms(columns, besides)

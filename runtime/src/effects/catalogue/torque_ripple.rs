@@ -76,6 +76,10 @@ impl JointLaw for TorqueRipple {
         true
     }
 
+    fn waves(&self, shape: &[f64], amplitude: &[f64]) -> Vec<(f64, f64)> {
+        shape.iter().zip(amplitude.chunks_exact(2)).map(|(order, a)| (*order, a[0].hypot(a[1]))).collect()
+    }
+
     /// The orders of a motor turn that cogging, current offsets and wave generators have. A wave must pass four times
     /// in the travel, or it is a spring or gravity by another name.
     fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
