@@ -11,6 +11,9 @@ const BANDS: [f64; 13] = [50.0, 40.0, 30.0, 25.0, 20.0, 15.0, 10.0, 8.0, 6.0, 5.
 const NOISE: f64 = 0.01;
 /// Length of a segment of the spectrum, s.
 const SEGMENT: f64 = 2.0;
+/// Noise of a position that was filtered once falls with the square of the frequency, and so grows with it once it is differenced
+/// twice: by this factor from one third of an octave to the next.
+const FALL: f64 = 1.587_401_051_968_199_4;
 /// A long motion is looked at in this many stretches of this many seconds.
 const STRETCHES: usize = 6;
 const STRETCH: f64 = 10.0;
@@ -57,8 +60,9 @@ impl Bandwidth {
 ///
 /// Differentiating a position twice multiplies its noise by the square of the frequency, while the motion of a
 /// robot fades above a few hertz. The spectrum of the raw second differences therefore falls, passes a valley, and
-/// rises: what is below the valley counts as motion, what is above as noise. Joints count by the share that they
-/// have in the variance of the torques. Without torque variance the band is the widest that the rate allows.
+/// rises: what is below the valley counts as motion, what is above as noise, as far as it rises. What does not, as where
+/// cogging shakes the robot, is motion too. Joints count by the share that they have in the variance of the torques. Without
+/// torque variance the band is the widest that the rate allows.
 ///
 /// # Errors
 /// Time stamps that do not increase, or too few of them.
@@ -153,12 +157,15 @@ impl Joint {
         let upper = (1..self.power.len()).filter(|&k| self.count[k] > 0 && edge(k) <= 2.0 * BANDS[0]);
         let Some(valley) = upper.min_by(|&a, &b| density(a).total_cmp(&density(b))) else { return 0.0 };
         let motion: f64 = self.power[..=valley].iter().sum();
-        let noise: f64 = (valley + 1..self.power.len())
-            .map(|k| {
-                let inside = (band.min(edge(k)) - edge(k - 1)).max(0.0) / (edge(k) - edge(k - 1));
-                self.power[k] * inside
-            })
-            .sum();
+        // From the highest third down, what noise can be at most.
+        let (mut noise, mut most) = (0.0, f64::INFINITY);
+        for k in (valley + 1..self.power.len()).rev() {
+            let inside = (band.min(edge(k)) - edge(k - 1)).max(0.0) / (edge(k) - edge(k - 1));
+            if self.count[k] > 0 {
+                most = density(k).min(most / FALL);
+                noise += most * self.count[k] as f64 * inside;
+            }
+        }
         if motion > 0.0 { noise / motion } else { 0.0 }
     }
 }
@@ -210,6 +217,18 @@ mod tests {
         let widest = BANDS.into_iter().find(|b| *b <= expected).expect("within the list");
         assert!((10.0..50.0).contains(&expected));
         assert_eq!(chosen.band, widest, "{expected}");
+    }
+
+    #[test]
+    fn a_robot_that_is_shaken_moves() {
+        let mut shaken = swinging(1e-8, 1000.0, 20.0);
+        for (t, q) in shaken.time.iter().zip(&mut shaken.position[0]) {
+            // Cogging at a changing speed: a tenth of the accelerations, from 10 Hz to 30 Hz.
+            let phase = std::f64::consts::TAU * (10.0 * t + 0.5 * t * t);
+            let frequency = std::f64::consts::TAU * (10.0 + t);
+            *q += 0.1 * (std::f64::consts::TAU / frequency).powi(2) * phase.sin();
+        }
+        assert_eq!(choose_bandwidth(&[shaken]).expect("uniform time").band, 50.0);
     }
 
     #[test]

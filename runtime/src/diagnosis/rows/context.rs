@@ -9,7 +9,7 @@ use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::effects::{Corrected, Scale, Transmission, derivable};
 use crate::model::{Link, Model, RecursiveModel};
 use std::borrow::Cow;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, OnceLock, Weak};
 
 /// What is made of the motions with the base parameters and additions as they are, each when it is first asked for.
 pub(super) struct Made {
@@ -24,6 +24,17 @@ pub(super) struct Made {
     pub(super) inertias: Vec<OnceLock<[f64; 2]>>,
     /// The robot with the errors that are far off: in the baseline, and in the recording.
     there: [OnceLock<Option<There>>; 2],
+}
+
+/// The parameters and additions that something was made of.
+#[derive(Clone)]
+pub(in crate::diagnosis) struct MadeOf(Weak<Made>);
+
+impl MadeOf {
+    /// Whether those of a context are the same.
+    pub fn is_still(&self, context: &Context<'_>) -> bool {
+        self.0.ptr_eq(&Arc::downgrade(&context.made))
+    }
 }
 
 /// A robot whose numbers are not those of its table.
@@ -132,6 +143,11 @@ impl<'a> Context<'a> {
     /// What was made with other parameters or additions is made anew where it is asked for.
     fn forget(&mut self) {
         self.made = Arc::new(Made::nothing(self.signals.len(), self.model.robot().joints()));
+    }
+
+    /// The parameters and additions as they are.
+    pub fn made_of(&self) -> MadeOf {
+        MadeOf(Arc::downgrade(&self.made))
     }
 
     /// What the model makes of a motion; worked out when it is first asked for.

@@ -321,7 +321,8 @@ impl ModelTorques {
     pub fn new(model: &dyn Model, chi: &[f64], s: &Signals) -> Self {
         let n = s.q.len();
         let zero = || vec![vec![0.0; s.len()]; n];
-        let mut out = Self { rigid: zero(), link: zero(), friction: zero(), total: zero() };
+        // Each entry belongs to one of these; all else are their sums.
+        let (mut link, mut rotors, mut friction, mut offset) = (zero(), zero(), zero(), zero());
         let kinds: Vec<ParameterKind> =
             model.robot().base.iter().map(|b| model.robot().standard[b.standard].kind).collect();
         let pattern = model.pattern().clone();
@@ -330,28 +331,24 @@ impl ModelTorques {
                 for e in pattern.rows[j]..pattern.rows[j + 1] {
                     let k = pattern.columns[e];
                     let part = match kinds[k] {
-                        kind if kind.is_friction() => Some(&mut out.friction[j]),
-                        ParameterKind::Off => None,
-                        _ => Some(&mut out.rigid[j]),
+                        kind if kind.is_friction() => &mut friction,
+                        ParameterKind::Off => &mut offset,
+                        kind if kind <= ParameterKind::M || kind.is_spring() => &mut link,
+                        _ => &mut rotors,
                     };
                     let values = &entries[e * BLOCK..e * BLOCK + count];
-                    if let Some(part) = part {
-                        for (o, v) in part[first..first + count].iter_mut().zip(values) {
-                            *o += v * chi[k];
-                        }
-                    }
-                    if kinds[k] <= ParameterKind::M || kinds[k].is_spring() {
-                        for (o, v) in out.link[j][first..first + count].iter_mut().zip(values) {
-                            *o += v * chi[k];
-                        }
-                    }
-                    for (o, v) in out.total[j][first..first + count].iter_mut().zip(values) {
+                    for (o, v) in part[j][first..first + count].iter_mut().zip(values) {
                         *o += v * chi[k];
                     }
                 }
             }
         });
-        out
+        let sum = |a: &[Vec<f64>], b: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            a.iter().zip(b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a + b).collect()).collect()
+        };
+        let rigid = sum(&link, &rotors);
+        let total = sum(&sum(&rigid, &friction), &offset);
+        Self { rigid, link, friction, total }
     }
 }
 

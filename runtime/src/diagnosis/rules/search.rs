@@ -54,11 +54,9 @@ pub(in crate::diagnosis) const LARGE_ERROR: f64 = 0.1;
 /// Columns that were made for an error, in units of its number, do for one that is as near. Numerics: parameters then settle by a
 /// factor of fifty a refit.
 pub(in crate::diagnosis) const NEAR_ERROR: f64 = 0.02;
-/// Fewest refits where columns follow the standard parameters: candidates do, too. Judgement; not measured.
-pub(in crate::diagnosis) const REFITS: usize = 2;
-/// Most of them, where parameters or the numbers that columns are derivatives by have not converged. Numerics: what is far off
+/// Most refits, where parameters or the numbers that columns are derivatives by have not converged. Numerics: what is far off
 /// converges as Newton's steps do, everything else by a factor of ten each.
-pub(in crate::diagnosis) const REFITS_OF_BENT_COLUMNS: usize = 8;
+pub(in crate::diagnosis) const MOST_REFITS: usize = 8;
 /// Parameters that change by no more than this part of their standard deviations have converged. Statistics.
 pub(in crate::diagnosis) const SETTLED_PARAMETER: f64 = 0.1;
 /// Errors that change by no more than this part of themselves have converged. Statistics: a tenth of a standard deviation of one

@@ -14,13 +14,14 @@ use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{
-    GAIN_DEVIATION, REFITS, REFITS_OF_BENT_COLUMNS, SETTLED_ERROR, SETTLED_PARAMETER,
+    GAIN_DEVIATION, MOST_REFITS, SETTLED_ERROR, SETTLED_PARAMETER,
 };
 use crate::diagnosis::search::bench::Bench;
-use crate::diagnosis::search::term::Accepted;
+use crate::diagnosis::search::term::{Accepted, Law};
 use crate::diagnosis::search::term_columns::{LastingColumns, large_error, put_terms, recorded_larger_on};
 use crate::effects::SmoothingWindow;
 use crate::parallel;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The standard model, the effects that were accepted, and both regressions with them.
@@ -36,7 +37,9 @@ pub(in crate::diagnosis) struct ExtendedModel<'a> {
     pub factors: Vec<f64>,
     /// Whether only what changed since a baseline is looked for.
     pub change: bool,
-    /// Columns of the terms on the slow and on the fast rows that stay what they are while parameters are fitted.
+    /// Laws and amplitudes of the terms that columns are made with, beside the parameters of the context.
+    followed: Vec<(Law, Vec<f64>)>,
+    /// Columns that the terms have on the slow and on the fast rows.
     lasting: [LastingColumns; 2],
 }
 
@@ -69,8 +72,8 @@ impl<'a> ExtendedModel<'a> {
         let bench = |r: &Regression| Bench::new(&context, &r.design, companions(&context, &r.design), change);
         let benches = [bench(&slow), bench(&fast)];
         let factors = vec![0.0; slow.design.joints];
-        let (terms, lasting) = (Vec::new(), [Vec::new(), Vec::new()]);
-        Ok(Self { context, slow, fast, benches, terms, factors, change, lasting })
+        let (terms, followed, lasting) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
+        Ok(Self { context, slow, fast, benches, terms, factors, change, followed, lasting })
     }
 
     /// The regression on the rows of a window.
@@ -89,7 +92,7 @@ impl<'a> ExtendedModel<'a> {
         }
     }
 
-    /// Puts the terms into both regressions, and lets loads follow the standard parameters.
+    /// Puts the terms into both regressions, and lets columns that are made of what is fitted follow it.
     ///
     /// # Errors
     /// [`SingularDesign`] where there is no fit.
@@ -100,74 +103,93 @@ impl<'a> ExtendedModel<'a> {
             NumberError::of_robot(robot, (term.effect, term.place), &term.shape, !self.change)
         };
         self.context.take_errors(self.terms.iter().filter_map(of_robot).collect());
-        for round in 1..=REFITS_OF_BENT_COLUMNS {
+        for round in 1..=MOST_REFITS {
             let terms = (&self.terms[..], &self.factors[..], &mut self.lasting[0]);
             put_terms(&mut self.slow, (&self.context, self.change), terms, deviation)?;
-            deviation = self.deviation_of_gains(deviation);
-            let settled = self.follow_parameters();
-            self.follow_factors();
-            let stay = self.follow_errors();
-            self.context.take(self.additions());
-            if stay && settled && round >= REFITS {
+            let before = deviation;
+            deviation = self.deviation_of_gains(before);
+            let gains_settled = (deviation - before).abs() <= SETTLED_PARAMETER * before;
+            if gains_settled && self.is_settled() || round == MOST_REFITS {
                 break;
             }
+            self.follow();
         }
-        let factors = &self.factors;
-        let [slow, fast] = &mut self.lasting;
-        let mut fits = [(&mut self.slow, slow, Ok(())), (&mut self.fast, fast, Ok(()))];
+        let mut fits = [(&mut self.slow, None, Ok(())), (&mut self.fast, Some(&mut self.lasting[1]), Ok(()))];
         parallel::for_each(self.context.threads, &mut fits, |(regression, lasting, outcome)| {
-            let terms = (&self.terms[..], &factors[..], &mut **lasting);
-            *outcome = put_terms(regression, (&self.context, self.change), terms, deviation)
-                .and_then(|()| regression.hold_out());
+            let put = lasting.as_mut().map_or(Ok(()), |lasting| {
+                let terms = (&self.terms[..], &self.factors[..], &mut **lasting);
+                put_terms(regression, (&self.context, self.change), terms, deviation)
+            });
+            *outcome = put.and_then(|()| regression.hold_out());
         });
         fits.into_iter().try_for_each(|(_, _, outcome)| outcome)
     }
 
-    /// Takes the parameters that were fitted for those that columns are made of. Says whether these are what they were, within a
-    /// tenth of their standard deviations, where any column is made of them.
-    fn follow_parameters(&mut self) -> bool {
-        let Regression { design, fit, .. } = &self.slow;
-        let chi: Vec<f64> = fit.chi.iter().take(design.parameters).copied().collect();
-        let follows = |term: &Accepted| term.effect.properties().follows_parameters;
-        let settled = !self.terms.iter().any(follows) || {
-            let variances = fit.variances();
-            let both = chi.iter().zip(&self.context.chi).zip(variances.iter());
-            both.into_iter().all(|((new, old), v)| (new - old).abs() <= SETTLED_PARAMETER * v.max(0.0).sqrt())
+    /// Whether what was fitted is what columns were made of: parameters and amplitudes within a tenth of their standard
+    /// deviations, errors of numbers and of drives within what they are known to.
+    fn is_settled(&self) -> bool {
+        let Regression { design, fit, term_columns, .. } = &self.slow;
+        let variances = fit.variances();
+        let near = |column: usize, before: f64| {
+            (fit.chi[column] - before).abs() <= SETTLED_PARAMETER * variances[column].max(0.0).sqrt()
         };
-        self.context.update(chi);
-        settled
+        let stays = |new: f64, old: f64, unit: f64| (new - old).abs() <= SETTLED_ERROR * unit;
+        let of_terms = || self.terms.iter().zip(term_columns);
+        let laws_stay = self.followed.len() == self.terms.len()
+            && of_terms().zip(&self.followed).all(|((term, columns), (law, amplitude))| {
+                let amplitudes_stay = || columns.clone().zip(amplitude).all(|(c, &before)| near(c, before));
+                match self.errors_of(term, columns) {
+                    Some(errors) => {
+                        errors.len() == term.shape.len()
+                            && errors.iter().zip(&term.shape).all(|(&new, &old)| stays(new, old, new.abs()))
+                    }
+                    None => term.law() == *law && columns.len() == amplitude.len() && amplitudes_stay(),
+                }
+            });
+        let factors_stay = || {
+            of_terms().all(|(term, columns)| {
+                let Some(joint) = recorded_larger_on(term) else { return true };
+                let factor = columns.clone().map(|c| fit.chi[c]).sum::<f64>();
+                stays(factor, self.factors[joint], 1.0 + factor.abs())
+            })
+        };
+        let parameters_stay = || (0..design.parameters).all(|k| near(k, self.context.chi[k]));
+        laws_stay && factors_stay() && parameters_stay()
     }
 
-    /// Takes the factors of torques that were fitted for those that columns are made with.
-    fn follow_factors(&mut self) {
-        for (term, columns) in self.terms.iter().zip(&self.slow.term_columns) {
+    /// Takes what was fitted for what columns are made of: parameters, bodies and laws beside them, factors of torques; an error
+    /// that is not small bends its own column, whose derivatives are taken along the way to it.
+    fn follow(&mut self) {
+        let Regression { design, fit, term_columns, .. } = &self.slow;
+        let chi = fit.chi.iter().take(design.parameters).copied().collect();
+        for (term, columns) in self.terms.iter().zip(term_columns) {
             if let Some(joint) = recorded_larger_on(term) {
-                self.factors[joint] = columns.clone().map(|c| self.slow.fit.chi[c]).sum();
+                self.factors[joint] = columns.clone().map(|c| fit.chi[c]).sum();
             }
         }
+        let errors: Vec<_> = self.terms.iter().zip(term_columns).map(|(t, c)| self.errors_of(t, c)).collect();
+        for (term, errors) in self.terms.iter_mut().zip(errors) {
+            if let Some(errors) = errors {
+                term.shape = errors;
+            }
+        }
+        let amplitudes = |columns: &Range<usize>| columns.clone().map(|c| fit.chi[c]).collect();
+        self.followed =
+            self.terms.iter().zip(term_columns).map(|(t, columns)| (t.law(), amplitudes(columns))).collect();
+        self.context.update(chi);
+        self.context.take(self.additions());
+    }
+
+    /// How far each number is off that a term says is off, as it was fitted; `None` for every other law.
+    fn errors_of(&self, term: &Accepted, columns: &Range<usize>) -> Option<Vec<f64>> {
+        let most = term.effect.form().sensitivity()?.largest_error();
+        Some(columns.clone().map(|c| self.slow.fit.chi[c].clamp(-most, most)).collect())
     }
 
     /// Whether a term is an error of a number of the robot or of a drive that is not small.
     pub fn is_large_error(&self, k: usize) -> bool {
         let robot = self.context.model.robot();
         large_error(robot, &self.terms[k], &self.factors, self.change).is_some()
-    }
-
-    /// An error that is not small bends its own column: derivatives are taken along the way to it. Says whether all errors stay
-    /// where they were.
-    fn follow_errors(&mut self) -> bool {
-        let mut settled = true;
-        for (term, columns) in self.terms.iter_mut().zip(&self.slow.term_columns) {
-            if let Some(law) = term.effect.form().sensitivity() {
-                let most = law.largest_error();
-                let error = |c: usize| self.slow.fit.chi[c].clamp(-most, most);
-                let shape: Vec<f64> = columns.clone().map(error).collect();
-                let stays = |(new, old): (&f64, &f64)| (new - old).abs() <= SETTLED_ERROR * new.abs();
-                settled &= shape.len() == term.shape.len() && shape.iter().zip(&term.shape).all(stays);
-                term.shape = shape;
-            }
-        }
-        settled
     }
 
     /// How much the gains differ that bodies show.

@@ -6,15 +6,33 @@ use crate::diagnosis::candidates::trial::{columns_there, dense_columns};
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::{Besides, Regression, TermColumns};
 use crate::diagnosis::rows::additions::NumberError;
-use crate::diagnosis::rows::context::Context;
+use crate::diagnosis::rows::context::{Context, MadeOf};
 use crate::diagnosis::search::term::{Accepted, Law};
 use crate::effects::{EffectKind, Form, JointLaw};
 use crate::model::Robot;
 use crate::parallel;
 use std::sync::Arc;
 
-/// Columns of laws of joints over recorded quantities, by the law: they stay what they are while parameters are fitted.
-pub(super) type LastingColumns = Vec<(Law, Arc<Vec<Vec<f64>>>)>;
+/// Columns of laws that were made before.
+pub(super) type LastingColumns = Vec<Lasting>;
+
+/// Columns of a law, which stay what they are while what they are made of does.
+#[derive(Clone)]
+pub(super) struct Lasting {
+    law: Law,
+    /// What they were made of; nothing for a law of a joint over recorded quantities.
+    made_of: Option<MadeOf>,
+    columns: Arc<Vec<Vec<f64>>>,
+}
+
+impl Lasting {
+    /// Whether it has the columns of a term.
+    fn is_of(&self, term: &Accepted, context: &Context<'_>) -> bool {
+        let (effect, place, shape) = &self.law;
+        (*effect, *place, shape) == (term.effect, term.place, &term.shape)
+            && self.made_of.as_ref().is_none_or(|made_of| made_of.is_still(context))
+    }
+}
 
 /// The joint whose torques are recorded larger, where a term is that.
 pub(super) fn recorded_larger_on(term: &Accepted) -> Option<usize> {
@@ -61,10 +79,7 @@ pub(super) fn put_terms(
         None => context.bent((design, regression.plain()), errors),
     };
     let had = |term: &Accepted| {
-        let is_of = |((effect, place, shape), _): &&(Law, _)| {
-            (*effect, *place, shape) == (term.effect, term.place, &term.shape)
-        };
-        lasting.iter().find(is_of).map(|(_, columns)| columns.clone())
+        lasting.iter().find(|before| before.is_of(term, context)).map(|before| before.columns.clone())
     };
     let columns = parallel::map(context.threads, terms.len(), |k| {
         let term = &terms[k];
@@ -83,10 +98,13 @@ pub(super) fn put_terms(
             curve_on: term.curve_on(),
         }
     });
-    *lasting = (terms.iter().zip(&columns))
-        .filter(|(term, _)| lasts(term))
-        .map(|(term, made)| (term.law(), made.columns.clone()))
-        .collect();
+    let of_term = |(term, made): (&Accepted, &TermColumns)| Lasting {
+        law: term.law(),
+        made_of: (!lasts(term)).then(|| context.made_of()),
+        columns: made.columns.clone(),
+    };
+    let is_along_the_way = |made: &TermColumns| made.derived_at.is_empty();
+    *lasting = terms.iter().zip(&columns).filter(|(_, made)| is_along_the_way(made)).map(of_term).collect();
     let besides = Besides { known, gains: gain_columns(context, design), deviation, bent };
     regression.set_terms(columns, besides)
 }
