@@ -1,9 +1,11 @@
 //! The motions of a diagnosis: their band and windows, filtered signals, speeds of standstill, and the rows of both
 //! windows.
 
-use super::error::DiagnosisError;
+use super::error::{DiagnosisError, SingularDesign};
+use super::judging::folds::forward_cuts;
 use super::outcome::Sampling;
 use super::rows::design::Design;
+use super::rows::fit::Fit;
 use super::rows::prior::Prior;
 use super::rows::scales::top_speeds;
 use super::rows::selection::{Cut, RowSelection};
@@ -40,6 +42,9 @@ pub(super) struct Motions {
     /// Whether the recording has no rows to spare: slow effects are then smoothed no more than fast ones.
     short: bool,
 }
+
+/// Stretches of all motions, held out together.
+const STRETCHES: Cut = Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true, ..Cut::NOT };
 
 /// In how many motions the joint moves that moves in fewest: for at least a part of the time that it does where it moves most.
 fn least_motions_of_a_joint(signals: &[Signals], slowest: &[f64]) -> usize {
@@ -100,9 +105,9 @@ impl Motions {
         let duration: f64 = signals.iter().map(|s| s.len() as f64 / s.rate).sum();
         let count = trajectories.len();
         let cut = if count < rules::ENOUGH_MOTIONS {
-            Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS / count, together: false }
+            Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS / count, ..Cut::NOT }
         } else if least_motions_of_a_joint(&signals[baseline.len()..], &slowest) < rules::ENOUGH_MOTIONS {
-            Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true }
+            STRETCHES
         } else {
             Cut::NOT
         };
@@ -138,6 +143,47 @@ impl Motions {
             design.leave_out(&self.left_over);
         }
         design
+    }
+
+    /// Holds stretches out where whole motions cannot be, nor what comes later in a single one: parameters that the others do not
+    /// determine would be judged instead of laws. `design` are rows of all motions, with the noise of each joint. Says whether
+    /// anything is held out otherwise from now on.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where the others have no fit at all.
+    pub fn hold_out_what_others_show(
+        &mut self,
+        design: &Design,
+        sigma: &[f64],
+    ) -> Result<bool, SingularDesign> {
+        let open = |held: &dyn Fn(usize) -> bool, fitted: &dyn Fn(usize) -> bool| {
+            let segments = || 0..design.segments.len();
+            let others = Fit::new(design, sigma, segments().map(fitted).collect())?;
+            let held: Vec<usize> = segments().filter(|&g| held(g)).collect();
+            let of_joint = |j: usize| others.variance_of_prediction(design, j, &held);
+            Ok((0..design.joints).map(of_joint).fold(0.0, f64::max))
+        };
+        let targets: Vec<usize> = (0..self.signals.len()).filter(|&k| self.signals[k].is_target).collect();
+        if self.cut.together {
+            return Ok(false);
+        }
+        if design.is_single_motion() {
+            for cut in forward_cuts(design.segments.len()) {
+                let left_open: Result<f64, SingularDesign> = open(&|g| g >= cut, &|g| g < cut);
+                self.cut.forward &= left_open? <= rules::LEFT_OPEN_BY_THE_PAST;
+            }
+            return Ok(!self.cut.forward);
+        }
+        for &held in targets.iter().filter(|_| targets.len() > 1) {
+            let of = |g: usize| design.segments[g].signal;
+            let left_open: Result<f64, SingularDesign> =
+                open(&|g| of(g) == held, &|g| design.segments[g].is_target && of(g) != held);
+            if left_open? > rules::LEFT_OPEN_BY_OTHERS {
+                self.cut = STRETCHES;
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Those of the recording that is diagnosed, without its baseline.

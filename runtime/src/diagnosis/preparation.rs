@@ -81,9 +81,11 @@ impl Prepared {
             && large_error.as_ref().is_none_or(|other| left < other.left)
         {
             let wrong = WrongRate::new(factor, &fitted.aligned, &fitted.fit)?;
-            // A rate at which nothing can be made of the motion is not the right one.
+            // A rate at which nothing can be made of the motion is not the right one, nor is one that leads back to the declared.
             let recordings = (trajectories, baseline);
-            if let Ok(corrected) = Self::at_the_right_rate(model, recordings, settings, wrong) {
+            if let Ok(corrected) = Self::at_the_right_rate(model, recordings, settings, wrong)
+                && corrected.rate.as_ref().is_some_and(|wrong| wrong.logarithm.abs() > rules::RATE_LEAST)
+            {
                 return Ok(corrected);
             }
         }
@@ -205,6 +207,10 @@ impl Fitted {
         if !motions.left_over.is_empty() {
             aligned = motions.aligned(model);
             fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
+        }
+        if motions.hold_out_what_others_show(&aligned, &fit.sigma)? {
+            aligned = motions.aligned(model);
+            fit = Fit::weighted(&aligned, &fit.sigma)?;
         }
         Ok(Self { motions, aligned, fit, moving })
     }

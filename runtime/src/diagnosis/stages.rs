@@ -14,7 +14,7 @@ use super::pushes::Pushes;
 use super::rate::LAW;
 use super::reference::Reference;
 use super::rows::fit::Fit;
-use super::rules::RECURRING;
+use super::rules::{RECURRING, SHOWS_IN_ALL};
 use super::search::extended_model::ExtendedModel;
 use super::search::report::SearchReport;
 use super::search::state::Search;
@@ -278,13 +278,20 @@ impl<'a> Course<'a> {
     }
 }
 
-/// Laws that make motion which was held out worse, once nothing is fitted beside them that is never named.
+/// Laws that make motion which was held out worse, once nothing is fitted beside them that is never named; where only all
+/// together do so, as beside a transient, one that hardly makes its own joints better.
 fn harmful(diagnosis: &Diagnosis) -> Vec<Objection> {
-    let harms = |f: &&Finding| f.without.is_some() && f.held_out_after > f.held_out_before;
-    diagnosis.findings.iter().filter(harms).map(|f| Objection::to(f, false)).collect()
+    let judged = || diagnosis.findings.iter().filter(|f| f.without.is_some());
+    let harms = |f: &&Finding| f.held_out_after > f.held_out_before;
+    let mut harmful: Vec<&Finding> = judged().filter(harms).collect();
+    if harmful.is_empty() && diagnosis.held_out.after > diagnosis.held_out.before {
+        let left = |f: &Finding| f.held_out_after / f.held_out_before.max(1e-300);
+        let hardly_helps = judged().filter(|f| left(f) > SHOWS_IN_ALL);
+        harmful.extend(hardly_helps.max_by(|a, b| left(a).total_cmp(&left(b))));
+    }
+    harmful.into_iter().map(|f| Objection::to(f, false)).collect()
 }
 
-/// What can be said of a robot that holds still, beside a baseline in which it moves.
 fn at_rest(model: &dyn Model, prepared: &Prepared) -> Result<Diagnosis, DiagnosisError> {
     let motions = &prepared.motions;
     let context = prepared.context(model)?;

@@ -115,11 +115,15 @@ impl SimulatedRobot {
 
     /// Random Fourier motions of `length` seconds within 80 % of the limits. Other seeds give other motions.
     pub fn motions(&self, count: u64, length: f64, seed: u64) -> Vec<ExcitingMotion> {
+        self.motions_within(0.8, count, length, seed)
+    }
+
+    /// The same within another share of the limits.
+    pub fn motions_within(&self, share: f64, count: u64, length: f64, seed: u64) -> Vec<ExcitingMotion> {
         let chi = self.model.robot().base_from_standard(&self.standard);
         let motion = |k: u64| {
             let kind = MotionKind::Fourier { harmonics: 5 + k as usize, period: length, periods: 1 };
-            let settings =
-                ExcitationSettings { kind, share: 0.8, seed: 1000 * seed + k, ..Default::default() };
+            let settings = ExcitationSettings { kind, share, seed: 1000 * seed + k, ..Default::default() };
             excite(&self.model, Some(&chi), &settings, &|_| {}).expect("the robot has limits").motions
         };
         (0..count).flat_map(motion).collect()

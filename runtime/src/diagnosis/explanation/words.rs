@@ -217,6 +217,20 @@ fn of_one_joint(d: &Diagnosis) -> Option<String> {
     Some(format!(" of all joints together, and {of_joint} on joint {}", most.joints[0]))
 }
 
+/// What is said where motions do not show what predicts other motion.
+fn not_shown(d: &Diagnosis) -> Option<String> {
+    let (fitted, held_out) = (d.after.relative_error?, d.held_out.after);
+    (held_out > rules::NOT_SHOWN * fitted).then(|| {
+        format!(
+            "The motions do not show what one needs to know of the others: the error is {} where they were fitted, and {} where \
+             they were held out. A law that is no larger than that is not found; motions that move all joints, fast and over \
+             their travel, show more (`dynid excite`).",
+            percent(fitted),
+            percent(held_out)
+        )
+    })
+}
+
 /// The verdict first.
 pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
     let mut lines = Vec::new();
@@ -255,6 +269,7 @@ pub(in crate::diagnosis) fn verdict(d: &Diagnosis) -> Vec<String> {
             of_one_joint(d).unwrap_or_default()
         ));
     }
+    lines.extend(not_shown(d));
     if unexplained {
         lines.push(format!(
             "{:.0} % of what remains is not noise: something is left that nothing in the catalogue explains{}.",

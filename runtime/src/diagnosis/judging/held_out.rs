@@ -22,8 +22,8 @@ pub(in crate::diagnosis) struct HeldOutSquares {
 type Split = (Vec<bool>, Vec<usize>);
 
 impl HeldOutSquares {
-    /// Predicts held-out motion with the columns of a design: every motion once from the others; a single motion
-    /// forward in time, from two instants on; where `from_baseline` is set, the new motion from the baseline alone. Rows
+    /// Predicts held-out motion with the columns of a design: every motion, or stretch, once from the others; a single motion
+    /// forward in time, from two instants on, where these show something of it; where `from_baseline` is set, the new motion from the baseline alone. Rows
     /// of which one of the `curves` says nothing are left out, whether it is in the design or not.
     ///
     /// # Errors
@@ -106,7 +106,7 @@ fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {
     motions.dedup();
     if from_baseline {
         vec![(design.segments.iter().map(|s| !s.is_target).collect(), targets)]
-    } else if design.is_single_motion() && targets.len() > 1 {
+    } else if design.is_forward() && targets.len() > 1 {
         forward_cuts(targets.len()).map(|cut| without(&|g| targets[cut..].contains(&g))).to_vec()
     } else if motions.len() > 1 && !design.together {
         motions.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
@@ -152,6 +152,14 @@ mod tests {
     }
 
     #[test]
+    fn every_stretch_of_a_single_motion_is_predicted_where_what_comes_first_shows_nothing() {
+        let mut design = design(&[(0, true); 8]);
+        design.forward = false;
+        let held = HeldOutSquares::of(&design, &[1.0], false, &[]).expect("a small problem is regular");
+        assert_eq!(held.by_segment.iter().map(|s| s.0).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
+    }
+
+    #[test]
     fn of_several_motions_each_is_predicted_from_the_others() {
         let held = HeldOutSquares::of(&design(&[(0, true), (0, true), (1, true)]), &[1.0], false, &[])
             .expect("a small problem is regular");
@@ -166,6 +174,20 @@ mod tests {
         let held = HeldOutSquares::of(&design(&[(0, false), (1, true), (2, true)]), &[1.0], true, &[])
             .expect("a small problem is regular");
         assert_eq!(held.by_segment.iter().map(|s| s.0).collect::<Vec<_>>(), [1, 2]);
+    }
+
+    #[test]
+    fn a_fit_knows_how_well_it_predicts_what_it_was_not_fitted_to() {
+        // A column of size 1 in the first motion and of size 3 in the second, another that is in the second alone.
+        let column: Vec<f64> = (0..20).map(|r| if r < 10 { 1.0 } else { 3.0 }).collect();
+        let mut design = Design::made_up(1, &[(0, true), (1, true)], 10, vec![column], vec![1.0; 20]);
+        let fit = |design: &Design| Fit::new(design, &[0.5], vec![true, false]).expect("it is regular");
+        // Its parameter is known to sigma^2 / 10, and counts nine times.
+        let variance = fit(&design).variance_of_prediction(&design, 0, &[1]);
+        assert!((variance - 0.9).abs() < 1e-6, "{variance}");
+        design.push((0..20).map(|r| f64::from(u8::from(r >= 10))).collect());
+        design.refresh();
+        assert_eq!(fit(&design).variance_of_prediction(&design, 0, &[1]), f64::INFINITY);
     }
 
     #[test]

@@ -194,8 +194,8 @@ impl Regression {
     /// Whether a candidate improves motion that it was not fitted to, where there is a single one: each stretch, with
     /// everything, standard parameters included, fitted to the others, on the joints that it `shows_on`. (The others see it
     /// only through parameters that they share, whose extrapolation from a part of a motion is noise.) A law that explains less
-    /// than most of what is open must hold forward in time, where parameters are extrapolated; so must a trend and a
-    /// curve of many numbers, which go on between stretches that were fitted whatever they are.
+    /// than most of what is open must hold forward in time, where parameters are extrapolated, if what comes first shows
+    /// them; so must in any case a trend and a curve of many numbers, which go on between stretches that were fitted whatever they are.
     ///
     /// # Errors
     /// [`SingularDesign`] where the time before has no fit.
@@ -229,7 +229,7 @@ impl Regression {
         };
         let mut gains = Vec::new();
         let goes_on = candidate.is_trend() || candidate.effect.form().is_curve();
-        if goes_on || explained_fraction < MOST_OF_WHAT_IS_OPEN {
+        if goes_on || self.design.forward && explained_fraction < MOST_OF_WHAT_IS_OPEN {
             for cut in forward_cuts(segments) {
                 let before = (0..segments).map(|g| g < cut).collect();
                 gains.push(gain(&Fit::new(&self.design, &self.sigma, before)?, &|g| g >= cut));

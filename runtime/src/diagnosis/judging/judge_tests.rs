@@ -82,6 +82,7 @@ fn beside_a_curve_other_laws_are_not_judged_where_it_says_nothing() {
             columns: columns.clone().into(),
             fixed: None,
             derived_at: Vec::new(),
+            uncovered: None,
             is_curve: false,
             curve_on,
         };

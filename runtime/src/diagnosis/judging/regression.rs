@@ -9,6 +9,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rows::prior::Prior;
+use crate::diagnosis::rows::uncovered::Uncovered;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -70,6 +71,8 @@ pub(in crate::diagnosis) struct TermColumns {
     pub fixed: Option<f64>,
     /// Amplitudes at which the columns are derivatives beside bent columns of the base parameters; nothing for other columns.
     pub derived_at: Vec<f64>,
+    /// Those of its columns that an error uncovers.
+    pub uncovered: Option<Uncovered>,
     /// Whether it is a curve of many numbers.
     pub is_curve: bool,
     /// The joint of a curve that says nothing of values that no motion has passed.
@@ -145,6 +148,11 @@ impl Regression {
                     Some(a) => self.design.y.iter_mut().zip(column).for_each(|(y, c)| *y -= a * c),
                     None => self.design.push(column.clone()),
                 }
+            }
+            if let Some(Uncovered { from, deviation }) = term.uncovered {
+                let columns = (start + from).min(self.design.columns.len())..self.design.columns.len();
+                let prior = Prior::with_zeros(self.design.prior.as_deref(), columns, deviation);
+                self.design.prior = Some(Arc::new(prior));
             }
             self.term_columns.push(start..self.design.columns.len());
             if term.is_curve {

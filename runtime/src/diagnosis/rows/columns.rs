@@ -224,12 +224,15 @@ impl Context<'_> {
         if let Some((_, known)) = self.transmissions.iter().find(|(k, _)| *k == j) {
             return *known;
         }
-        let [least, median] = self.made.inertias[j].get_or_init(|| self.inertia(j));
-        let (least, median) = (*least, *median);
+        let [least, median] = self.inertias(j);
         Transmission::from_shape(shape, least, median, self.scales[j].range, self.scales[j].kind)
     }
 
     /// Least and median inertia that a joint moves in these motions.
+    pub(super) fn inertias(&self, j: usize) -> [f64; 2] {
+        *self.made.inertias[j].get_or_init(|| self.inertia(j))
+    }
+
     fn inertia(&self, j: usize) -> [f64; 2] {
         let mut inertia: Vec<f64> = (0..self.signals.len())
             .flat_map(|k| self.links(k).inertia(j).iter().step_by(7).copied().collect::<Vec<_>>())

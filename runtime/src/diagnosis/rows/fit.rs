@@ -194,6 +194,23 @@ impl Fit {
         DVector::from_fn(self.chi.len(), |k, _| inverse[(k, k)] * self.scale[k] * self.scale[k])
     }
 
+    /// Variance with which the fit predicts the rows of a joint in some segments that it was not fitted to, on average, in units
+    /// of the residual variance; infinite where these have a column that it has seen nothing of.
+    pub fn variance_of_prediction(&self, design: &Design, joint: usize, segments: &[usize]) -> f64 {
+        let (inverse, mut rows) = (self.inverse_gram(), 0);
+        let mut gram = Gram::zero(design.columns.len());
+        for &segment in segments {
+            gram.add(1.0, design.gram(joint, segment));
+            rows += design.ranges[joint][segment].len();
+        }
+        let is_unseen = |k: usize| self.scale[k] == 0.0 && gram.squares(k) > 0.0;
+        if (0..gram.columns()).any(is_unseen) {
+            return f64::INFINITY;
+        }
+        let trace: f64 = (0..gram.columns()).map(|i| dot(gram.row(i), inverse.column(i).as_slice())).sum();
+        trace / (self.sigma[joint] * self.sigma[joint] * rows.max(1) as f64)
+    }
+
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].
     pub fn known_beforehand(&self, design: &Design) -> f64 {
         let Some(prior) = &design.prior else { return 0.0 };

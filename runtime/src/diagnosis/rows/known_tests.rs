@@ -36,7 +36,7 @@ fn design(model: &RecursiveModel, motion: &Motion) -> Design {
         half: 0.05,
         slowest: &slowest,
         directions: &directions(model.robot()),
-        cut: Cut { segments: 3, together: false },
+        cut: Cut { segments: 3, ..Cut::NOT },
         excluded: &[vec![]],
     };
     Design::new(model, &[Signals::of_motion(motion)], &selection)

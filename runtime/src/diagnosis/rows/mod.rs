@@ -16,4 +16,5 @@ pub(in crate::diagnosis) mod scales;
 pub(in crate::diagnosis) mod selection;
 pub(in crate::diagnosis) mod series;
 pub(in crate::diagnosis) mod signals;
+pub(in crate::diagnosis) mod uncovered;
 pub(in crate::diagnosis) mod user;

@@ -27,3 +27,6 @@ pub(in crate::diagnosis) const LEAST_MISMATCH: f64 = 0.02;
 pub(in crate::diagnosis) const LEAST_DIFFERENCES: f64 = 10.0;
 /// Part of what remains that must be more than noise to be told. Words only.
 pub(in crate::diagnosis) const UNEXPLAINED: f64 = 0.3;
+/// From so many times the error of fitted motion on, motions are said not to show what predicts motion that was held out. Words
+/// only.
+pub(in crate::diagnosis) const NOT_SHOWN: f64 = 5.0;

@@ -13,9 +13,7 @@ use crate::diagnosis::rows::additions::{Additions, NumberError};
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::prior::Prior;
-use crate::diagnosis::rules::{
-    GAIN_DEVIATION, MOST_REFITS, SETTLED_ERROR, SETTLED_PARAMETER,
-};
+use crate::diagnosis::rules::{GAIN_DEVIATION, MOST_REFITS, SETTLED_ERROR, SETTLED_PARAMETER};
 use crate::diagnosis::search::bench::Bench;
 use crate::diagnosis::search::term::{Accepted, Law};
 use crate::diagnosis::search::term_columns::{LastingColumns, large_error, put_terms, recorded_larger_on};

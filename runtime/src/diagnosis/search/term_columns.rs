@@ -94,6 +94,7 @@ pub(super) fn put_terms(
             columns,
             derived_at: large.map_or_else(Vec::new, |e| e.errors.clone()),
             fixed: term.fixed,
+            uncovered: context.uncovered(law, &term.shape),
             is_curve: term.effect.form().is_curve(),
             curve_on: term.curve_on(),
         }
