@@ -86,26 +86,30 @@ impl Search<'_> {
         let design = &regression.design;
         let joints = design.joints;
         let residual = regression.residual();
-        let background = |without: Range<usize>| {
-            let beside = Others::of(design, &without);
+        let background = |without: Range<usize>, more: Vec<Vec<f64>>| {
+            let mut beside = Others::of(design, &without);
+            beside.columns.extend(more);
             let regressors = beside.regressors(bench, design);
             let background = Background::new(&bench.units, &regressors, &residual, self.threads());
             (beside, background)
         };
         // Against a baseline friction is free in every motion; against a reference that of the other joints in its columns.
-        let baseline = bench.units.change().then(|| background(bench.own_friction.clone()));
+        let baseline = bench.units.change().then(|| background(bench.own_friction.clone(), Vec::new()));
         let beside_laws = settings.beside_laws().least_confidence;
         let on_joint = |j: usize| {
-            let own = baseline.is_none().then(|| background(bench.own_friction_of(j)));
-            let (others, background) = own.as_ref().or(baseline.as_ref())?;
-            let (evidence, change) = self.friction_evidence(j, others, background, &residual)?;
+            let own = baseline.is_none().then(|| background(bench.own_friction_of(j), Vec::new()));
+            let (others, beside) = own.as_ref().or(baseline.as_ref())?;
+            let (mut evidence, change) = self.friction_evidence(j, others, beside, &residual)?;
             // Nor surer than the numbers allow that are shown.
-            let confidence = evidence.confidence(joints).min(of_amplitudes(
-                &regression.fit,
-                design,
-                bench.own_friction_of(j),
-                1.0,
-            ));
+            let of_numbers = of_amplitudes(&regression.fit, design, bench.own_friction_of(j), 1.0);
+            let confidence = |evidence: &Evidence| evidence.confidence(joints).min(of_numbers);
+            if baseline.is_some() && confidence(&evidence) >= beside_laws {
+                // At speeds that only one of them has, friction that bends in both is another than what viscous and Coulomb
+                // friction go on to be from those of the other.
+                let (others, beside) = background(bench.own_friction.clone(), self.bends(j));
+                evidence = self.friction_evidence(j, &others, &beside, &residual)?.0;
+            }
+            let confidence = confidence(&evidence);
             let sure = confidence >= beside_laws;
             let effect = match change {
                 Change::Friction | Change::Either => EffectKind::FrictionLevelChange,
@@ -262,6 +266,21 @@ impl Search<'_> {
             Some(_) => Change::Either,
         };
         Some((evidence, change))
+    }
+
+    /// Friction of a joint that bends with the speed, in the recording and in its baseline: near rest, at once, and late.
+    fn bends(&self, joint: usize) -> Vec<Vec<f64>> {
+        let (context, design) = (&self.model.context, &self.model.slow.design);
+        let place = Place::Joint(joint);
+        let of = |effect: EffectKind, which: fn(usize) -> usize| {
+            let shapes = effect.form().shapes(place, &context.scales);
+            let shape = shapes.get(which(shapes.len())).cloned().unwrap_or_default();
+            dense_columns(context, design, effect, place, &shape, false)
+        };
+        let near_rest = of(EffectKind::Stribeck, |count| count / 2);
+        let at_once = of(EffectKind::NonlinearViscous, |_| 0);
+        let late = of(EffectKind::NonlinearViscous, |count| count.saturating_sub(1));
+        [near_rest, at_once, late].concat()
     }
 
     /// Change of a joint's friction torque in the recording, or without `by_speed` of its Coulomb part, and what of its friction
