@@ -1,7 +1,7 @@
 //! The motions of a diagnosis: their band and windows, filtered signals, speeds of standstill, and the rows of both
 //! windows.
 
-use super::error::{DiagnosisError, SingularDesign};
+use super::error::DiagnosisError;
 use super::judging::folds::forward_cuts;
 use super::outcome::Sampling;
 use super::rows::design::Design;
@@ -148,42 +148,36 @@ impl Motions {
     /// Holds stretches out where whole motions cannot be, nor what comes later in a single one: parameters that the others do not
     /// determine would be judged instead of laws. `design` are rows of all motions, with the noise of each joint. Says whether
     /// anything is held out otherwise from now on.
-    ///
-    /// # Errors
-    /// [`SingularDesign`] where the others have no fit at all.
-    pub fn hold_out_what_others_show(
-        &mut self,
-        design: &Design,
-        sigma: &[f64],
-    ) -> Result<bool, SingularDesign> {
-        let open = |held: &dyn Fn(usize) -> bool, fitted: &dyn Fn(usize) -> bool| {
-            let segments = || 0..design.segments.len();
-            let others = Fit::new(design, sigma, segments().map(fitted).collect())?;
+    pub fn hold_out_what_others_show(&mut self, design: &Design, sigma: &[f64]) -> bool {
+        if self.cut.together {
+            return false;
+        }
+        let segments = || 0..design.segments.len();
+        let left_open = |held: &dyn Fn(usize) -> bool, fitted: &dyn Fn(usize) -> bool| {
+            let Ok(others) = Fit::new(design, sigma, segments().map(fitted).collect()) else {
+                return f64::INFINITY;
+            };
             let held: Vec<usize> = segments().filter(|&g| held(g)).collect();
             let of_joint = |j: usize| others.variance_of_prediction(design, j, &held);
-            Ok((0..design.joints).map(of_joint).fold(0.0, f64::max))
+            (0..design.joints).map(of_joint).fold(0.0, f64::max)
         };
-        let targets: Vec<usize> = (0..self.signals.len()).filter(|&k| self.signals[k].is_target).collect();
-        if self.cut.together {
-            return Ok(false);
-        }
         if design.is_single_motion() {
-            for cut in forward_cuts(design.segments.len()) {
-                let left_open: Result<f64, SingularDesign> = open(&|g| g >= cut, &|g| g < cut);
-                self.cut.forward &= left_open? <= rules::LEFT_OPEN_BY_THE_PAST;
-            }
-            return Ok(!self.cut.forward);
+            let shows_nothing =
+                |cut: &usize| left_open(&|g| g >= *cut, &|g| g < *cut) > rules::LEFT_OPEN_BY_THE_PAST;
+            self.cut.forward = !forward_cuts(segments().len()).iter().any(shows_nothing);
+            return !self.cut.forward;
         }
-        for &held in targets.iter().filter(|_| targets.len() > 1) {
+        let targets: Vec<usize> = (0..self.signals.len()).filter(|&k| self.signals[k].is_target).collect();
+        let is_left_open = |held: &usize| {
             let of = |g: usize| design.segments[g].signal;
-            let left_open: Result<f64, SingularDesign> =
-                open(&|g| of(g) == held, &|g| design.segments[g].is_target && of(g) != held);
-            if left_open? > rules::LEFT_OPEN_BY_OTHERS {
-                self.cut = STRETCHES;
-                return Ok(true);
-            }
+            let is_other = |g: usize| design.segments[g].is_target && of(g) != *held;
+            left_open(&|g| of(g) == *held, &is_other) > rules::LEFT_OPEN_BY_OTHERS
+        };
+        if targets.len() < 2 || !targets.iter().any(is_left_open) {
+            return false;
         }
-        Ok(false)
+        self.cut = STRETCHES;
+        true
     }
 
     /// Those of the recording that is diagnosed, without its baseline.
