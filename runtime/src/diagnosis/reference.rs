@@ -8,6 +8,7 @@
 
 use super::outcome::{BetweenMotions, Diagnosis};
 use super::rows::prior::Prior;
+use super::rules::DELAY_THERE;
 use crate::effects::EffectTerm;
 use crate::model::{ParameterKind, Robot};
 use nalgebra::DMatrix;
@@ -18,6 +19,8 @@ pub struct Reference {
     chi: Vec<f64>,
     effects: Vec<EffectTerm>,
     delay: f64,
+    /// Its standard deviation, s; zero where nobody knows.
+    delay_sigma: f64,
     covariance: DMatrix<f64>,
     /// Unknowns of `covariance` that the reference determines.
     known: Vec<usize>,
@@ -61,6 +64,7 @@ impl Reference {
             chi,
             effects,
             delay,
+            delay_sigma: 0.0,
             covariance,
             known,
             diagonal,
@@ -82,8 +86,12 @@ impl Reference {
             let (i, k) = (i.min(k), i.max(k));
             upper.get(i * n + k - i * (i + 1) / 2).copied().unwrap_or(0.0)
         });
-        let (chi, delay) = (diagnosis.model.chi.clone(), diagnosis.delay);
+        let (chi, delay_sigma) = (diagnosis.model.chi.clone(), diagnosis.delay_sigma);
+        // What may be none is not taken out of other motion, which may show by how much it is wrong.
+        let is_there = diagnosis.delay.abs() > DELAY_THERE * delay_sigma;
+        let delay = if is_there { diagnosis.delay } else { 0.0 };
         let reference = Self::new(chi, diagnosis.terms(), delay, covariance, false).ok()?;
+        let reference = Self { delay_sigma, ..reference };
         let reference = reference.standing_below(diagnosis.sampling.standstill_speeds.clone());
         Some(reference.differing_by(diagnosis.between_motions.clone()))
     }
@@ -118,6 +126,11 @@ impl Reference {
     /// Skew of the torques behind the positions, s.
     pub fn delay(&self) -> f64 {
         self.delay
+    }
+
+    /// Its standard deviation, s; zero where nobody knows.
+    pub(super) fn delay_sigma(&self) -> f64 {
+        self.delay_sigma
     }
 
     /// Whether only variances are known, no covariances.

@@ -31,7 +31,9 @@ pub(in crate::diagnosis) fn finding(
         Skew::known(skew, (&slow.design, &slow.fit), slow.design.parameters)
     } else {
         let of_target = Skew::of_target(&model.context, (&slow.design, &slow.sigma), skew)?;
-        of_target.beside(BetweenMotions::of_baseline(&model.context, (&slow.design, &slow.sigma))?)
+        let of_baseline = BetweenMotions::of_baseline(&model.context, (&slow.design, &slow.sigma))?;
+        let reference = model.context.reference.as_ref();
+        of_target.beside(of_baseline.known_to(reference.map_or(0.0, |r| r.delay_sigma())))
     };
     if known.confidence() < settings.confidence_of_one_search() {
         return Ok(None);

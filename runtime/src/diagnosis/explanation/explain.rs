@@ -13,6 +13,7 @@ use crate::diagnosis::explanation::{
 use crate::diagnosis::judging::between_motions::between_motions;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
 use crate::diagnosis::judging::hull::Curve;
+use crate::diagnosis::judging::skew::Skew;
 use crate::diagnosis::outcome::{
     BetweenMotions, CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed,
     Sampling, SearchOutcome, Small,
@@ -96,6 +97,8 @@ pub(in crate::diagnosis) fn explain(
         standard: ended.rate.map_or(&standard.estimated, |wrong| &wrong.declared).clone(),
         model: after,
         delay: skew,
+        delay_sigma: Skew::known(skew, (&model.slow.design, &model.slow.fit), model.slow.design.parameters)
+            .sigma,
         spectra,
         series: curves::series(model, &standard.fitted_fast),
         rows: model.slow.design.rows.len() + model.fast.design.rows.len(),
@@ -332,10 +335,8 @@ fn how(model: &ExtendedModel<'_>) -> String {
             }
             _ => "every new motion predicted from the baseline and the other new motions",
         }
-    } else if design.is_forward() {
-        "forward in time"
     } else if design.is_single_motion() {
-        "every stretch of the motion predicted from the others"
+        "forward in time"
     } else if design.together {
         "every stretch of the motions predicted from the others"
     } else {

@@ -62,6 +62,7 @@ pub(in crate::diagnosis) fn explain(
         standard: estimated.clone(),
         model: estimated,
         delay: 0.0,
+        delay_sigma: 0.0,
         spectra: Vec::new(),
         series: Vec::new(),
         rows: 0,

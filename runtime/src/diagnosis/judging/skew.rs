@@ -19,13 +19,15 @@ pub(in crate::diagnosis) struct Skew {
     freedom: f64,
 }
 
-/// How much skews differ between motions, beyond the errors that they are known with.
+/// How much skews differ between motions, beyond the errors that they are known with, and how well their mean is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::diagnosis) struct BetweenMotions {
     /// Of sampling, s²: a motion begins anywhere within a sample of the clock of the torques.
     of_sampling: f64,
     /// Of everything else, s².
     variance: f64,
+    /// Of their mean by the errors that they are known with, s²: slow motions hardly show a skew.
+    of_mean: f64,
     motions: usize,
 }
 
@@ -92,7 +94,7 @@ impl Skew {
         let beside_mean = 1.0 + 1.0 / n.max(1.0);
         let own = self.sigma * self.sigma;
         let between = others.variance * beside_mean;
-        let variance = own + others.of_sampling * beside_mean + between;
+        let variance = own + others.of_mean + others.of_sampling * beside_mean + between;
         let uncertain = own * own / self.freedom + between * between / (n - 1.0).max(1.0);
         let freedom = variance * variance / uncertain;
         let sigma = variance.sqrt();
@@ -137,6 +139,11 @@ impl BetweenMotions {
         Ok(Self::of(&skews, 1.0 / context.rate()))
     }
 
+    /// The same where the mean is known no better than this, s: a model of these motions knows it so.
+    pub fn known_to(self, deviation: f64) -> Self {
+        Self { of_mean: self.of_mean.max(deviation * deviation), ..self }
+    }
+
     /// Of skews with their own errors, by moments (DerSimonian and Laird 1986), at so many seconds a `sample`.
     fn of(skews: &[Skew], sample: f64) -> Self {
         let (motions, of_sampling) = (skews.len(), sample * sample / 12.0);
@@ -146,7 +153,7 @@ impl BetweenMotions {
         let own = skews.iter().map(|s| s.sigma * s.sigma).sum::<f64>() / n;
         // A single motion says nothing of how motions differ.
         let variance = if motions < 2 { 0.0 } else { (spread - own - of_sampling).max(0.0) };
-        Self { of_sampling, variance, motions }
+        Self { of_sampling, variance, of_mean: own / n, motions }
     }
 }
 
@@ -200,6 +207,8 @@ mod tests {
         let differing = BetweenMotions::of(&[one(-0.002), one(0.001), one(0.003), one(-0.002)], SAMPLE);
         let told = one(0.004).beside(differing);
         assert!(one(0.004).confidence() > 0.999 && told.confidence() < 0.9, "{}", told.confidence());
+        // Nor where nobody knows what it was before.
+        assert!(one(0.004).beside(alike.known_to(0.003)).confidence() < 0.9);
         assert!(one(0.1).beside(differing).confidence() > 0.999);
         // Of what one motion, or two that are alike, do not say sampling is known.
         for few in [&[one(0.001)][..], &[one(0.001), one(0.0012)]] {

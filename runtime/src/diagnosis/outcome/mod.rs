@@ -127,6 +127,8 @@ pub struct Diagnosis {
     pub model: Estimated,
     /// Skew between torque and position that was taken out, s.
     pub delay: f64,
+    /// Its standard deviation, s.
+    pub delay_sigma: f64,
     /// Order spectra of the residuals of joints with ripple.
     pub spectra: Vec<OrderSpectrum>,
     /// Torques before and after on the joints of the findings.
