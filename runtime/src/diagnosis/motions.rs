@@ -42,7 +42,7 @@ pub(super) struct Motions {
 }
 
 /// Stretches of all motions, held out together.
-const STRETCHES: Cut = Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true, ..Cut::NOT };
+const STRETCHES: Cut = Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true };
 
 /// In how many motions the joint moves that moves in fewest: for at least a part of the time that it does where it moves most.
 fn least_motions_of_a_joint(signals: &[Signals], slowest: &[f64]) -> usize {
