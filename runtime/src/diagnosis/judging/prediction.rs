@@ -5,7 +5,8 @@
 //! therefore eᵀ V⁻¹ e, by which an open direction tells nothing and no direction is asked to be known better than it is; where
 //! nothing is open they are eᵀ e. V⁻¹ e is what a fit to all segments, those that are predicted among them, leaves of their
 //! rows, so that the squares are sums over rows of two residuals' products (recursive residuals; Brown, Durbin and Evans
-//! 1975). The amplitudes of what is judged are those of the fitted segments in both.
+//! 1975). The amplitudes of what is judged are parameters like the others: what is left open of them has its price
+//! ([`Residualised::less_known_than`]).
 
 use crate::diagnosis::candidates::candidate::Candidate;
 use crate::diagnosis::candidates::trial::Trial;
