@@ -34,8 +34,9 @@ fn what_a_slow_motion_leaves_open_of_the_other_is_no_error() {
     let diagnosis = diagnosed(&record(&Hidden::nothing(), 1), &[]);
     assert_eq!(named(&diagnosis), [""; 0]);
     let alike = diagnosed(&ROBOT.record(&ROBOT.motions(2, 10.0, 1), &Hidden::nothing(), 1), &[]);
+    assert_eq!(alike.held_out.how, "every motion predicted from the others");
     let [weak, alike] = [diagnosis, alike].map(|d| d.held_out.before / d.before.relative_error.unwrap());
-    assert!(weak < 2.0 * alike, "{weak} times the fitted error, {alike} of motions that are alike");
+    assert!(weak < 1.5 * alike, "{weak} times the fitted error, {alike} of motions that are alike");
 }
 
 #[test]

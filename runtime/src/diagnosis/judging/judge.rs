@@ -226,13 +226,17 @@ impl Regression {
         let segments = self.design.segments.len();
         let trial = &candidate.trials[trial];
         let curves: Vec<Curve> = self.curves().into_iter().chain(Curve::of(candidate, trial)).collect();
+        let all = self.fit.project_out(trial).and_then(|part| {
+            let (amplitude, _) = part.solve(candidate)?;
+            Some((part, amplitude))
+        });
         let gain = |fit: &Fit, is_held: &dyn Fn(usize) -> bool| {
             let part = fit.project_out(trial)?;
             let (amplitude, _) = part.solve(candidate)?;
-            let all = self.fit.project_out(trial)?;
-            let (of_all, _) = all.solve(candidate)?;
-            let less_known = part.less_known_than(&all, candidate);
-            let prediction = Prediction::new((fit, &part, amplitude), (&self.fit, &all, of_all), trial);
+            let (of_all, amplitude_of_all) = all.as_ref()?;
+            let less_known = part.less_known_than(of_all, candidate);
+            let all = (&self.fit, of_all, amplitude_of_all.clone());
+            let prediction = Prediction::new((fit, &part, amplitude), all, trial);
             let held = || (0..segments).filter(|&g| is_held(g));
             let beyond = Beyond::each(&self.design, &curves, &fit.train);
             let of_joint = |&j: &usize| {

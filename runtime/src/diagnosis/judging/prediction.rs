@@ -43,13 +43,6 @@ pub(in crate::diagnosis) struct Prediction<'a> {
     shift_as_fitted: DVector<f64>,
 }
 
-/// Of one row: what is left of it without the trial and what the trial changes, beside the parameters of the fitted segments and
-/// beside those of all.
-struct Row {
-    left: [f64; 2],
-    change: [f64; 2],
-}
-
 impl<'a> Prediction<'a> {
     /// Of a trial that was residualised on the columns of each of two fits, to some segments and to all, with the amplitudes
     /// that it has beside them.
@@ -122,22 +115,17 @@ impl<'a> Prediction<'a> {
         changes
     }
 
-    fn rows(&self, design: &Design, joint: usize, rows: &[usize]) -> Vec<Row> {
-        let [fitted, all] = [&self.fitted, &self.all].map(|beside| {
+    /// Inner products of what the trial changes with what is left, and with itself, on each of some rows of a joint.
+    pub fn blocks(&self, design: &Design, joint: usize, rows: &[usize]) -> Vec<Block> {
+        let [(left, change), (left_by_all, change_by_all)] = [&self.fitted, &self.all].map(|beside| {
             let changes = self.changes((&beside.amplitude, &beside.shift), design, (joint, rows));
             (beside.fit.residual_on(design, rows), changes)
         });
-        let of = |i: usize| Row { left: [fitted.0[i], all.0[i]], change: [fitted.1[i], all.1[i]] };
-        (0..rows.len()).map(of).collect()
-    }
-
-    /// Inner products of what the trial changes with what is left, and with itself, on each of some rows of a joint.
-    pub fn blocks(&self, design: &Design, joint: usize, rows: &[usize]) -> Vec<Block> {
-        let of_row = |Row { left, change }| Block {
-            with_residual: 0.5 * (left[0] * change[1] + left[1] * change[0]),
-            squares: change[0] * change[1],
+        let of_row = |i: usize| Block {
+            with_residual: 0.5 * (left[i] * change_by_all[i] + left_by_all[i] * change[i]),
+            squares: change[i] * change_by_all[i],
         };
-        self.rows(design, joint, rows).into_iter().map(of_row).collect()
+        (0..rows.len()).map(of_row).collect()
     }
 
     /// Standard deviation of what is gained on some rows of each joint by the error of the parameters that were fitted
