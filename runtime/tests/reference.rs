@@ -182,6 +182,7 @@ fn a_file_with_standard_deviations_alone_still_is_a_reference_and_that_is_said()
     saved.standstill = Some(found.sampling.standstill_speeds.clone());
     saved.covariance = Covariance::new(robot, &amplitudes, found.covariance.clone().unwrap());
     saved.between_motions = found.between_motions.clone();
+    saved.delay_sigma = Some(found.delay_sigma);
     assert_eq!(saved.reference(robot).unwrap(), reference());
 }
 

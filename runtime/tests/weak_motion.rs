@@ -1,4 +1,4 @@
-//! A motion that shows little beside one that shows much hides no law: what it leaves open of the other is no error.
+//! A motion that shows little beside one that shows much hides no law: what predicts the other is not held out.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -30,13 +30,12 @@ fn named(diagnosis: &Diagnosis) -> Vec<&str> {
 }
 
 #[test]
-fn what_a_slow_motion_leaves_open_of_the_other_is_no_error() {
+fn stretches_of_both_motions_are_held_out() {
     let diagnosis = diagnosed(&record(&Hidden::nothing(), 1), &[]);
     assert_eq!(named(&diagnosis), [""; 0]);
+    assert_eq!(diagnosis.held_out.how, "every stretch of the motions predicted from the others");
     let alike = diagnosed(&ROBOT.record(&ROBOT.motions(2, 10.0, 1), &Hidden::nothing(), 1), &[]);
     assert_eq!(alike.held_out.how, "every motion predicted from the others");
-    let [weak, alike] = [diagnosis, alike].map(|d| d.held_out.before / d.before.relative_error.unwrap());
-    assert!(weak < 1.5 * alike, "{weak} times the fitted error, {alike} of motions that are alike");
 }
 
 #[test]

@@ -252,6 +252,7 @@ pub fn improved(measured: &Measured, diagnosis: &Diagnosis, extras: &Extras) -> 
     Identified {
         effects: diagnosis.terms(),
         delay: diagnosis.delay,
+        delay_sigma: Some(diagnosis.delay_sigma),
         standstill: Some(diagnosis.sampling.standstill_speeds.clone()),
         between_motions: diagnosis.between_motions.clone(),
         covariance: diagnosis.covariance.clone().and_then(|upper| {

@@ -2,8 +2,10 @@
 //! windows.
 
 use super::error::DiagnosisError;
+use super::judging::folds::forward_cuts;
 use super::outcome::Sampling;
 use super::rows::design::Design;
+use super::rows::fit::Fit;
 use super::rows::prior::Prior;
 use super::rows::scales::top_speeds;
 use super::rows::selection::{Cut, RowSelection};
@@ -42,7 +44,7 @@ pub(super) struct Motions {
 }
 
 /// Stretches of all motions, held out together.
-const STRETCHES: Cut = Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true };
+const STRETCHES: Cut = Cut { segments: rules::SEGMENTS_OF_FEW_MOTIONS, together: true, ..Cut::NOT };
 
 /// In how many motions the joint moves that moves in fewest: for at least a part of the time that it does where it moves most.
 fn least_motions_of_a_joint(signals: &[Signals], slowest: &[f64]) -> usize {
@@ -141,6 +143,41 @@ impl Motions {
             design.leave_out(&self.left_over);
         }
         design
+    }
+
+    /// Holds stretches out where whole motions cannot be, nor what comes later in a single one: parameters that the others do not
+    /// determine would be judged instead of laws. `design` are rows of all motions, with the noise of each joint. Says whether
+    /// anything is held out otherwise from now on.
+    pub fn hold_out_what_others_show(&mut self, design: &Design, sigma: &[f64]) -> bool {
+        if self.cut.together {
+            return false;
+        }
+        let segments = || 0..design.segments.len();
+        let left_open = |held: &dyn Fn(usize) -> bool, fitted: &dyn Fn(usize) -> bool| {
+            let Ok(others) = Fit::new(design, sigma, segments().map(fitted).collect()) else {
+                return f64::INFINITY;
+            };
+            let held: Vec<usize> = segments().filter(|&g| held(g)).collect();
+            let of_joint = |j: usize| others.variance_of_prediction(design, j, &held);
+            (0..design.joints).map(of_joint).fold(0.0, f64::max)
+        };
+        if design.is_single_motion() {
+            let shows_nothing =
+                |cut: &usize| left_open(&|g| g >= *cut, &|g| g < *cut) > rules::LEFT_OPEN_BY_THE_PAST;
+            self.cut.forward = !forward_cuts(segments().len()).iter().any(shows_nothing);
+            return !self.cut.forward;
+        }
+        let targets: Vec<usize> = (0..self.signals.len()).filter(|&k| self.signals[k].is_target).collect();
+        let is_left_open = |held: &usize| {
+            let of = |g: usize| design.segments[g].signal;
+            let is_other = |g: usize| design.segments[g].is_target && of(g) != *held;
+            left_open(&|g| of(g) == *held, &is_other) > rules::LEFT_OPEN_BY_OTHERS
+        };
+        if targets.len() < 2 || !targets.iter().any(is_left_open) {
+            return false;
+        }
+        self.cut = STRETCHES;
+        true
     }
 
     /// Those of the recording that is diagnosed, without its baseline.

@@ -208,6 +208,10 @@ impl Fitted {
             aligned = motions.aligned(model);
             fit = Fit::weighted(&aligned, &vec![1.0; aligned.joints])?;
         }
+        if motions.hold_out_what_others_show(&aligned, &fit.sigma) {
+            aligned = motions.aligned(model);
+            fit = Fit::weighted(&aligned, &fit.sigma)?;
+        }
         Ok(Self { motions, aligned, fit, moving })
     }
 }

@@ -86,14 +86,18 @@ impl Reference {
             let (i, k) = (i.min(k), i.max(k));
             upper.get(i * n + k - i * (i + 1) / 2).copied().unwrap_or(0.0)
         });
-        let (chi, delay_sigma) = (diagnosis.model.chi.clone(), diagnosis.delay_sigma);
-        // What may be none is not taken out of other motion, which may show by how much it is wrong.
-        let is_there = diagnosis.delay.abs() > DELAY_THERE * delay_sigma;
-        let delay = if is_there { diagnosis.delay } else { 0.0 };
+        let (chi, delay) = (diagnosis.model.chi.clone(), diagnosis.delay);
         let reference = Self::new(chi, diagnosis.terms(), delay, covariance, false).ok()?;
-        let reference = Self { delay_sigma, ..reference };
+        let reference = reference.delay_known_to(diagnosis.delay_sigma);
         let reference = reference.standing_below(diagnosis.sampling.standstill_speeds.clone());
         Some(reference.differing_by(diagnosis.between_motions.clone()))
+    }
+
+    /// The same with a delay that is known to this standard deviation, s. One that may be none is not taken out of other motion,
+    /// which may show by how much it is wrong.
+    pub fn delay_known_to(self, sigma: f64) -> Self {
+        let is_there = self.delay.abs() > DELAY_THERE * sigma;
+        Self { delay: if is_there { self.delay } else { 0.0 }, delay_sigma: sigma, ..self }
     }
 
     /// The same with the speeds below which each joint stood in its recording, rad/s or m/s: one in which nothing moves does

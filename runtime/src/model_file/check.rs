@@ -53,6 +53,9 @@ pub fn check(identified: &Identified) -> Result<(), FileError> {
     if !identified.delay.is_finite() {
         return wrong("delay", "it is not a finite number of seconds".to_owned());
     }
+    if identified.delay_sigma.is_some_and(|sigma| !(sigma.is_finite() && sigma >= 0.0)) {
+        return wrong("delay_sigma", "it must be a number of seconds, not below zero".to_owned());
+    }
     check_parameters("base_parameters", &identified.base_parameters)?;
     if let Some(essential) = &identified.essential_parameters {
         check_parameters("essential_parameters.parameters", &essential.parameters)?;

@@ -70,6 +70,9 @@ pub struct Identified {
     /// By how much the torque channel was found to be later than the positions, s.
     #[serde(default)]
     pub delay: f64,
+    /// Its standard deviation, s, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delay_sigma: Option<f64>,
     /// Relative error that the noise of the torques makes up, where it matters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<Errors>,
@@ -232,6 +235,7 @@ impl Identified {
             warnings: Vec::new(),
             effects: Vec::new(),
             delay: 0.0,
+            delay_sigma: None,
             noise: rows.noise,
             covariance: None,
             between_motions: Vec::new(),

@@ -62,6 +62,7 @@ impl Identified {
         let diagonal = places.iter().any(Option::is_none);
         let reference = Reference::new(chi, self.effects.clone(), self.delay, covariance, diagonal)
             .map_err(|error| wrong("covariance", &error.to_string()))?
+            .delay_known_to(self.delay_sigma.unwrap_or(0.0))
             .differing_by(self.between_motions.clone());
         Ok(match &self.standstill {
             Some(speeds) => reference.standing_below(speeds.clone()),

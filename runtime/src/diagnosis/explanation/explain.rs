@@ -335,8 +335,10 @@ fn how(model: &ExtendedModel<'_>) -> String {
             }
             _ => "every new motion predicted from the baseline and the other new motions",
         }
-    } else if design.is_single_motion() {
+    } else if design.is_forward() {
         "forward in time"
+    } else if design.is_single_motion() {
+        "every stretch of the motion predicted from the others"
     } else if design.together {
         "every stretch of the motions predicted from the others"
     } else {

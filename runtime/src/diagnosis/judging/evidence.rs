@@ -68,10 +68,12 @@ impl Regression {
                         !is_beyond(&self.beyond, *r) && !beyond.iter().any(|beyond| beyond.contains(*r))
                     };
                     let rows: Vec<usize> = design.ranges[j][g].clone().filter(seen).collect();
-                    for (&r, of_row) in rows.iter().zip(prediction.blocks(design, j, &rows)) {
+                    let residual = prediction.fit.residual_on(design, &rows);
+                    let changes = prediction.changes(design, j, &rows);
+                    for ((&r, residual), change) in rows.iter().zip(residual).zip(changes) {
                         let block = blocks.entry(design.block(design.rows[r], per_block)).or_default();
-                        block.with_residual += of_row.with_residual / (s * s);
-                        block.squares += of_row.squares / (s * s);
+                        block.with_residual += change * residual / (s * s);
+                        block.squares += change * change / (s * s);
                     }
                 }
             }

@@ -1,5 +1,4 @@
-//! Errors on motion that was held out. Where motions predict each other, what they leave open of the parameters is no error
-//! (see [`super::prediction`]).
+//! Errors on motion that was held out.
 
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::folds::forward_cuts;
@@ -7,7 +6,7 @@ use crate::diagnosis::judging::hull::{Beyond, Curve};
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::outcome::Errors;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::{Fit, products_on};
+use crate::diagnosis::rows::fit::Fit;
 
 /// Squares of the held-out residual and of the torque.
 pub(in crate::diagnosis) struct HeldOutSquares {
@@ -24,9 +23,8 @@ type Split = (Vec<bool>, Vec<usize>);
 
 impl HeldOutSquares {
     /// Predicts held-out motion with the columns of a design: every motion, or stretch, once from the others; a single motion
-    /// forward in time, from two instants on; where `from_baseline` is set, the new motion from the baseline alone. In the two
-    /// last every error is one, of what the fitted motion leaves open too: nothing else predicts what comes. Rows of which one
-    /// of the `curves` says nothing are left out, whether it is in the design or not.
+    /// forward in time, from two instants on, where these show something of it; where `from_baseline` is set, the new motion from the baseline alone. Rows
+    /// of which one of the `curves` says nothing are left out, whether it is in the design or not.
     ///
     /// # Errors
     /// [`SingularDesign`] where a split has no fit.
@@ -41,37 +39,32 @@ impl HeldOutSquares {
         // A curve that is a change says nothing where only the baseline is fitted: its rows are those that it is judged
         // on.
         let judged = if from_baseline && !curves.is_empty() { splits(design, false) } else { Vec::new() };
-        let every_error = from_baseline || design.is_single_motion();
-        let all = if every_error { None } else { Some(Fit::whole(design, sigma)?) };
         for (train, test) in splits(design, from_baseline) {
             let beyond = if from_baseline { Vec::new() } else { Beyond::each(design, curves, &train) };
-            let fitted = Fit::new(design, sigma, train)?;
-            let fits = [&fitted, all.as_ref().unwrap_or(&fitted)];
+            let fit = Fit::new(design, sigma, train)?;
             for g in test {
                 let own = judged.iter().find(|(_, test)| test.contains(&g));
                 match own.map(|(train, _)| Beyond::each(design, curves, train)) {
-                    Some(own) => out.add(design, fits, g, &own),
-                    None => out.add(design, fits, g, &beyond),
+                    Some(own) => out.add(design, &fit, g, &own),
+                    None => out.add(design, &fit, g, &beyond),
                 }
             }
         }
         Ok(out)
     }
 
-    fn add(&mut self, design: &Design, fits: [&Fit; 2], segment: usize, beyond: &[Beyond]) {
+    fn add(&mut self, design: &Design, fit: &Fit, segment: usize, beyond: &[Beyond]) {
         let (mut left, mut whole) = (0.0, 0.0);
         for j in 0..design.joints {
             // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
             let (squares, torque) = if beyond.iter().any(|beyond| beyond.joint == j) {
                 let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
                 let rows: Vec<usize> = design.ranges[j][segment].clone().filter(seen).collect();
-                (products_on(design, fits, &rows), rows.iter().map(|&r| design.torque(r).powi(2)).sum())
+                let squares = fit.residual_on(design, &rows).iter().map(|left| left * left).sum();
+                (squares, rows.iter().map(|&r| design.torque(r).powi(2)).sum())
             } else {
-                let [fitted, all] = fits;
-                (fitted.products(all, design, j, segment), design.torque_squares(j, segment))
+                (fit.squares(design, j, segment), design.torque_squares(j, segment))
             };
-            // Squares of all joints together are positive; of one, what is open may make them a little less.
-            let squares = f64::max(squares, 0.0);
             self.left[j] += squares;
             self.whole[j] += torque;
             left += squares;
@@ -113,7 +106,7 @@ fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {
     motions.dedup();
     if from_baseline {
         vec![(design.segments.iter().map(|s| !s.is_target).collect(), targets)]
-    } else if design.is_single_motion() && targets.len() > 1 {
+    } else if design.is_forward() && targets.len() > 1 {
         forward_cuts(targets.len()).map(|cut| without(&|g| targets[cut..].contains(&g))).to_vec()
     } else if motions.len() > 1 && !design.together {
         motions.iter().map(|&s| without(&|g| design.segments[g].signal == s)).collect()
@@ -159,6 +152,14 @@ mod tests {
     }
 
     #[test]
+    fn every_stretch_of_a_single_motion_is_predicted_where_what_comes_first_shows_nothing() {
+        let mut design = design(&[(0, true); 8]);
+        design.forward = false;
+        let held = HeldOutSquares::of(&design, &[1.0], false, &[]).expect("a small problem is regular");
+        assert_eq!(held.by_segment.iter().map(|s| s.0).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
+    }
+
+    #[test]
     fn of_several_motions_each_is_predicted_from_the_others() {
         let held = HeldOutSquares::of(&design(&[(0, true), (0, true), (1, true)]), &[1.0], false, &[])
             .expect("a small problem is regular");
@@ -175,21 +176,18 @@ mod tests {
         assert_eq!(held.by_segment.iter().map(|s| s.0).collect::<Vec<_>>(), [1, 2]);
     }
 
-    /// A parameter is seen in the last of three motions alone.
     #[test]
-    fn what_the_fitted_motion_leaves_open_is_no_error() {
-        let mut design = design(&[(0, true), (1, true), (2, true)]);
-        let errors = |design: &Design| {
-            let held = HeldOutSquares::of(design, &[0.01], false, &[]).expect("a small problem is regular");
-            held.errors().relative_error.expect("there are torques")
-        };
-        let before = errors(&design);
-        let only_in_last: Vec<f64> =
-            (0..30).map(|r| f64::from(u8::from(r >= 20)) * (0.3 * r as f64).cos()).collect();
-        design.y.iter_mut().zip(&only_in_last).for_each(|(y, c)| *y += 5.0 * c);
-        design.push(only_in_last);
+    fn a_fit_knows_how_well_it_predicts_what_it_was_not_fitted_to() {
+        // A column of size 1 in the first motion and of size 3 in the second, another that is in the second alone.
+        let column: Vec<f64> = (0..20).map(|r| if r < 10 { 1.0 } else { 3.0 }).collect();
+        let mut design = Design::made_up(1, &[(0, true), (1, true)], 10, vec![column], vec![1.0; 20]);
+        let fit = |design: &Design| Fit::new(design, &[0.5], vec![true, false]).expect("it is regular");
+        // Its parameter is known to sigma^2 / 10, and counts nine times.
+        let variance = fit(&design).variance_of_prediction(&design, 0, &[1]);
+        assert!((variance - 0.9).abs() < 1e-6, "{variance}");
+        design.push((0..20).map(|r| f64::from(u8::from(r >= 10))).collect());
         design.refresh();
-        assert!(errors(&design) < 1.2 * before);
+        assert_eq!(fit(&design).variance_of_prediction(&design, 0, &[1]), f64::INFINITY);
     }
 
     #[test]

@@ -45,16 +45,6 @@ struct Best {
     part: Residualised,
 }
 
-/// A candidate fitted to the motion that a fold does not hold out.
-struct Fitted<'a> {
-    prediction: Prediction<'a>,
-    /// What it says nothing of, where it is a curve.
-    curve: Option<Beyond>,
-    /// What its amplitudes must gain for being known by all of the motion only: with it, what a fold gains is the difference of
-    /// the logarithms of two predictive densities, twice (Dawid and Sebastiani 1999).
-    less_known: f64,
-}
-
 /// The shape whose gain is largest after a penalty for its numbers.
 fn best_shape(fit: &Fit, candidate: &Candidate) -> Option<Best> {
     let worth = |gain: f64, numbers: usize| gain - AIC_PENALTY * numbers as f64;
@@ -85,9 +75,8 @@ impl Regression {
             .is_single_motion()
             .then(|| self.by_segment(&best.part, &candidate.trials[best.trial]));
         for (fold, left) in self.folds.iter().zip(&self.held_out_squares) {
-            let Fitted { prediction, curve, less_known } =
-                self.fitted(candidate, (&best, parts.as_ref()), fold)?;
-            let mut sum = -less_known;
+            let (prediction, curve) = self.fitted(candidate, (&best, parts.as_ref()), fold)?;
+            let mut sum = 0.0;
             for (j, s) in self.sigma.iter().enumerate() {
                 let [gone, left] = self.on_joint(&prediction, (parts.as_ref(), &curve), (fold, left), j);
                 let w = 1.0 / (s * s);
@@ -137,19 +126,17 @@ impl Regression {
         })
     }
 
-    /// A candidate fitted to the motion that a fold does not hold out.
+    /// A candidate fitted to the motion that a fold does not hold out, and where it is a curve what it says nothing of.
     fn fitted<'a>(
         &'a self,
         candidate: &'a Candidate,
         (best, parts): (&Best, Option<&BySegment>),
         fold: &'a Fold,
-    ) -> Option<Fitted<'a>> {
-        let mut less_known = 0.0;
+    ) -> Option<(Prediction<'a>, Option<Beyond>)> {
         let prediction = match parts {
             Some(parts) => {
                 let amplitude = self.amplitude_from_rest_of_motion(candidate, (&best.part, parts), fold)?;
-                let whole = (&self.fit, &best.part, amplitude);
-                Prediction::new(whole.clone(), whole, &candidate.trials[best.trial])
+                Prediction::new(&self.fit, &candidate.trials[best.trial], &best.part, amplitude)
             }
             None if candidate.fixed.is_some() => {
                 // A law without free amplitudes has nothing to fit but its shape, which needs all of the motion.
@@ -157,17 +144,12 @@ impl Regression {
             }
             None => {
                 let own = best_shape(&fold.fit, candidate)?;
-                let trial = &candidate.trials[own.trial];
-                let other = if own.trial == best.trial { None } else { Some(self.fit.project_out(trial)?) };
-                let part = other.as_ref().unwrap_or(&best.part);
-                let (of_all, _) = part.solve(candidate)?;
-                less_known = own.part.less_known_than(part, candidate);
-                Prediction::new((&fold.fit, &own.part, own.amplitude), (&self.fit, part, of_all), trial)
+                Prediction::new(&fold.fit, &candidate.trials[own.trial], &own.part, own.amplitude)
             }
         };
-        let curve = Curve::of(candidate, prediction.trial());
+        let curve = Curve::of(candidate, prediction.trial);
         let beyond = curve.map(|curve| Beyond::of(&self.design, &curve, &fold.fit.train));
-        Some(Fitted { prediction, curve: beyond, less_known })
+        Some((prediction, beyond))
     }
 
     /// Rows of a joint that a fold holds out, and the model's curves and the candidate, where it is one, say something of.
@@ -198,7 +180,7 @@ impl Regression {
             return prediction.gain_on(&self.design, joint, &rows);
         }
         let gain = |g: usize| match parts {
-            Some(parts) => parts.gain(prediction.amplitude(), joint, g),
+            Some(parts) => parts.gain(&prediction.amplitude, joint, g),
             None => prediction.gain(&self.design, joint, g),
         };
         [fold.held().map(gain).sum(), left[joint]]
@@ -212,8 +194,8 @@ impl Regression {
     /// Whether a candidate improves motion that it was not fitted to, where there is a single one: each stretch, with
     /// everything, standard parameters included, fitted to the others, on the joints that it `shows_on`. (The others see it
     /// only through parameters that they share, whose extrapolation from a part of a motion is noise.) A law that explains less
-    /// than most of what is open must hold forward in time, where parameters are extrapolated; so must in any case a trend and a
-    /// curve of many numbers, which go on between stretches that were fitted whatever they are.
+    /// than most of what is open must hold forward in time, where parameters are extrapolated, if what comes first shows
+    /// them; so must in any case a trend and a curve of many numbers, which go on between stretches that were fitted whatever they are.
     ///
     /// # Errors
     /// [`SingularDesign`] where the time before has no fit.
@@ -226,17 +208,10 @@ impl Regression {
         let segments = self.design.segments.len();
         let trial = &candidate.trials[trial];
         let curves: Vec<Curve> = self.curves().into_iter().chain(Curve::of(candidate, trial)).collect();
-        let all = self.fit.project_out(trial).and_then(|part| {
-            let (amplitude, _) = part.solve(candidate)?;
-            Some((part, amplitude))
-        });
         let gain = |fit: &Fit, is_held: &dyn Fn(usize) -> bool| {
             let part = fit.project_out(trial)?;
             let (amplitude, _) = part.solve(candidate)?;
-            let (of_all, amplitude_of_all) = all.as_ref()?;
-            let less_known = part.less_known_than(of_all, candidate);
-            let all = (&self.fit, of_all, amplitude_of_all.clone());
-            let prediction = Prediction::new((fit, &part, amplitude), all, trial);
+            let prediction = Prediction::new(fit, trial, &part, amplitude);
             let held = || (0..segments).filter(|&g| is_held(g));
             let beyond = Beyond::each(&self.design, &curves, &fit.train);
             let of_joint = |&j: &usize| {
@@ -250,11 +225,11 @@ impl Regression {
                 };
                 gone / (self.sigma[j] * self.sigma[j])
             };
-            Some(shows_on.iter().map(of_joint).sum::<f64>() - less_known)
+            Some(shows_on.iter().map(of_joint).sum::<f64>())
         };
         let mut gains = Vec::new();
         let goes_on = candidate.is_trend() || candidate.effect.form().is_curve();
-        if goes_on || explained_fraction < MOST_OF_WHAT_IS_OPEN {
+        if goes_on || self.design.forward && explained_fraction < MOST_OF_WHAT_IS_OPEN {
             for cut in forward_cuts(segments) {
                 let before = (0..segments).map(|g| g < cut).collect();
                 gains.push(gain(&Fit::new(&self.design, &self.sigma, before)?, &|g| g >= cut));

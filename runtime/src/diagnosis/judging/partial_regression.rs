@@ -9,7 +9,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
-use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, KEPT_BESIDE, OWN_FRACTION};
+use crate::diagnosis::rules::{AMPLITUDE_RIDGE, CURVE_RIDGE, KEPT_BESIDE};
 use nalgebra::{DMatrix, DMatrixView, DVector};
 
 /// A trial with the columns of a design projected out.
@@ -136,32 +136,6 @@ impl Residualised {
     /// Information on the amplitudes, in units of the residual variance; zero where the design makes a column itself.
     pub fn information(&self) -> &DMatrix<f64> {
         &self.squares
-    }
-
-    /// Logarithm of how much less the amplitudes of a candidate are known here than by `all` of the motion: of the determinants
-    /// of both informations. What is known to less than the part of a column that is its own counts as not known.
-    pub fn less_known_than(&self, all: &Self, candidate: &Candidate) -> f64 {
-        // Where a curve is not known is beyond its hull, and no row there is predicted.
-        if candidate.fixed.is_some() || candidate.effect.form().holds_only_where_seen() {
-            return 0.0;
-        }
-        let diagonal = all.squares.diagonal();
-        let known: Vec<usize> = (0..diagonal.len()).filter(|&a| diagonal[a] > 0.0).collect();
-        let curve = if candidate.effect.form().is_curve() { CURVE_RIDGE * diagonal.max() } else { 0.0 };
-        let log_determinant = |squares: &DMatrix<f64>| {
-            let scaled = DMatrix::from_fn(known.len(), known.len(), |i, j| {
-                let (a, b) = (known[i], known[j]);
-                let before = if i == j { OWN_FRACTION + curve / diagonal[a] } else { 0.0 };
-                squares[(a, b)] / (diagonal[a] * diagonal[b]).sqrt() + before
-            });
-            scaled
-                .cholesky()
-                .map(|factor| factor.l_dirty().diagonal().iter().map(|x| 2.0 * x.ln()).sum::<f64>())
-        };
-        match (log_determinant(&all.squares), log_determinant(&self.squares)) {
-            (Some(all), Some(here)) => (all - here).max(0.0),
-            _ => f64::INFINITY,
-        }
     }
 
     /// Squares of the residual that the columns take away with the best factor on all of them, if it is positive.

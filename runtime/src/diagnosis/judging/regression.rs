@@ -6,7 +6,7 @@ use crate::diagnosis::judging::folds::{Fold, folds};
 use crate::diagnosis::judging::hull::{Beyond, Curve};
 use crate::diagnosis::rows::bent::Bent;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rows::fit::{Fit, products_on};
+use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rows::uncovered::Uncovered;
@@ -267,8 +267,8 @@ impl Regression {
     }
 }
 
-/// Squares that the fit of each fold leaves of the segments that it holds out (see [`super::prediction`]), without the rows
-/// `beyond`, joint by joint; on a single motion those of the fit to all of it, beside which laws are judged there.
+/// Squares that the fit of each fold leaves of the segments that it holds out, without the rows `beyond`, joint by joint;
+/// on a single motion those of the fit to all of it, beside which laws are judged there.
 fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool]) -> Vec<Vec<f64>> {
     let of_fold = |fold: &Fold| {
         let fit = if design.is_single_motion() { whole } else { &fold.fit };
@@ -276,9 +276,9 @@ fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool
             let all = design.ranges[j][g].clone();
             let seen: Vec<usize> = all.clone().filter(|&r| !is_beyond(beyond, r)).collect();
             if seen.len() < all.len() {
-                products_on(design, [fit, whole], &seen)
+                fit.residual_on(design, &seen).iter().map(|left| left * left).sum()
             } else {
-                fit.products(whole, design, j, g)
+                fit.squares(design, j, g)
             }
         };
         (0..design.joints).map(|j| fold.held().map(|g| squares(j, g)).sum()).collect()

@@ -43,6 +43,8 @@ pub(in crate::diagnosis) struct Design {
     pub segments: Vec<Segment>,
     /// Whether segments with one number are held out together.
     pub together: bool,
+    /// Whether a single motion is predicted forward in time.
+    pub forward: bool,
     /// One value per row.
     pub columns: Vec<Vec<f64>>,
     /// Columns of curves, whose amplitudes are kept from what no motion determines.
@@ -81,6 +83,7 @@ impl Design {
             ranges: Vec::new(),
             segments: Vec::new(),
             together: selection.cut.together,
+            forward: selection.cut.forward,
             columns: vec![Vec::new(); parameters],
             shrunk: Vec::new(),
             y: Vec::new(),
@@ -214,6 +217,11 @@ impl Design {
     /// Whether all segments are stretches of one motion.
     pub fn is_single_motion(&self) -> bool {
         self.segments.windows(2).all(|s| s[0].signal == s[1].signal)
+    }
+
+    /// Whether it is a single motion that is predicted forward in time.
+    pub fn is_forward(&self) -> bool {
+        self.forward && self.is_single_motion()
     }
 
     /// Segments of the recording that is diagnosed, those that are held out together in one list.
@@ -388,6 +396,7 @@ impl Design {
             ranges: vec![Vec::new(); joints],
             segments: Vec::new(),
             together: false,
+            forward: true,
             columns,
             shrunk: Vec::new(),
             y,

@@ -121,14 +121,6 @@ impl Fit {
         self.factor.solve(&b.component_mul(&self.scale)).component_mul(&self.scale)
     }
 
-    /// Products of the residuals of two fits on the rows of one joint in one segment, unweighted.
-    pub fn products(&self, other: &Self, design: &Design, joint: usize, segment: usize) -> f64 {
-        let gram = design.gram(joint, segment);
-        let (chi, other) = (self.chi.as_slice(), other.chi.as_slice());
-        let of = |i: usize| chi[i] * (dot(gram.row(i), other) - gram.with_y(i)) - other[i] * gram.with_y(i);
-        (0..gram.columns()).map(of).sum::<f64>() + gram.y_squares()
-    }
-
     /// Squared residuals on the rows of one joint in one segment, unweighted.
     pub fn squares(&self, design: &Design, joint: usize, segment: usize) -> f64 {
         self.squares_on(design.gram(joint, segment))
@@ -202,6 +194,23 @@ impl Fit {
         DVector::from_fn(self.chi.len(), |k, _| inverse[(k, k)] * self.scale[k] * self.scale[k])
     }
 
+    /// Variance with which the fit predicts the rows of a joint in some segments that it was not fitted to, on average, in units
+    /// of the residual variance; infinite where these have a column that it has seen nothing of.
+    pub fn variance_of_prediction(&self, design: &Design, joint: usize, segments: &[usize]) -> f64 {
+        let (inverse, mut rows) = (self.inverse_gram(), 0);
+        let mut gram = Gram::zero(design.columns.len());
+        for &segment in segments {
+            gram.add(1.0, design.gram(joint, segment));
+            rows += design.ranges[joint][segment].len();
+        }
+        let is_unseen = |k: usize| self.scale[k] == 0.0 && gram.squares(k) > 0.0;
+        if (0..gram.columns()).any(is_unseen) {
+            return f64::INFINITY;
+        }
+        let trace: f64 = (0..gram.columns()).map(|i| dot(gram.row(i), inverse.column(i).as_slice())).sum();
+        trace / (self.sigma[joint] * self.sigma[joint] * rows.max(1) as f64)
+    }
+
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].
     pub fn known_beforehand(&self, design: &Design) -> f64 {
         let Some(prior) = &design.prior else { return 0.0 };
@@ -217,12 +226,6 @@ impl Fit {
             .filter(|&k| self.scale[k] == 0.0 || 1.0 / inverse[(k, k)] < least * least)
             .collect()
     }
-}
-
-/// Products of the residuals of two fits on some rows.
-pub(in crate::diagnosis) fn products_on(design: &Design, fits: [&Fit; 2], rows: &[usize]) -> f64 {
-    let [one, other] = fits.map(|fit| fit.residual_on(design, rows));
-    dot(&one, &other)
 }
 
 /// Adds a multiple of some values of a column, whose first is that of row `first`, given the rows in ascending order.

@@ -8,13 +8,16 @@ pub(in crate::diagnosis) struct Cut {
     /// Segments per motion: one, or more where there are few motions to hold out.
     pub segments: usize,
     /// Whether the segments with one number are held out together, those of all motions: where no other motion shows what one
-    /// does, as when each moves a joint of its own.
+    /// does, as when each moves a joint of its own, or is slow where another is fast.
     pub together: bool,
+    /// Whether a single motion is predicted forward in time. Else each of its stretches is from all others, as where what comes
+    /// first shows nothing of what comes then.
+    pub forward: bool,
 }
 
 impl Cut {
     /// Whole motions.
-    pub const NOT: Self = Self { segments: 1, together: false };
+    pub const NOT: Self = Self { segments: 1, together: false, forward: true };
 }
 
 /// What decides where rows are.

@@ -42,23 +42,6 @@ impl Search<'_> {
         }
     }
 
-    /// Takes the law that joined last out where it is no larger than what stays unexplained beside it, so that it takes the place
-    /// of no other; says whether it did.
-    ///
-    /// # Errors
-    /// As [`Self::take_out_small`].
-    pub(super) fn take_out_last_if_small(&mut self) -> Result<bool, SingularDesign> {
-        let Some(last) = self.model.terms.len().checked_sub(1).filter(|_| !self.model.change) else {
-            return Ok(false);
-        };
-        let is_small = self.size_of(last)?.is_some_and(|(size, _)| size.law < size.needed);
-        if is_small {
-            self.rejected.extend(self.model.terms.pop());
-            self.refit_and_update()?;
-        }
-        Ok(is_small)
-    }
-
     /// How large a term is beside all others, and what it gains in units of the noise variance.
     fn size_of(&self, k: usize) -> Result<Option<(Size, f64)>, SingularDesign> {
         let term = &self.model.terms[k];

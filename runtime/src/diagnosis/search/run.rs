@@ -105,9 +105,7 @@ impl Search<'_> {
             let Some(law) = self.free_form(settings)? else { return Ok(StopReason::NoneAccepted) };
             self.model.terms.push(law);
             self.refit_and_update()?;
-            if !self.take_out_last_if_small()? {
-                self.without_imitators(settings)?;
-            }
+            self.without_imitators(settings)?;
         }
         Ok(StopReason::EffectLimit(settings.most_effects))
     }
