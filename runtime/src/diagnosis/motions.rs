@@ -163,7 +163,7 @@ impl Motions {
         };
         if design.is_single_motion() {
             let shows_nothing =
-                |cut: &usize| left_open(&|g| g >= *cut, &|g| g < *cut) > rules::LEFT_OPEN_BY_THE_PAST;
+                |cut: &usize| left_open(&|g| g >= *cut, &|g| g < *cut) > rules::LEFT_OPEN_AT_MOST;
             self.cut.forward = !forward_cuts(segments().len()).iter().any(shows_nothing);
             return !self.cut.forward;
         }

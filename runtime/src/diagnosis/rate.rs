@@ -14,7 +14,7 @@ use super::outcome::{Errors, Estimated};
 use super::rows::context::Context;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
-use super::rows::gram::dot;
+use super::rows::prior::Prior;
 use super::rules::{
     RATE_FACTORS, RATE_LEAST, RATE_LEAVES, RATE_REFINED, RATE_ROUNDS, RATE_SPAN, RATE_WORSENS,
 };
@@ -22,6 +22,7 @@ use crate::effects::{EffectKind, Place};
 use crate::model::Model;
 use crate::recording::Trajectory;
 use crate::statistics::golden;
+use std::sync::Arc;
 
 /// The law of an error that is small.
 pub(super) const LAW: (EffectKind, Place) = (EffectKind::WrongSampleRate, Place::Variant(0));
@@ -99,7 +100,7 @@ pub(super) fn is_explained((design, fit): (&Design, &Fit)) -> bool {
 
 /// The factor by which the robot moved faster than the times say, where one other than 1 leaves less than half of what
 /// the standard model leaves, on no joint more, with the logarithm of the part that it leaves in the mean over joints. Beside a
-/// baseline that model is known: that of the fit to what was `before`.
+/// baseline that model is known as far as the motions from `before` tell it.
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit.
@@ -107,15 +108,15 @@ pub(super) fn factor(
     model: &dyn Model,
     motions: &Motions,
     declared: &Fit,
-    before: Option<&Fit>,
+    before: Option<Prior>,
 ) -> Result<Option<(f64, f64)>, SingularDesign> {
-    let targets = motions.of_target();
+    let (targets, before) = (motions.of_target(), before.map(Arc::new));
     let spread = |logarithm: f64| -> Result<Vec<f64>, SingularDesign> {
-        let rows = targets.faster(logarithm.exp()).aligned(model);
-        match before {
-            Some(before) => Ok(spread_beside(before, &rows)),
-            None => Ok(Fit::weighted(&rows, &declared.sigma)?.sigma),
+        let mut rows = targets.faster(logarithm.exp()).aligned(model);
+        if before.is_some() {
+            rows.prior.clone_from(&before);
         }
+        Ok(Fit::weighted(&rows, &declared.sigma)?.sigma)
     };
     let at_declared = if before.is_some() { spread(0.0)? } else { declared.sigma.clone() };
     // Squares of each joint relative to those at the declared rate.
@@ -142,14 +143,4 @@ pub(super) fn factor(
         && mean(&squares) < RATE_LEAVES.ln()
         && squares.iter().all(|s| *s < RATE_WORSENS);
     Ok(certain.then(|| (found.exp(), mean(&squares))))
-}
-
-/// Root mean square of what a fit to other motions leaves of the torques of each joint.
-fn spread_beside(before: &Fit, rows: &Design) -> Vec<f64> {
-    let residual = before.residual(rows);
-    let of_joint = |j: usize| {
-        let left = &residual[rows.of_joint(j)];
-        (dot(left, left) / left.len().max(1) as f64).sqrt()
-    };
-    (0..rows.joints).map(of_joint).collect()
 }

@@ -7,6 +7,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::outcome::Errors;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
+use crate::diagnosis::rules::LEFT_OPEN_AT_MOST;
 
 /// Squares of the held-out residual and of the torque.
 pub(in crate::diagnosis) struct HeldOutSquares {
@@ -23,8 +24,9 @@ type Split = (Vec<bool>, Vec<usize>);
 
 impl HeldOutSquares {
     /// Predicts held-out motion with the columns of a design: every motion, or stretch, once from the others; a single motion
-    /// forward in time, from two instants on, where these show something of it; where `from_baseline` is set, the new motion from the baseline alone. Rows
-    /// of which one of the `curves` says nothing are left out, whether it is in the design or not.
+    /// forward in time, from two instants on, where these show something of it; where `from_baseline` is set, the new motion from
+    /// the baseline alone, where that does. Rows of which one of the `curves` says nothing are left out, whether it is in the
+    /// design or not.
     ///
     /// # Errors
     /// [`SingularDesign`] where a split has no fit.
@@ -35,6 +37,7 @@ impl HeldOutSquares {
         curves: &[Curve],
     ) -> Result<Self, SingularDesign> {
         let n = design.joints;
+        let from_baseline = from_baseline && baseline_tells(design, sigma);
         let mut out = Self { left: vec![0.0; n], whole: vec![0.0; n], by_segment: Vec::new() };
         // A curve that is a change says nothing where only the baseline is fitted: its rows are those that it is judged
         // on.
@@ -93,6 +96,17 @@ impl Regression {
     pub fn held_out(&self, from_baseline: bool, curves: &[Curve]) -> Result<HeldOutSquares, SingularDesign> {
         HeldOutSquares::of(&self.design, &self.sigma, from_baseline, curves)
     }
+}
+
+/// Whether a baseline tells of the parameters that the new motion needs: what it leaves open of them would else be all of the
+/// error.
+fn baseline_tells(design: &Design, sigma: &[f64]) -> bool {
+    let targets = design.target_segments();
+    let is_old = design.segments.iter().map(|s| !s.is_target).collect();
+    Fit::new(design, sigma, is_old).is_ok_and(|baseline| {
+        let left_open = |j: usize| baseline.variance_of_prediction(design, j, &targets);
+        (0..design.joints).all(|j| left_open(j) <= LEFT_OPEN_AT_MOST)
+    })
 }
 
 fn splits(design: &Design, from_baseline: bool) -> Vec<Split> {

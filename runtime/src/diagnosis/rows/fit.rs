@@ -3,6 +3,7 @@
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::gram::{Gram, dot};
+use crate::diagnosis::rows::prior::Prior;
 use crate::diagnosis::rules::{LEAST_RELATIVE_SIGMA, LEAST_SIGMA, WEIGHT_ROUNDS, WEIGHTS_AT_REST};
 use crate::statistics::moderation::{Lent, Variance};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -74,6 +75,23 @@ impl Fit {
             fit = Self::whole(design, &sigma)?;
         }
         Ok(fit)
+    }
+
+    /// What some segments alone say of the parameters, weighted by what the best fit to them leaves.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn prior_of(design: &Design, start: &[f64], train: Vec<bool>) -> Result<Prior, SingularDesign> {
+        let fit = Self::new(design, start, train)?;
+        let of_joint = |j: usize| {
+            let segments = || (0..fit.train.len()).filter(|&g| fit.train[g]);
+            let rows = segments().map(|g| design.ranges[j][g].len()).sum::<usize>();
+            let squares = segments().map(|g| fit.squares(design, j, g)).sum::<f64>();
+            if squares > 0.0 { (squares / rows as f64).sqrt() } else { start[j] }
+        };
+        let sigma: Vec<f64> = (0..design.joints).map(of_joint).collect();
+        let (g, v) = weighted_sum(design, &sigma, &fit.train).normal_equations();
+        Ok(Prior::of_normal_equations(g, v))
     }
 
     /// Standard deviations of the residuals of the joints on all segments, bounded from below: squares over the degrees of

@@ -25,6 +25,11 @@ impl Prior {
         right.iter().all(|x| x.is_finite()).then_some(Self { columns, information, right })
     }
 
+    /// What rows with these normal equations say of all columns.
+    pub fn of_normal_equations(information: DMatrix<f64>, right: DVector<f64>) -> Self {
+        Self { columns: (0..right.len()).collect(), information, right }
+    }
+
     /// The same, and that these columns are zero within a standard deviation, each for itself.
     pub fn with_zeros(before: Option<&Self>, columns: Range<usize>, deviation: f64) -> Self {
         let old = before.map_or(0, |before| before.columns.len());

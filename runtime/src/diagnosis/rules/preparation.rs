@@ -19,9 +19,9 @@ pub(in crate::diagnosis) const SEGMENTS_OF_FEW_MOTIONS: usize = 8;
 /// Whole motions are held out where what the others leave open of the parameters is in no joint more than so many times the
 /// variance of its noise. Statistics: beyond that, held-out errors tell of the parameters and not of laws.
 pub(in crate::diagnosis) const LEFT_OPEN_BY_OTHERS: f64 = 1.0;
-/// The same of a single motion that is predicted forward in time: stretches of one motion are less of a test of a law than what
-/// comes after it, which is given up where it would show nothing at all. Judgement: errors of ten times the noise.
-pub(in crate::diagnosis) const LEFT_OPEN_BY_THE_PAST: f64 = 100.0;
+/// The same of a single motion that is predicted forward in time, and of new motion that is from a baseline alone: stretches are
+/// less of a test, but that is given up where it would show nothing at all. Judgement: errors of ten times the noise.
+pub(in crate::diagnosis) const LEFT_OPEN_AT_MOST: f64 = 100.0;
 /// A joint moves in a motion where it does so for more than this part of the time that it does in that in which it moves most.
 /// Judgement: less tells little of its parameters.
 pub(in crate::diagnosis) const MOVES_IN_MOTION: f64 = 0.1;
