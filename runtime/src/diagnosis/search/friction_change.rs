@@ -106,7 +106,8 @@ impl Search<'_> {
             if baseline.is_some() && confidence(&evidence) >= beside_laws {
                 // At speeds that only one of them has, friction that bends in both is another than what viscous and Coulomb
                 // friction go on to be from those of the other.
-                let (others, beside) = background(bench.own_friction.clone(), self.bends(j));
+                let (others, beside) =
+                    background(bench.own_friction.clone(), self.bends_beside_level(j, design));
                 evidence = self.friction_evidence(j, &others, &beside, &residual)?.0;
             }
             let confidence = confidence(&evidence);
@@ -266,21 +267,6 @@ impl Search<'_> {
             Some(_) => Change::Either,
         };
         Some((evidence, change))
-    }
-
-    /// Friction of a joint that bends with the speed, in the recording and in its baseline: near rest, at once, and late.
-    fn bends(&self, joint: usize) -> Vec<Vec<f64>> {
-        let (context, design) = (&self.model.context, &self.model.slow.design);
-        let place = Place::Joint(joint);
-        let of = |effect: EffectKind, which: fn(usize) -> usize| {
-            let shapes = effect.form().shapes(place, &context.scales);
-            let shape = shapes.get(which(shapes.len())).cloned().unwrap_or_default();
-            dense_columns(context, design, effect, place, &shape, false)
-        };
-        let near_rest = of(EffectKind::Stribeck, |count| count / 2);
-        let at_once = of(EffectKind::NonlinearViscous, |_| 0);
-        let late = of(EffectKind::NonlinearViscous, |count| count.saturating_sub(1));
-        [near_rest, at_once, late].concat()
     }
 
     /// Change of a joint's friction torque in the recording, or without `by_speed` of its Coulomb part, and what of its friction

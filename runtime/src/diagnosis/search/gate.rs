@@ -224,7 +224,7 @@ impl Search<'_> {
         let calibrated = &gate.calibrated;
         let evidence = calibrated.evidence();
         let confidence = evidence.confidence(self.tries());
-        if confidence < least_confidence {
+        if confidence < least_confidence || !self.is_new_bend(&ranked[k], gate, least_confidence) {
             return Outcome::Fails;
         }
         // Without a baseline that is judged beside all laws that were found (`prominence`).

@@ -1,6 +1,7 @@
 //! Search: which candidates become part of the model, one after the other.
 
 pub(in crate::diagnosis) mod bench;
+pub(in crate::diagnosis) mod bends;
 pub(in crate::diagnosis) mod body;
 mod certainty;
 pub(in crate::diagnosis) mod extended_model;
