@@ -114,13 +114,20 @@ pub(in crate::diagnosis) fn calibrate(
     // Without a baseline the law is in all units, and in each it may be another.
     let common = common || !change;
     let m = if common { p + k } else { p };
-    let compared = compared(units, &products, &whole, m);
-    let own: Vec<f64> = compared
-        .iter()
-        .flat_map(|c| c.units.iter().filter_map(|&u| c.wald(&products.units[u], (p, k))))
-        .map(|wald| wald.mean())
-        .collect();
-    let others = of_companions(&compared, &products, p + k);
+    let of_units = |compared: Vec<Compared>| {
+        let own: Vec<f64> = compared
+            .iter()
+            .flat_map(|c| c.units.iter().filter_map(|&u| c.wald(&products.units[u], (p, k))))
+            .map(|wald| wald.mean())
+            .collect();
+        let others = of_companions(&compared, &products, p + k);
+        (compared, own, others)
+    };
+    let (mut compared, mut own, mut others) = of_units(compared(units, &products, &whole, m));
+    if change && own.is_empty() && others.iter().all(Option::is_none) {
+        // One motion of a baseline alone that moves the joint is a baseline of one motion.
+        (compared, own, others) = of_units(with_other_units(units, &products, m));
+    }
     let levels: Vec<f64> = others.iter().take(law.trend_of).flatten().map(|v| v.value).collect();
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
     // A level that differs from unit to unit remembers: a trend over a motion of n units is that of a random walk.
@@ -231,9 +238,14 @@ fn compared(units: &Units, products: &Products, all: &DMatrix<f64>, m: usize) ->
     if let Some(others) = with_other_motions(units, products, m, |f| !units.is_target(f)) {
         return others;
     }
-    let whole = || sum(&products.units, |v| !units.units[v].target);
-    let old = (0..count).filter(|&u| !units.units[u].target);
-    old.map(|u| Compared::new(whole(), m, vec![u])).collect()
+    with_other_units(units, products, m)
+}
+
+/// The units of a baseline, each with all of it.
+fn with_other_units(units: &Units, products: &Products, m: usize) -> Vec<Compared> {
+    let old: Vec<usize> = (0..units.units.len()).filter(|&u| !units.units[u].target).collect();
+    let whole = sum(&products.units, |u| !units.units[u].target);
+    vec![Compared::new(whole, m, old)]
 }
 
 /// The units of some motions, each with the others of these motions; `None` where there are not two of them.
