@@ -63,3 +63,24 @@ fn a_curve_that_a_short_baseline_does_not_show_is_no_change() {
         assert_eq!(named(&diagnosed(&now, &before)), [], "seed {seed}");
     }
 }
+
+/// Friction whose viscous part bends, of an exponent that no law of the catalogue begins with.
+fn bent() -> Hidden {
+    Hidden::effect(EffectKind::NonlinearViscous, Place::Joint(0), &[2.0], &[0.3])
+}
+
+#[test]
+fn friction_that_bends_in_a_slow_baseline_too_is_no_bend_that_came() {
+    for seed in 2..5 {
+        let before = ROBOT.record(&ROBOT.motions_within(0.3, 2, 6.0, seed), &bent(), seed);
+        let now = ROBOT.record(&ROBOT.motions(3, 4.5, seed + 20), &bent(), seed + 20);
+        assert_eq!(named(&diagnosed(&now, &before)), [], "seed {seed}");
+    }
+}
+
+#[test]
+fn friction_that_bends_since_a_baseline_of_the_same_speeds_is_named_without_a_change_of_its_level() {
+    let before = ROBOT.record(&ROBOT.motions(3, 4.5, 2), &Hidden::nothing(), 2);
+    let now = ROBOT.record(&ROBOT.motions(3, 4.5, 22), &bent(), 22);
+    assert_eq!(named(&diagnosed(&now, &before)), [("nonlinear_viscous", &[1][..])]);
+}

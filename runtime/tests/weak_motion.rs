@@ -60,3 +60,15 @@ fn a_payload_is_weighed_beside_a_slow_motion() {
         assert!((mass.value - 0.15).abs() < 4.0 * mass.sigma, "{mass:?}");
     }
 }
+
+#[test]
+fn a_slow_baseline_is_not_asked_to_predict_what_it_does_not_show() {
+    let before = ROBOT.record(&ROBOT.motions_within(0.03, 1, 8.0, 4), &Hidden::nothing(), 4);
+    let cable = {
+        let swing = [0.0, 3.0, 0.0, -3.0, 0.0];
+        Hidden::effect(EffectKind::PositionDependentTorque, Place::Joint(1), &[0.0, 1.0], &swing)
+    };
+    let diagnosis = diagnosed(&ROBOT.record(&ROBOT.motions(2, 6.0, 34), &cable, 34), &before);
+    let fitted = diagnosis.before.relative_error.unwrap();
+    assert!(diagnosis.held_out.before < 1.5 * fitted, "{} beside {fitted}", diagnosis.held_out.before);
+}

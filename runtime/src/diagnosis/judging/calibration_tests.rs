@@ -182,6 +182,45 @@ fn a_law_that_the_baseline_does_not_reach_is_judged_by_how_laws_of_its_kind_diff
     assert!(found > 0.8, "{found}");
 }
 
+/// Evidence for a law that only one of two motions of the baseline shows, in units whose amplitudes differ by `spread`, and that is
+/// larger by `amplitude` in the target.
+fn in_one_motion(rng: &mut Pcg64, amplitude: f64, spread: f64) -> Evidence {
+    let (of_motion, count) = (6, 18);
+    let rows = count * ROWS;
+    let mut law = wave(rng, rows);
+    law[of_motion * ROWS..2 * of_motion * ROWS].fill(0.0);
+    let mut y = noise(rng, rows);
+    for u in 0..count {
+        let is_target = u / of_motion == 2;
+        let level = if is_target { amplitude } else { 0.0 } + spread * normal(rng);
+        (u * ROWS..(u + 1) * ROWS).for_each(|t| y[t] += level * law[t]);
+    }
+    let there = |t: usize| if t / (of_motion * ROWS) == 2 { amplitude } else { 0.0 };
+    let residual: Vec<f64> = (0..rows).map(|t| y[t] - there(t) * law[t]).collect();
+    let units = Units {
+        units: (0..count).map(|u| Unit { file: u / of_motion, target: u / of_motion == 2 }).collect(),
+        duration: 2.0,
+        ..units(count, true)
+    };
+    let all = 0..rows;
+    let regressors = plain(&y, &all);
+    alone(&units, &regressors, &[law], &residual, true).expect("determined").evidence()
+}
+
+#[test]
+fn a_law_that_one_motion_of_the_baseline_shows_is_judged_by_the_units_of_that_motion() {
+    let mut rng = Pcg64::seed_from_u64(13);
+    let mut share = |amplitude: f64, level: f64| {
+        let runs = 400;
+        (0..runs).filter(|_| in_one_motion(&mut rng, amplitude, 0.2).p_value < level).count() as f64
+            / f64::from(runs)
+    };
+    let (by_accident, found) = (share(0.0, 0.01), share(5.0, 1e-4));
+    println!("{by_accident}, {found}");
+    assert!(by_accident < 0.025, "{by_accident}");
+    assert!(found > 0.8, "{found}");
+}
+
 #[test]
 fn a_law_that_is_in_both_recordings_is_no_change() {
     let mut rng = Pcg64::seed_from_u64(10);

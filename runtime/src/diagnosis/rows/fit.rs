@@ -279,3 +279,26 @@ fn weighted_sum(design: &Design, sigma: &[f64], train: &[bool]) -> Gram {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn what_some_segments_say_beside_the_others_is_the_fit_to_all() {
+        let rows = 40;
+        let column = |w: f64| -> Vec<f64> { (0..rows).map(|r| (w * f64::from(r)).sin()).collect() };
+        let (a, b) = (column(0.3), column(0.7));
+        let y: Vec<f64> = (0..rows as usize).map(|r| 2.0 * a[r] - b[r] + 0.1 * (r as f64).cos()).collect();
+        let design = Design::made_up(1, &[(0, false), (1, true)], 20, vec![a, b], y);
+        let prior = Fit::prior_of(&design, &[1.0], vec![true, false]).expect("they are regular");
+        let sigma = Fit::new(&design, &[1.0], vec![true, false]).map(|old| old.squares(&design, 0, 0) / 20.0);
+        let sigma = sigma.expect("they are regular").sqrt();
+        let all = Fit::whole(&design, &[sigma]).expect("it is regular");
+        let mut beside = design.clone();
+        beside.prior = Some(std::sync::Arc::new(prior));
+        let new = Fit::new(&beside, &[sigma], vec![false, true]).expect("it is regular");
+        assert_relative_eq!(new.chi, all.chi, max_relative = 1e-6);
+    }
+}
