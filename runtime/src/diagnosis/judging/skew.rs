@@ -88,18 +88,25 @@ impl Skew {
     }
 
     /// The same as the difference from motions whose own skews differ so much: another motion of that kind would have another
-    /// one too, and the mean of few is not known better. Degrees of freedom by Satterthwaite (1946).
+    /// one too, and the mean of few is not known better. Degrees of freedom by Satterthwaite (1946). What sampling makes of it has
+    /// bounds, which no normal number has.
     pub fn beside(self, others: BetweenMotions) -> Self {
-        let n = others.motions as f64;
-        let beside_mean = 1.0 + 1.0 / n.max(1.0);
+        let n = (others.motions as f64).max(1.0);
+        let beside_mean = 1.0 + 1.0 / n;
         let own = self.sigma * self.sigma;
         let between = others.variance * beside_mean;
-        let variance = own + others.of_mean + others.of_sampling * beside_mean + between;
+        let unbounded = own + others.of_mean + between;
         let uncertain = own * own / self.freedom + between * between / (n - 1.0).max(1.0);
-        let freedom = variance * variance / uncertain;
-        let sigma = variance.sqrt();
-        let evidence = Evidence::student(self.value.abs() / sigma.max(1e-300), freedom);
-        Self { sigma, evidence, freedom, ..self }
+        let freedom = unbounded * unbounded / uncertain;
+        let beyond = |of_sampling: f64| {
+            let left = self.value.abs() - of_sampling;
+            Evidence::student(left / unbounded.sqrt().max(1e-300), freedom).p_value
+        };
+        let by_sampling = DifferenceBySampling::new((3.0 * others.of_sampling).sqrt(), others.motions.max(1));
+        let p_value = by_sampling.parts().map(|(of_sampling, part)| part * beyond(of_sampling)).sum();
+        let sigma = (unbounded + others.of_sampling * beside_mean).sqrt();
+        let significance = self.value.abs() / sigma.max(1e-300);
+        Self { sigma, evidence: Evidence { significance, p_value, comparisons: 1 }, freedom, ..self }
     }
 
     /// One minus the probability that there is none and it comes as far, in one direction or the other.
@@ -154,6 +161,46 @@ impl BetweenMotions {
         // A single motion says nothing of how motions differ.
         let variance = if motions < 2 { 0.0 } else { (spread - own - of_sampling).max(0.0) };
         Self { of_sampling, variance, of_mean: own / n, motions }
+    }
+}
+
+/// Parts that the range of a difference by sampling is cut into. Numerics: the last holds a twenty thousandth of all.
+const PARTS: usize = 200;
+
+/// Difference of the place of a motion within a sample from the mean of those of others: a sum of uniform numbers. The mean of more
+/// than six is that of six of its variance.
+struct DifferenceBySampling {
+    /// Half of the range of each.
+    halves: Vec<f64>,
+}
+
+impl DifferenceBySampling {
+    /// Where each place is within `half` of its middle.
+    fn new(half: f64, others: usize) -> Self {
+        let numbers = others.min(6);
+        let of_each = half / ((numbers * others) as f64).sqrt();
+        Self { halves: std::iter::once(half).chain(vec![of_each; numbers]).collect() }
+    }
+
+    /// Probability that it is below x: the corners of a box that lie below a plane, each with its pyramid.
+    fn below(&self, x: f64) -> f64 {
+        let count = self.halves.len();
+        let corner = |signs: usize| {
+            let negative = |i: usize| signs >> i & 1 == 1;
+            let at: f64 =
+                (0..count).map(|i| if negative(i) { -self.halves[i] } else { self.halves[i] }).sum();
+            let sign = if signs.count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+            sign * (x + at).max(0.0).powi(count as i32)
+        };
+        let scale: f64 = self.halves.iter().zip(1..).map(|(half, k)| 2.0 * half * f64::from(k)).product();
+        (0..1 << count).map(corner).sum::<f64>() / scale
+    }
+
+    /// Middles of equal parts of its range, each with its probability.
+    fn parts(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let most: f64 = self.halves.iter().sum();
+        let at = move |k: usize| most * ((2 * k) as f64 / PARTS as f64 - 1.0);
+        (0..PARTS).map(move |k| (0.5 * (at(k) + at(k + 1)), self.below(at(k + 1)) - self.below(at(k))))
     }
 }
 
@@ -215,6 +262,20 @@ mod tests {
             let few = BetweenMotions::of(few, SAMPLE);
             assert!(one(0.007).beside(few).confidence() > 0.999);
             assert!(one(0.0005).beside(few).confidence() < 0.9);
+            // Sampling alone never makes more than a sample.
+            assert!(one(0.0008).beside(few).confidence() < 0.99);
+            assert!(one(0.0015).beside(few).confidence() > 0.999);
+        }
+    }
+
+    #[test]
+    fn differences_by_sampling_are_all_and_have_the_variance_of_their_parts() {
+        for others in 1..6 {
+            let by_sampling = DifferenceBySampling::new(0.5, others);
+            let sum = |of: fn(f64) -> f64| by_sampling.parts().map(|(x, part)| part * of(x)).sum::<f64>();
+            approx::assert_relative_eq!(sum(|_| 1.0), 1.0, max_relative = 1e-9);
+            let variance = (1.0 + 1.0 / others as f64) / 12.0;
+            approx::assert_relative_eq!(sum(|x| x * x), variance, max_relative = 1e-3);
         }
     }
 
@@ -241,7 +302,9 @@ mod tests {
         for motions in [1, 2, 3, 10] {
             let told = (0..runs).filter(|_| told_beside(motions)).count();
             println!("{told} of {runs} beside {motions}");
-            assert!(told as f64 <= level * f64::from(runs), "{told} of {runs} beside {motions}");
+            // The level, and three deviations of a count.
+            let expected = level * f64::from(runs);
+            assert!(told as f64 <= expected + 3.0 * expected.sqrt(), "{told} of {runs} beside {motions}");
         }
     }
 }
