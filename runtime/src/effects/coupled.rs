@@ -19,12 +19,14 @@ impl CoupledRotor {
     /// Speed over which dry friction of the rotor turns its sign, rad/s or m/s of joint b.
     const ROUNDING: f64 = 0.01;
 
-    /// Neighbouring joints whose coupling the model does not have.
+    /// Neighbouring joints, and those with one between them, whose coupling the model does not have: belts and shafts run through a
+    /// joint, as those of the last two axes do through the fourth in a hollow wrist.
     pub fn places(robot: &Robot) -> Vec<Place> {
         let n = robot.joints();
         let mut places = Vec::new();
-        for j in 1..n {
-            for (a, b) in [(j - 1, j), (j, j - 1)] {
+        let beyond = |between: usize| (between..n).map(move |j| (j - between, j));
+        for (low, high) in beyond(1).chain(beyond(2)) {
+            for (a, b) in [(low, high), (high, low)] {
                 let known = robot.drive.gear.get(b * n + a).is_some_and(|g| *g != 0.0);
                 if !known {
                     places.push(Place::Pair(a, b));
