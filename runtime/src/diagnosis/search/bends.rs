@@ -47,9 +47,10 @@ impl Search<'_> {
     /// have not changed.
     pub(super) fn is_new_bend(&self, candidate: &Ranked, own: &Gate, least_confidence: f64) -> bool {
         let (regression, law) = self.of(candidate);
-        let may_stand = self.model.change && is_bend(law.effect);
-        let Some(joint) = law.place.joint().filter(|_| may_stand) else { return true };
         let (bench, design) = (self.model.bench(candidate.window), &regression.design);
+        // A reference has no rows that would show them.
+        let may_stand = bench.units.change() && is_bend(law.effect);
+        let Some(joint) = law.place.joint().filter(|_| may_stand) else { return true };
         let with_bends = [&design.columns[..], &self.bends(joint, design, false)].concat();
         let regressors = Regressors { shared: &with_bends, ..bench.regressors(design) };
         let background = Background::new(&bench.units, &regressors, &regression.residual(), self.threads());

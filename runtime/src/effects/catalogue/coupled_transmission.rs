@@ -7,8 +7,8 @@ const WORDS: Words = Words {
     id: "coupled_transmission",
     name: "coupled transmission",
     what: "A motor turns with two joints at once, so that its friction and inertia act on both.",
-    looks_like: "friction of one joint that depends on the speed of its neighbour",
-    revealed_by: "speed of the neighbouring joint",
+    looks_like: "friction of one joint that depends on the speed of another",
+    revealed_by: "speed of the other joint",
     experiment: "move the two joints at the same time with all four combinations of directions",
     source: "Gautier and Briot 2012, equations (25) and (26)",
     symbols: &[
@@ -51,7 +51,7 @@ impl Effect for CoupledTransmission {
     }
 
     fn detail(&self, q: &Quantities) -> String {
-        format!("its motor also turns with the neighbour, ratio {}", q.text("ratio"))
+        format!("its motor also turns with the other one, ratio {}", q.text("ratio"))
     }
 
     fn formula(&self, q: &Quantities) -> String {
