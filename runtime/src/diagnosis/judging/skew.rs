@@ -189,7 +189,7 @@ impl DifferenceBySampling {
             let negative = |i: usize| signs >> i & 1 == 1;
             let at: f64 =
                 (0..count).map(|i| if negative(i) { -self.halves[i] } else { self.halves[i] }).sum();
-            let sign = if signs.count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if signs.count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
             sign * (x + at).max(0.0).powi(count as i32)
         };
         let scale: f64 = self.halves.iter().zip(1..).map(|(half, k)| 2.0 * half * f64::from(k)).product();
