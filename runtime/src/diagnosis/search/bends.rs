@@ -33,8 +33,8 @@ impl Search<'_> {
         [near_rest, at_once, late].concat()
     }
 
-    /// What friction of a joint bends like that no change of its level may be: in both, and where another bend has been found
-    /// since, in the recording, as none of the laws is just that of the joint.
+    /// Bends of a joint's friction that a change of its level is judged beside: those of both recordings, and where a law that bends
+    /// it has been found, those of the recording alone, as what such a law misses of the joint's own curve is no level.
     pub(super) fn bends_beside_level(&self, joint: usize, design: &Design) -> Vec<Vec<f64>> {
         let mut bends = self.bends(joint, design, false);
         if self.model.terms.iter().any(|term| is_bend(term.effect) && term.place == Place::Joint(joint)) {
