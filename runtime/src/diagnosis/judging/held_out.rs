@@ -201,6 +201,9 @@ mod tests {
         assert!((variance - 0.9).abs() < 1e-6, "{variance}");
         design.push((0..20).map(|r| f64::from(u8::from(r >= 10))).collect());
         design.refresh();
+        // Of a column that is no base parameter, as of a law in the second motion alone, nothing was to be told before.
+        assert!((fit(&design).variance_of_prediction(&design, 0, &[1]) - 0.9).abs() < 1e-6);
+        design.parameters = 2;
         assert_eq!(fit(&design).variance_of_prediction(&design, 0, &[1]), f64::INFINITY);
     }
 
