@@ -73,10 +73,9 @@ impl Prepared {
         let is_old: Vec<bool> = fitted.aligned.segments.iter().map(|s| !s.is_target).collect();
         let has_baseline = is_old.contains(&true);
         let before =
-            has_baseline.then(|| Fit::new(&fitted.aligned, &fitted.fit.sigma, is_old.clone())).transpose()?;
+            has_baseline.then(|| Fit::new(&fitted.aligned, &fitted.fit.sigma, is_old)).transpose()?;
         let large_error = large_error(model, &fitted.motions, declared, before.as_ref());
-        let known =
-            has_baseline.then(|| Fit::prior_of(&fitted.aligned, &fitted.fit.sigma, is_old)).transpose()?;
+        let known = before.map(|before| before.as_prior(&fitted.aligned));
         let rate = factor(model, &fitted.motions, &fitted.fit, known)?;
         // Each is the other one's rival.
         if let Some((factor, left)) = rate

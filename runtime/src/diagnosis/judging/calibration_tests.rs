@@ -147,6 +147,18 @@ fn a_change_that_stands_out_of_the_variation_is_found_at_a_level_over_many_candi
     assert!(alone > 0.9, "{alone}");
 }
 
+/// Of evidence for a law of an amplitude: how often there is any where there is no law, and where one is.
+fn assert_rare_by_accident_and_found(mut evidence: impl FnMut(f64) -> Evidence) {
+    let mut share = |amplitude: f64, level: f64| {
+        let runs = 400;
+        (0..runs).filter(|_| evidence(amplitude).p_value < level).count() as f64 / f64::from(runs)
+    };
+    let (by_accident, found) = (share(0.0, 0.01), share(5.0, 1e-4));
+    println!("{by_accident}, {found}");
+    assert!(by_accident < 0.025, "{by_accident}");
+    assert!(found > 0.8, "{found}");
+}
+
 /// Evidence for a law that acts in the target alone, as one of torques that the baseline does not reach, of `amplitude`, where
 /// laws of its kind differ by `spread` from one motion to the next.
 fn unreached(rng: &mut Pcg64, amplitude: f64, spread: f64) -> Evidence {
@@ -171,15 +183,7 @@ fn unreached(rng: &mut Pcg64, amplitude: f64, spread: f64) -> Evidence {
 #[test]
 fn a_law_that_the_baseline_does_not_reach_is_judged_by_how_laws_of_its_kind_differ() {
     let mut rng = Pcg64::seed_from_u64(12);
-    let mut share = |amplitude: f64, level: f64| {
-        let runs = 400;
-        (0..runs).filter(|_| unreached(&mut rng, amplitude, 0.3).p_value < level).count() as f64
-            / f64::from(runs)
-    };
-    let (by_accident, found) = (share(0.0, 0.01), share(5.0, 1e-4));
-    println!("{by_accident}, {found}");
-    assert!(by_accident < 0.025, "{by_accident}");
-    assert!(found > 0.8, "{found}");
+    assert_rare_by_accident_and_found(|amplitude| unreached(&mut rng, amplitude, 0.3));
 }
 
 /// Evidence for a law that only one of two motions of the baseline shows, in units whose amplitudes differ by `spread`, and that is
@@ -210,15 +214,7 @@ fn in_one_motion(rng: &mut Pcg64, amplitude: f64, spread: f64) -> Evidence {
 #[test]
 fn a_law_that_one_motion_of_the_baseline_shows_is_judged_by_the_units_of_that_motion() {
     let mut rng = Pcg64::seed_from_u64(13);
-    let mut share = |amplitude: f64, level: f64| {
-        let runs = 400;
-        (0..runs).filter(|_| in_one_motion(&mut rng, amplitude, 0.2).p_value < level).count() as f64
-            / f64::from(runs)
-    };
-    let (by_accident, found) = (share(0.0, 0.01), share(5.0, 1e-4));
-    println!("{by_accident}, {found}");
-    assert!(by_accident < 0.025, "{by_accident}");
-    assert!(found > 0.8, "{found}");
+    assert_rare_by_accident_and_found(|amplitude| in_one_motion(&mut rng, amplitude, 0.2));
 }
 
 #[test]

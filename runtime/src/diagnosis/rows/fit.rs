@@ -77,21 +77,17 @@ impl Fit {
         Ok(fit)
     }
 
-    /// What some segments alone say of the parameters, weighted by what the best fit to them leaves.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn prior_of(design: &Design, start: &[f64], train: Vec<bool>) -> Result<Prior, SingularDesign> {
-        let fit = Self::new(design, start, train)?;
+    /// What the segments that are fitted say of the parameters, weighted by what the fit leaves of them.
+    pub fn as_prior(&self, design: &Design) -> Prior {
         let of_joint = |j: usize| {
-            let segments = || (0..fit.train.len()).filter(|&g| fit.train[g]);
+            let segments = || (0..self.train.len()).filter(|&g| self.train[g]);
             let rows = segments().map(|g| design.ranges[j][g].len()).sum::<usize>();
-            let squares = segments().map(|g| fit.squares(design, j, g)).sum::<f64>();
-            if squares > 0.0 { (squares / rows as f64).sqrt() } else { start[j] }
+            let squares = segments().map(|g| self.squares(design, j, g)).sum::<f64>();
+            if squares > 0.0 { (squares / rows as f64).sqrt() } else { self.sigma[j] }
         };
         let sigma: Vec<f64> = (0..design.joints).map(of_joint).collect();
-        let (g, v) = weighted_sum(design, &sigma, &fit.train).normal_equations();
-        Ok(Prior::of_normal_equations(g, v))
+        let (g, v) = weighted_sum(design, &sigma, &self.train).normal_equations();
+        Prior::of_normal_equations(g, v)
     }
 
     /// Standard deviations of the residuals of the joints on all segments, bounded from below: squares over the degrees of
@@ -295,12 +291,11 @@ mod tests {
         let (a, b) = (column(0.3), column(0.7));
         let y: Vec<f64> = (0..rows as usize).map(|r| 2.0 * a[r] - b[r] + 0.1 * (r as f64).cos()).collect();
         let design = Design::made_up(1, &[(0, false), (1, true)], 20, vec![a, b], y);
-        let prior = Fit::prior_of(&design, &[1.0], vec![true, false]).expect("they are regular");
-        let sigma = Fit::new(&design, &[1.0], vec![true, false]).map(|old| old.squares(&design, 0, 0) / 20.0);
-        let sigma = sigma.expect("they are regular").sqrt();
+        let old = Fit::new(&design, &[1.0], vec![true, false]).expect("they are regular");
+        let sigma = (old.squares(&design, 0, 0) / 20.0).sqrt();
         let all = Fit::whole(&design, &[sigma]).expect("it is regular");
         let mut beside = design.clone();
-        beside.prior = Some(std::sync::Arc::new(prior));
+        beside.prior = Some(std::sync::Arc::new(old.as_prior(&design)));
         let new = Fit::new(&beside, &[sigma], vec![false, true]).expect("it is regular");
         assert_relative_eq!(new.chi, all.chi, max_relative = 1e-6);
     }
