@@ -23,12 +23,14 @@ import subprocess
 import tempfile
 import time
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # sums in one order: the same bytes on every machine
 
 import cases  # noqa: E402
 
+VERDICTS = ["right", "told", "remainder", "missed", "misnamed", "false", "refused"]
 SEEN = 0.7  # units of the noise: an effect shows on a joint from here on
 # What describes the same physics as well as the effect's own name: (id, why). Joints must agree.
 EQUIVALENT = {
@@ -156,7 +158,7 @@ def label(x):
 
 
 def diagnose(dynid, folder, baseline):
-    """The result of dynid, or why there is none; and the seconds."""
+    """Runs dynid on the recording of a folder; the seconds that it took."""
     Path(f"{folder}.json").unlink(missing_ok=True)
     call = [dynid, "diagnose", f"{folder}/recording.yaml", "--json", f"{folder}.json", "--threads", "1"]
     if baseline:
@@ -164,14 +166,54 @@ def diagnose(dynid, folder, baseline):
     start = time.time()
     done = subprocess.run(call, capture_output=True, text=True)
     Path(f"{folder}.log").write_text(" ".join(call) + "\n" + done.stdout + done.stderr)
-    return *result(folder)[:2], time.time() - start
+    return time.time() - start
 
 
 def result(folder):
-    """What a diagnosis left in the folder."""
+    """What a diagnosis left in the folder, or why there is none."""
     if Path(f"{folder}.json").exists():
-        return json.loads(Path(f"{folder}.json").read_text()), "", 0.0
-    return None, " ".join(Path(f"{folder}.log").read_text().split("\n", 1)[1].split())[:160], 0.0
+        return json.loads(Path(f"{folder}.json").read_text()), ""
+    return None, " ".join(Path(f"{folder}.log").read_text().split("\n", 1)[1].split())[:160]
+
+
+@dataclass
+class Judged:
+    """A case with what became of it."""
+
+    kind: str
+    name: str
+    truth: dict
+    verdict: str
+    notes: str
+    seconds: float
+
+    def line(self):
+        hidden = " ".join(f"{label(e)} ({e['visible']:.1f})" for e in self.truth["effects"]) or "nothing"
+        where = f"{self.truth['robot']} {self.truth['sensors']['rate']} Hz {self.truth['sensors']['noise']}"
+        where += " baseline" if self.truth["baseline"] else ""
+        return f"{self.name:18} {self.verdict:9} {self.seconds:4.1f} s  {where}  {hidden}  {self.notes}"
+
+
+def case(dynid, root, kind, seed, baseline, again=False):
+    """Draws, diagnoses and judges the case of a seed; where `again`, judges what is in the folder.
+
+    Raises cases.NotVisible where the effect of the seed does not show, FileNotFoundError where nothing is to be judged again.
+    """
+    folder = Path(root) / f"{kind}-{seed}{'-b' if baseline else ''}"
+    if not again:
+        cases.write(cases.draw(seed, kind, baseline), folder, seed)
+    truth = json.loads(Path(f"{folder}.truth.json").read_text())
+    seconds = 0.0 if again else diagnose(dynid, folder, truth["baseline"])
+    found, why = result(folder)
+    verdict, notes = judge(truth, found) if found else ("refused", [why])
+    return Judged(kind, folder.name, truth, verdict, "; ".join(notes), seconds)
+
+
+def table(title, counts):
+    """Verdicts counted by what is in the first column."""
+    lines = [f"| {title} | " + " | ".join(VERDICTS) + " |", "|" + "---|" * (len(VERDICTS) + 1)]
+    lines += [f"| {key} | " + " | ".join(str(count[v] or "") for v in VERDICTS) + " |" for key, count in counts.items()]
+    return "\n".join(lines)
 
 
 def main():
@@ -187,31 +229,20 @@ def main():
     kinds = a.kinds.split(",") if a.kinds else ["null", "single", "null", "single", "single"]
     root = Path(a.keep or tempfile.mkdtemp(prefix="dynid-blind-"))
     root.mkdir(parents=True, exist_ok=True)
-    table, by_effect = {}, {}
+    by_kind, by_effect = {}, {}
     for seed in range(a.first_seed, a.first_seed + a.seeds):
         kind = kinds[seed % len(kinds)]
-        folder = root / f"{kind}-{seed}{'-b' if a.baseline else ''}"
         try:
-            if not a.rescore:
-                cases.write(cases.draw(seed, kind, a.baseline), folder, seed)
-            truth = json.loads(Path(f"{folder}.truth.json").read_text())
+            judged = case(a.dynid, root, kind, seed, a.baseline, a.rescore)
         except (cases.NotVisible, FileNotFoundError) as failure:
-            print(f"{folder.name:18} not drawn: {failure}", flush=True)
+            print(f"{kind}-{seed} not drawn: {failure}", flush=True)
             continue
-        found, why, seconds = result(folder) if a.rescore else diagnose(a.dynid, folder, truth["baseline"])
-        verdict, notes = judge(truth, found) if found else ("refused", [why])
-        table.setdefault(kind, Counter())[verdict] += 1
-        for e in truth["effects"]:
-            by_effect.setdefault(e["effect"], Counter())[verdict] += 1
-        hidden = " ".join(f"{label(e)} ({e['visible']:.1f})" for e in truth["effects"]) or "nothing"
-        where = f"{truth['robot']} {truth['sensors']['rate']} Hz {truth['sensors']['noise']}"
-        where += " baseline" if truth["baseline"] else ""
-        print(f"{folder.name:18} {verdict:9} {seconds:4.1f} s  {where}  {hidden}  {'; '.join(notes)}", flush=True)
-    for title, counts in (("kind", table), ("effect", by_effect)):
-        verdicts = ["right", "told", "remainder", "missed", "misnamed", "false", "refused"]
-        print(f"\n| {title} | " + " | ".join(verdicts) + " |\n|" + "---|" * (len(verdicts) + 1))
-        for key, count in sorted(counts.items()):
-            print(f"| {key} | " + " | ".join(str(count[v] or "") for v in verdicts) + " |")
+        by_kind.setdefault(kind, Counter())[judged.verdict] += 1
+        for e in judged.truth["effects"]:
+            by_effect.setdefault(e["effect"], Counter())[judged.verdict] += 1
+        print(judged.line(), flush=True)
+    for title, counts in (("kind", by_kind), ("effect", by_effect)):
+        print("\n" + table(title, dict(sorted(counts.items()))))
     if not a.keep:
         shutil.rmtree(root)
 

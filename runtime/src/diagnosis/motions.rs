@@ -1,8 +1,8 @@
 //! The motions of a diagnosis: their band and windows, filtered signals, speeds of standstill, and the rows of both
 //! windows.
 
-use super::error::DiagnosisError;
-use super::judging::folds::forward_cuts;
+use super::error::{DiagnosisError, SingularDesign};
+use super::judging::folds::{forward_cuts, untold};
 use super::outcome::Sampling;
 use super::rows::design::Design;
 use super::rows::fit::Fit;
@@ -14,6 +14,7 @@ use super::rules;
 use super::settings::{Settings, fitted_to, given_speeds};
 use crate::model::Model;
 use crate::recording::Trajectory;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The motions with everything that decides where rows are.
@@ -39,6 +40,8 @@ pub(super) struct Motions {
     directions: Vec<Vec<Vec<f64>>>,
     /// How the motions of the recording that is diagnosed are held out.
     cut: Cut,
+    /// Joints and segments that what is not held out with them does not tell.
+    untold: Arc<BTreeSet<(usize, usize)>>,
     /// Whether the recording has no rows to spare: slow effects are then smoothed no more than fast ones.
     short: bool,
 }
@@ -122,6 +125,7 @@ impl Motions {
             slowest_fast,
             directions: directions(model.robot()),
             cut,
+            untold: Arc::default(),
             short: duration < rules::SHORT_RECORDING,
         })
     }
@@ -139,6 +143,7 @@ impl Motions {
         };
         let mut design = Design::new(model, &self.signals, &selection);
         design.prior.clone_from(&self.prior);
+        design.untold.clone_from(&self.untold);
         if !self.left_over.is_empty() {
             design.leave_out(&self.left_over);
         }
@@ -158,8 +163,7 @@ impl Motions {
                 return f64::INFINITY;
             };
             let held: Vec<usize> = segments().filter(|&g| held(g)).collect();
-            let of_joint = |j: usize| others.variance_of_prediction(design, j, &held);
-            (0..design.joints).map(of_joint).fold(0.0, f64::max)
+            others.variance_of_prediction(design, &held).into_iter().fold(0.0, f64::max)
         };
         if design.is_single_motion() {
             let shows_nothing =
@@ -180,10 +184,25 @@ impl Motions {
         true
     }
 
+    /// Leaves what the motion that is not held out with it does not tell out of what laws are judged by, see
+    /// [`untold`]. `design` as above.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where a part of the motion has no fit.
+    pub fn leave_out_untold(&mut self, design: &mut Design, sigma: &[f64]) -> Result<(), SingularDesign> {
+        // There laws are judged beside parameters of all of it, and it is predicted forward.
+        if design.is_single_motion() {
+            return Ok(());
+        }
+        self.untold = Arc::new(untold(design, sigma)?);
+        design.untold.clone_from(&self.untold);
+        Ok(())
+    }
+
     /// Those of the recording that is diagnosed, without its baseline.
     pub fn of_target(&self) -> Self {
         let targets = self.signals.iter().filter(|s| s.is_target);
-        Self { signals: targets.cloned().collect(), ..self.clone() }
+        Self { signals: targets.cloned().collect(), untold: Arc::default(), ..self.clone() }
     }
 
     /// The same motions in a time that runs so many times faster.

@@ -306,7 +306,7 @@ mod tests {
         let (model, standard) = arm();
         let chi = model.robot().base_from_standard(&standard);
         let drawn = portrait(&model, &chi, EffectKind::Stribeck, 1.0).expect("an arm").expect("a law");
-        assert_eq!(drawn.laws, ["fs·exp(-(dq / vs)²)·sign(dq)"]);
+        assert_eq!(drawn.laws, ["fs·exp(-(dq / vs)²)·sign(dq)", "fs·exp(-|dq / vs|^delta)·sign(dq)"]);
         let vs = drawn.parameters.iter().find(|p| p.name == "vs").expect("a speed").value;
         for (speed, torque) in &drawn.points {
             assert!(torque * speed >= 0.0);

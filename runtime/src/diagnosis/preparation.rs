@@ -213,6 +213,7 @@ impl Fitted {
             aligned = motions.aligned(model);
             fit = Fit::weighted(&aligned, &fit.sigma)?;
         }
+        motions.leave_out_untold(&mut aligned, &fit.sigma)?;
         Ok(Self { motions, aligned, fit, moving })
     }
 }

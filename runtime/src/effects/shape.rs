@@ -57,6 +57,12 @@ impl ShapeSearch {
         self.steps.get(number).is_some_and(|step| !matches!(step, Step::Keep))
     }
 
+    /// Whether two shapes are of one form of the law: as many numbers, the same ones where they are kept.
+    pub fn is_same_form(&self, one: &[f64], other: &[f64]) -> bool {
+        let kept = |k: usize| matches!(self.steps.get(k), Some(Step::Keep));
+        one.len() == other.len() && one.iter().zip(other).enumerate().all(|(k, (a, b))| !kept(k) || a == b)
+    }
+
     /// Moves that are tried for a shape of so many numbers: each number alone, both ways, then those together.
     pub fn moves(&self, numbers: usize) -> Vec<Move> {
         let mut moves: Vec<Move> = Vec::new();
@@ -104,5 +110,13 @@ mod tests {
         assert_eq!(search.moved(&[0.3, 5.0], &vec![(0, -1.0)], 1.0), [0.0, 5.0]);
         assert_eq!(search.moved(&[0.3, 5.0], &vec![(1, 1.0)], 1.0), [0.3, 5.0]);
         assert_eq!(search.moves(1).len(), 2);
+    }
+
+    #[test]
+    fn shapes_are_of_one_form_where_what_is_kept_is_the_same() {
+        let search = ShapeSearch::unbounded(vec![Step::Times(2.0), Step::Keep]);
+        assert!(search.is_same_form(&[1.0, 2.0], &[3.0, 2.0]));
+        assert!(!search.is_same_form(&[1.0, 2.0], &[1.0, 1.0]));
+        assert!(!search.is_same_form(&[1.0], &[1.0, 2.0]));
     }
 }

@@ -116,7 +116,7 @@ fn no_field_that_cannot_be_is_believed() {
     let mutations: [(&str, Value, &str); 38] = [
         ("/effects/0/shape", json!([]), "effects[0].shape"),
         ("/effects/0/shape", json!([0.0]), "effects[0].shape"),
-        ("/effects/0/shape", json!([0.1, 0.2]), "effects[0].shape"),
+        ("/effects/0/shape", json!([0.1, 1.0, 0.2]), "effects[0].shape"),
         ("/effects/0/place", json!({"joint": 9}), "effects[0].place.joint"),
         ("/effects/0/place", json!("robot"), "effects[0].place"),
         ("/effects/0/joints", json!([2]), "effects[0].joints[0]"),

@@ -1,6 +1,7 @@
 //! Contact: windows of time in which something outside pushed the robot.
 
 pub(in crate::diagnosis) mod absorbed;
+pub(in crate::diagnosis) mod borne_once;
 pub(in crate::diagnosis) mod common;
 pub(in crate::diagnosis) mod curves;
 pub(in crate::diagnosis) mod felt;

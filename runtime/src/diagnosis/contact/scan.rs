@@ -252,7 +252,9 @@ impl<'a> Scan<'a> {
             let own = self.candidates.iter().filter(|c| c.pushed.joint == joint.track.joint);
             let pushed: usize = own.clone().map(|c| c.places().len()).sum();
             let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * joint.waves.targets() as f64;
-            if few { own.map(|c| c.pushed.clone()).collect() } else { Vec::new() }
+            // There a law of the load is as good, of a motor that saturates or a gear that is pressed.
+            let is_law = |c: &&Candidate| joint.track.is_borne_once(c.pushed.motion, c.places());
+            if few { own.filter(|c| !is_law(c)).map(|c| c.pushed.clone()).collect() } else { Vec::new() }
         };
         self.joints.iter().flat_map(of_joint).collect()
     }

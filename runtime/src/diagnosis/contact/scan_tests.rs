@@ -3,6 +3,7 @@ use crate::diagnosis::rules::SCAN_LEVEL;
 use crate::testing::normal;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::collections::HashSet;
 
 /// Time between rows, s.
 const STEP: f64 = 0.02;
@@ -26,9 +27,15 @@ fn noise(rng: &mut Pcg64) -> Vec<Track> {
                 })
                 .filter(|(k, _)| (k + phase) % period > 4)
                 .collect();
-            Track { joint, motions: vec![(true, rows)], beside: vec![], sizes: vec![], columns: vec![] }
+            track(joint, rows)
         })
         .collect()
+}
+
+/// One motion of a joint, beside nothing.
+fn track(joint: usize, rows: Vec<(usize, f64)>) -> Track {
+    let motions = vec![(true, rows)];
+    Track { joint, motions, beside: vec![], sizes: vec![], columns: vec![], once: HashSet::new() }
 }
 
 /// Adds half a sine wave of an rms of `visible` on one joint.
@@ -89,6 +96,18 @@ fn more_than_half_of_medium_pushes_of_a_quarter_of_a_second_are_found() {
 fn slow_pushes_are_found_although_they_are_weaker() {
     let (share, _) = found(1.5, 1.5, 14);
     assert!(share >= 0.6, "{share}");
+}
+
+#[test]
+fn what_stands_out_where_a_load_is_borne_once_is_no_push() {
+    let mut tracks = noise(&mut Pcg64::seed_from_u64(21));
+    push(&mut tracks[2], 10.0, 0.5, 5.0);
+    assert!(scan(&tracks, STEP, LEVEL).0.iter().any(|p| p.joint == 2));
+    // As much as it has in common with the load.
+    tracks[2].once.extend((505..512).map(|place| (0, place)));
+    assert!(scan(&tracks, STEP, LEVEL).0.iter().any(|p| p.joint == 2));
+    tracks[2].once.extend((500..530).map(|place| (0, place)));
+    assert!(scan(&tracks, STEP, LEVEL).0.iter().all(|p| p.joint != 2));
 }
 
 #[test]
@@ -222,13 +241,7 @@ fn edges_are_as_uncertain_as_they_say() {
 
 #[test]
 fn few_rows_are_not_scanned() {
-    let short = Track {
-        joint: 0,
-        motions: vec![(true, (0..50).map(|k| (k, 1.0)).collect())],
-        beside: vec![],
-        sizes: vec![],
-        columns: vec![],
-    };
+    let short = track(0, (0..50).map(|k| (k, 1.0)).collect());
     assert!(scan(&[short], STEP, LEVEL).0.is_empty());
     assert!(scan(&[], STEP, LEVEL).0.is_empty());
 }

@@ -1,10 +1,13 @@
 //! The rows of a joint that pushes are looked for in.
 
+use crate::diagnosis::contact::borne_once::{Load, borne_once};
 use crate::diagnosis::contact::curves::curves;
 use crate::diagnosis::contact::silent::Silent;
 use crate::diagnosis::judging::autocorrelation::Places;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
+use std::collections::HashSet;
+use std::ops::Range;
 
 /// Rows of one joint, and what its residual is judged beside.
 pub(in crate::diagnosis) struct Track {
@@ -20,6 +23,8 @@ pub(in crate::diagnosis) struct Track {
     /// Columns of the model that leaves the residual, the same number for all joints, over the same rows; empty where a column
     /// is zero on this joint.
     pub columns: Vec<Vec<f64>>,
+    /// Motions and places of the rows with loads that the recording has once.
+    pub once: HashSet<(usize, usize)>,
 }
 
 /// What a model leaves of the torques.
@@ -62,11 +67,38 @@ impl Track {
         // Noise of a position, and of a controller that sees it, is felt by every joint that its acceleration turns.
         sizes.extend((0..design.joints).map(|of| over(&|k, t| context.coupling(k, joint, of)[t])));
         let columns = left.fitted.iter().map(of_joint).collect();
-        Self { joint, motions, beside, sizes, columns }
+        let once = places_borne_once(context, design, joint, &places);
+        Self { joint, motions, beside, sizes, columns, once }
     }
 
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.motions.iter().map(|motion| motion.1.len()).sum()
     }
+
+    /// Whether most of some places of a motion have loads that the recording has once.
+    pub fn is_borne_once(&self, motion: usize, places: Range<usize>) -> bool {
+        let once = places.clone().filter(|&place| self.once.contains(&(motion, place))).count();
+        2 * once > places.len()
+    }
+}
+
+/// Motions and places of the recording at which a joint has loads that it has once.
+fn places_borne_once(
+    context: &Context<'_>,
+    design: &Design,
+    joint: usize,
+    places: &Places,
+) -> HashSet<(usize, usize)> {
+    let (mut at, mut loads) = (Vec::new(), Vec::new());
+    let motions = places.motions().iter().enumerate();
+    for (motion, rows) in motions.filter(|(motion, _)| context.signals[*motion].is_target) {
+        for &(place, r) in rows {
+            let t = design.rows[r].centre;
+            let torque = context.torques(motion).total[joint][t];
+            at.push((motion, place));
+            loads.push(Load { motion, time: context.signals[motion].time(t), torque });
+        }
+    }
+    at.into_iter().zip(borne_once(&loads)).filter(|(_, once)| *once).map(|(at, _)| at).collect()
 }

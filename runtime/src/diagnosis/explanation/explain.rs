@@ -6,13 +6,13 @@ use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::error::DiagnosisError;
 use crate::diagnosis::explanation::deviations::deviations;
 use crate::diagnosis::explanation::finding::{named_on, of_contacts, of_term};
+use crate::diagnosis::explanation::how::how;
 use crate::diagnosis::explanation::standard_model::{StandardModelFit, estimated, in_sample};
 use crate::diagnosis::explanation::{
     covariance, curves, delay, free_form, line, pushed, rate, standing, transient, words,
 };
 use crate::diagnosis::judging::between_motions::between_motions;
 use crate::diagnosis::judging::held_out::HeldOutSquares;
-use crate::diagnosis::judging::hull::Curve;
 use crate::diagnosis::judging::skew::Skew;
 use crate::diagnosis::outcome::{
     BetweenMotions, CannotTell, Diagnosis, Errors, Estimated, Finding, HeldOut, ParameterShift, Removed,
@@ -169,7 +169,7 @@ fn found(
     let held = if findings.is_empty() { standard } else { &held };
     let after = held.errors();
     let held_out = HeldOut {
-        how: how(model) + ended.contacts.map_or("", |_| OF_PUSHES) + &of_curves(robot, &curves),
+        how: how(model, ended.contacts.is_some(), &curves),
         band,
         before: before.relative_error.unwrap_or_default(),
         after: after.relative_error.unwrap_or_default(),
@@ -295,58 +295,6 @@ fn before(
     }
 }
 
-/// How rows within a push are predicted.
-const OF_PUSHES: &str = "; within pushes, from the instants beside";
-
-/// Where motion is left out of held-out errors.
-fn of_curves(robot: &Robot, curves: &[Curve]) -> String {
-    let mut joints: Vec<usize> = curves.iter().map(|c| robot.joint_number(JointIndex(c.joint)).0).collect();
-    joints.sort_unstable();
-    joints.dedup();
-    match joints.as_slice() {
-        [] => String::new(),
-        [one] => format!("; joint {one} only where its curve was fitted"),
-        several => {
-            let list: Vec<String> = several.iter().map(usize::to_string).collect();
-            format!("; joints {} only where their curves were fitted", list.join(" and "))
-        }
-    }
-}
-
-fn how(model: &ExtendedModel<'_>) -> String {
-    let design = &model.slow.design;
-    let mut targets = design.segments.iter().filter(|s| s.is_target).map(|s| s.signal);
-    let first = targets.next();
-    let one_motion = targets.all(|s| Some(s) == first);
-    let only_reference = model.context.reference.is_some() && model.context.is_alone();
-    let told = if only_reference {
-        match (one_motion, design.together) {
-            (true, _) => "every stretch of the motion predicted from the reference and its other stretches",
-            (_, true) => "every stretch of the motions predicted from the reference and the other stretches",
-            _ => "every motion predicted from the reference and the other motions",
-        }
-    } else if model.change {
-        match (one_motion, design.together) {
-            (true, _) => {
-                "every stretch of the new motion predicted from the baseline and its other stretches"
-            }
-            (_, true) => {
-                "every stretch of the new motions predicted from the baseline and the other stretches"
-            }
-            _ => "every new motion predicted from the baseline and the other new motions",
-        }
-    } else if design.is_forward() {
-        "forward in time"
-    } else if design.is_single_motion() {
-        "every stretch of the motion predicted from the others"
-    } else if design.together {
-        "every stretch of the motions predicted from the others"
-    } else {
-        "every motion predicted from the others"
-    };
-    told.into()
-}
-
 fn by_motion(
     model: &ExtendedModel<'_>,
     design: &Design,
@@ -365,6 +313,8 @@ fn by_motion(
             None => list.push((name, [*l0, *w0, *l1, *w1])),
         }
     }
+    // Of a motion of which the others tell nothing there is no error.
+    list.retain(|(_, s)| s[1] > 0.0 && s[3] > 0.0);
     list.into_iter().map(|(n, s)| (n, (s[0] / s[1]).sqrt(), (s[2] / s[3]).sqrt())).collect()
 }
 

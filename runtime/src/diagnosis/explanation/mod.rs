@@ -9,6 +9,7 @@ pub(in crate::diagnosis) mod explain;
 pub(in crate::diagnosis) mod finding;
 mod fine_law;
 pub(in crate::diagnosis) mod free_form;
+mod how;
 pub(in crate::diagnosis) mod line;
 mod proposal;
 pub(in crate::diagnosis) mod pushed;

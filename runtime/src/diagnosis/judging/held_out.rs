@@ -26,7 +26,7 @@ impl HeldOutSquares {
     /// Predicts held-out motion with the columns of a design: every motion, or stretch, once from the others; a single motion
     /// forward in time, from two instants on, where these show something of it; where `from_baseline` is set, the new motion from
     /// the baseline alone, where that does. Rows of which one of the `curves` says nothing are left out, whether it is in the
-    /// design or not.
+    /// design or not; so are those of which the others tell nothing ([`Design::is_told`]).
     ///
     /// # Errors
     /// [`SingularDesign`] where a split has no fit.
@@ -58,7 +58,7 @@ impl HeldOutSquares {
 
     fn add(&mut self, design: &Design, fit: &Fit, segment: usize, beyond: &[Beyond]) {
         let (mut left, mut whole) = (0.0, 0.0);
-        for j in 0..design.joints {
+        for j in (0..design.joints).filter(|&j| design.is_told(j, segment)) {
             // y is what is left of the torque after terms of fixed amplitude: close enough as a reference.
             let (squares, torque) = if beyond.iter().any(|beyond| beyond.joint == j) {
                 let seen = |r: &usize| !beyond.iter().any(|beyond| beyond.contains(*r));
@@ -104,8 +104,7 @@ fn baseline_tells(design: &Design, sigma: &[f64]) -> bool {
     let targets = design.target_segments();
     let is_old = design.segments.iter().map(|s| !s.is_target).collect();
     Fit::new(design, sigma, is_old).is_ok_and(|baseline| {
-        let left_open = |j: usize| baseline.variance_of_prediction(design, j, &targets);
-        (0..design.joints).all(|j| left_open(j) <= LEFT_OPEN_AT_MOST)
+        baseline.variance_of_prediction(design, &targets).iter().all(|open| *open <= LEFT_OPEN_AT_MOST)
     })
 }
 
@@ -197,14 +196,14 @@ mod tests {
         let mut design = Design::made_up(1, &[(0, true), (1, true)], 10, vec![column], vec![1.0; 20]);
         let fit = |design: &Design| Fit::new(design, &[0.5], vec![true, false]).expect("it is regular");
         // Its parameter is known to sigma^2 / 10, and counts nine times.
-        let variance = fit(&design).variance_of_prediction(&design, 0, &[1]);
+        let variance = fit(&design).variance_of_prediction(&design, &[1])[0];
         assert!((variance - 0.9).abs() < 1e-6, "{variance}");
         design.push((0..20).map(|r| f64::from(u8::from(r >= 10))).collect());
         design.refresh();
         // Of a column that is no base parameter, as of a law in the second motion alone, nothing was to be told before.
-        assert!((fit(&design).variance_of_prediction(&design, 0, &[1]) - 0.9).abs() < 1e-6);
+        assert!((fit(&design).variance_of_prediction(&design, &[1])[0] - 0.9).abs() < 1e-6);
         design.parameters = 2;
-        assert_eq!(fit(&design).variance_of_prediction(&design, 0, &[1]), f64::INFINITY);
+        assert_eq!(fit(&design).variance_of_prediction(&design, &[1]), [f64::INFINITY]);
     }
 
     #[test]

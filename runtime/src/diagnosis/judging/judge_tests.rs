@@ -99,6 +99,32 @@ fn beside_a_curve_other_laws_are_not_judged_where_it_says_nothing() {
 }
 
 #[test]
+fn motion_that_the_others_do_not_tell_is_no_evidence() {
+    let mut rng = Pcg64::seed_from_u64(6);
+    // A parameter that both joints have in common, hardly seen but in the last motion of the second one.
+    let in_last = |r: usize| if r < 2 * ALL - ROWS { 0.01 } else { 10.0 };
+    let law: Vec<f64> = noise(&mut rng);
+    let errors: Vec<f64> = [noise(&mut rng), noise(&mut rng)].concat();
+    let parameter: Vec<f64> = (0..2 * ALL).map(|r| in_last(r) * (1.7 * r as f64).sin()).collect();
+    let y = (0..2 * ALL).map(|r| parameter[r] + errors[r] + law.get(r).copied().unwrap_or(0.0)).collect();
+    let mut design = Design::made_up(2, &SEGMENTS, ROWS, vec![parameter], y);
+    let judge = |design: Design| {
+        // By accident it goes with the law in the others.
+        let mut columns = law.clone();
+        columns.iter_mut().zip(&design.columns[0]).for_each(|(law, parameter)| *law += 3.0 * parameter);
+        let regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
+        let candidate = candidate(&regression.design, EffectKind::Spring, vec![columns]);
+        regression.judge(&candidate).expect("a small problem is regular")
+    };
+    // What changes there is the error of the parameter, a hundred times what the law can be.
+    let of_all = judge(design.clone());
+    assert!(of_all.held_out[2].abs() > 1e4, "{of_all:?}");
+    design.untold = std::sync::Arc::new([(1, 2)].into());
+    let told = judge(design);
+    assert!((0.0..100.0).contains(&told.held_out[2]) && told.lost == 0, "{told:?}");
+}
+
+#[test]
 fn what_a_prediction_gains_scatters_by_the_error_of_the_parameters_as_its_deviation_says() {
     let mut rng = Pcg64::seed_from_u64(5);
     // The second column is small in the motions that are fitted, and large in the one that is predicted.

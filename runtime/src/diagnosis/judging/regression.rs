@@ -281,7 +281,8 @@ fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool
                 fit.squares(design, j, g)
             }
         };
-        (0..design.joints).map(|j| fold.held().map(|g| squares(j, g)).sum()).collect()
+        let of_joint = |j: usize| fold.held().filter(|&g| design.is_told(j, g)).map(|g| squares(j, g)).sum();
+        (0..design.joints).map(of_joint).collect()
     };
     folds.iter().map(of_fold).collect()
 }

@@ -45,6 +45,8 @@ pub(in crate::diagnosis) struct Design {
     pub together: bool,
     /// Whether a single motion is predicted forward in time.
     pub forward: bool,
+    /// Joints and segments whose torques what is not held out with them does not tell.
+    pub untold: Arc<BTreeSet<(usize, usize)>>,
     /// One value per row.
     pub columns: Vec<Vec<f64>>,
     /// Columns of curves, whose amplitudes are kept from what no motion determines.
@@ -84,6 +86,7 @@ impl Design {
             segments: Vec::new(),
             together: selection.cut.together,
             forward: selection.cut.forward,
+            untold: Arc::default(),
             columns: vec![Vec::new(); parameters],
             shrunk: Vec::new(),
             y: Vec::new(),
@@ -234,6 +237,12 @@ impl Design {
         (0..parts)
             .map(|k| targets.iter().copied().filter(|&g| self.segments[g].part == k).collect())
             .collect()
+    }
+
+    /// Whether the motion that is not held out with a segment shows the parameters that predict a joint's torques in it. What
+    /// is left of them tells of laws then, and of those parameters otherwise.
+    pub fn is_told(&self, joint: usize, segment: usize) -> bool {
+        !self.untold.contains(&(joint, segment))
     }
 
     /// Segments of the recording that is diagnosed.
@@ -397,6 +406,7 @@ impl Design {
             segments: Vec::new(),
             together: false,
             forward: true,
+            untold: Arc::default(),
             columns,
             shrunk: Vec::new(),
             y,

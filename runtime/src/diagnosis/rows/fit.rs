@@ -208,24 +208,27 @@ impl Fit {
         DVector::from_fn(self.chi.len(), |k, _| inverse[(k, k)] * self.scale[k] * self.scale[k])
     }
 
-    /// Variance with which the base parameters predict the rows of a joint in some segments that they were not fitted to, on
-    /// average, in units of the residual variance; infinite where these have a column of one that was not seen at all.
-    pub fn variance_of_prediction(&self, design: &Design, joint: usize, segments: &[usize]) -> f64 {
-        let (inverse, mut rows) = (self.inverse_gram(), 0);
-        let mut gram = Gram::zero(design.columns.len());
-        for &segment in segments {
-            gram.add(1.0, design.gram(joint, segment));
-            rows += design.ranges[joint][segment].len();
-        }
-        let parameters = 0..design.parameters;
-        let is_unseen = |k: usize| self.scale[k] == 0.0 && gram.squares(k) > 0.0;
-        if parameters.clone().any(is_unseen) {
-            return f64::INFINITY;
-        }
-        let of_column =
-            |i: usize| -> f64 { parameters.clone().map(|k| gram.row(i)[k] * inverse[(k, i)]).sum() };
-        let trace: f64 = parameters.clone().map(of_column).sum();
-        trace / (self.sigma[joint] * self.sigma[joint] * rows.max(1) as f64)
+    /// Variance with which the base parameters predict the rows of each joint in some segments that they were not fitted to,
+    /// on average, in units of the residual variance; infinite where these have a column of one that was not seen at all.
+    pub fn variance_of_prediction(&self, design: &Design, segments: &[usize]) -> Vec<f64> {
+        let (inverse, parameters) = (self.inverse_gram(), 0..design.parameters);
+        let of_joint = |joint: usize| {
+            let mut gram = Gram::zero(design.columns.len());
+            let mut rows = 0;
+            for &segment in segments {
+                gram.add(1.0, design.gram(joint, segment));
+                rows += design.ranges[joint][segment].len();
+            }
+            let is_unseen = |k: usize| self.scale[k] == 0.0 && gram.squares(k) > 0.0;
+            if parameters.clone().any(is_unseen) {
+                return f64::INFINITY;
+            }
+            let of_column =
+                |i: usize| -> f64 { parameters.clone().map(|k| gram.row(i)[k] * inverse[(k, i)]).sum() };
+            let trace: f64 = parameters.clone().map(of_column).sum();
+            trace / (self.sigma[joint] * self.sigma[joint] * rows.max(1) as f64)
+        };
+        (0..design.joints).map(of_joint).collect()
     }
 
     /// How many parameters were known beforehand, see [`crate::diagnosis::rows::prior::Prior::parameters`].

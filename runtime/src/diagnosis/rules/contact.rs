@@ -80,6 +80,9 @@ pub(in crate::diagnosis) const SCAN_LEFT_BY_MODEL: f64 = 0.2;
 pub(in crate::diagnosis) const SCAN_ROWS_PER_KNOT: usize = 150;
 /// Least and most knots of these curves. Judgement: a line, and a curve that follows what a law of friction does.
 pub(in crate::diagnosis) const SCAN_KNOTS: [usize; 2] = [2, 8];
+/// Loads this far apart in time, s, are borne twice. Mechanics: a stroke's acceleration takes no longer, and what is borne for
+/// longer is seen at its beginning and at its end.
+pub(in crate::diagnosis) const PASSAGE: f64 = 1.0;
 /// Length of the stretches whose largest means the law is fitted to, s. Statistics: a dozen of them in a recording of
 /// half a minute, each with many independent means.
 pub(in crate::diagnosis) const SCAN_STRETCH: f64 = 2.0;

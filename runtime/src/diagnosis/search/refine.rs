@@ -9,6 +9,7 @@ use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Law, Mode};
 use crate::diagnosis::search::tuning::Tuning;
 use crate::diagnosis::settings::Settings;
+use crate::effects::ShapeSearch;
 use crate::parallel;
 
 impl Search<'_> {
@@ -66,9 +67,9 @@ impl Search<'_> {
         let refined = parallel::map(self.threads(), leading.len(), |i| {
             let law = &ranked[leading[i]];
             let (regression, candidate) = self.of(law);
-            let start = &candidate.trials[law.verdict.trial].shape;
-            let shape = self.refined(regression, candidate, start);
-            if shape == *start {
+            let start = &candidate.trials[law.verdict.trial];
+            let shape = self.refined_of_any_form(regression, candidate, start);
+            if shape == start.shape {
                 return None;
             }
             let (effect, place, design) = (candidate.effect, candidate.place, &regression.design);
@@ -86,21 +87,59 @@ impl Search<'_> {
         ranked.sort_by(Ranked::more_first);
     }
 
-    /// The shape near `start` that explains most of all motion.
-    pub(in crate::diagnosis) fn refined(
+    /// The shape that explains most of all motion near that of a trial, or near the best of the grid of another form of the law
+    /// with as many columns: between the values of the grid another form may lead than on them.
+    pub(in crate::diagnosis) fn refined_of_any_form(
         &self,
         regression: &Regression,
         candidate: &Candidate,
-        start: &[f64],
+        start: &Trial,
     ) -> Vec<f64> {
+        let search = self.shape_search(candidate);
+        let grid = candidate.trials.iter().take(candidate.shapes);
+        let mut best_of_others: Vec<(&Trial, f64)> = Vec::new();
+        for trial in grid.filter(|trial| trial.columns.len() == start.columns.len()) {
+            if search.is_same_form(&trial.shape, &start.shape) {
+                continue;
+            }
+            let gain = regression.gain_of(candidate, trial);
+            let of_form = |(other, _): &&mut (&Trial, f64)| search.is_same_form(&trial.shape, &other.shape);
+            match best_of_others.iter_mut().find(of_form) {
+                Some(best) if best.1 < gain => *best = (trial, gain),
+                Some(_) => {}
+                None => best_of_others.push((trial, gain)),
+            }
+        }
+        let mut best = self.climbed(regression, candidate, &start.shape);
+        for (trial, _) in best_of_others {
+            let end = self.climbed(regression, candidate, &trial.shape);
+            if end.1 > best.1 {
+                best = end;
+            }
+        }
+        best.0
+    }
+
+    /// The shape near `start` that explains most of all motion.
+    fn refined(&self, regression: &Regression, candidate: &Candidate, start: &[f64]) -> Vec<f64> {
+        self.climbed(regression, candidate, start).0
+    }
+
+    /// How the shape of a candidate is searched from the shapes that were tried.
+    fn shape_search(&self, candidate: &Candidate) -> ShapeSearch {
+        let grid: Vec<&[f64]> = candidate.trials.iter().map(|t| t.shape.as_slice()).collect();
+        candidate.effect.form().shape_search(candidate.place, &self.model.context.scales, &grid)
+    }
+
+    /// The shape near `start` that explains most of all motion, and its in-sample gain.
+    fn climbed(&self, regression: &Regression, candidate: &Candidate, start: &[f64]) -> (Vec<f64>, f64) {
         let context = &self.model.context;
         let gain = |shape: &[f64]| -> f64 {
             let (effect, place, shape) = (candidate.effect, candidate.place, [shape.to_vec()]);
             let one = make(context, &regression.design, effect, place, &shape, self.model.change);
             regression.whole_gain(&one)
         };
-        let grid: Vec<&[f64]> = candidate.trials.iter().map(|t| t.shape.as_slice()).collect();
-        let search = candidate.effect.form().shape_search(candidate.place, &context.scales, &grid);
+        let search = self.shape_search(candidate);
         // Pattern search (Hooke and Jeeves 1961).
         let moves = search.moves(start.len());
         let mut shape = start.to_vec();
@@ -124,7 +163,7 @@ impl Search<'_> {
                 size *= 0.5;
             }
         }
-        shape
+        (shape, value)
     }
 
     /// The best shape of a compliant transmission, and how near others come to it: what rings is in step with a motion at

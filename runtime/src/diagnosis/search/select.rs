@@ -282,7 +282,9 @@ impl Search<'_> {
         if candidate.fixed.is_some() {
             self.tune(&mut term, candidate, self.model.regression(winner.window));
         } else {
-            term.shape = self.refined(self.model.regression(winner.window), candidate, &term.shape);
+            let (regression, start) =
+                (self.model.regression(winner.window), &candidate.trials[winner.verdict.trial]);
+            term.shape = self.refined_of_any_form(regression, candidate, start);
         }
         term
     }

@@ -1,4 +1,5 @@
-//! Stribeck friction: the level falls as the joint leaves rest. fs·exp(-(v/vs)²)·sign v.
+//! Stribeck friction: the level falls as the joint leaves rest. fs·exp(-(v/vs)²)·sign v, or by the first power, as Tustin (1947)
+//! has it: it then falls at once.
 
 use crate::effects::closed_form::number;
 use crate::effects::joint_law::geometric;
@@ -15,10 +16,11 @@ const WORDS: Words = Words {
     looks_like: "a peak of the residual on both sides of zero speed, with the sign of the speed",
     revealed_by: "joint speed",
     experiment: "slow constant-speed strokes in both directions at several speeds between a hundredth and a fifth of the top speed",
-    source: "Stribeck 1902; Armstrong-Helouvry, Dupont and Canudas de Wit 1994",
+    source: "Stribeck 1902; Tustin 1947; Armstrong-Helouvry, Dupont and Canudas de Wit 1994",
     symbols: &[
         ("fs", "friction at rest beyond the Coulomb level"),
         ("vs", "speed at which a third of it is left"),
+        ("delta", "power of the speed that it falls with, 2 where it is not told"),
     ],
     put_in: "the law as a torque of the joint",
 };
@@ -35,6 +37,9 @@ const PROPERTIES: Properties = Properties {
     may_stand: true,
     is_factor: false,
 };
+
+/// Marked by one more number.
+const FIRST_POWER: f64 = 1.0;
 
 /// The effect.
 pub(super) struct Stribeck;
@@ -57,7 +62,11 @@ impl Effect for Stribeck {
     }
 
     fn formula(&self, q: &Quantities) -> String {
-        format!("{}·exp(-(dq / {})²)·sign(dq)", q.value("fs"), q.value("vs"))
+        if q.has("delta") {
+            format!("{}·exp(-|dq / {}|^{})·sign(dq)", q.value("fs"), q.value("vs"), q.value("delta"))
+        } else {
+            format!("{}·exp(-(dq / {})²)·sign(dq)", q.value("fs"), q.value("vs"))
+        }
     }
 }
 
@@ -67,11 +76,12 @@ impl JointLaw for Stribeck {
     }
 
     fn shapes(&self, scale: &Scale) -> Vec<Vec<f64>> {
-        geometric(0.012, 0.35, 10).iter().map(|x| vec![x * scale.speed]).collect()
+        let each = |x: &f64| [vec![x * scale.speed], vec![x * scale.speed, FIRST_POWER]];
+        geometric(0.012, 0.35, 10).iter().flat_map(each).collect()
     }
 
     fn steps(&self, _: &Scale) -> Vec<Step> {
-        vec![Step::Times(1.45)]
+        vec![Step::Times(1.45), Step::Keep]
     }
 
     fn only_positive(&self) -> bool {
@@ -79,12 +89,16 @@ impl JointLaw for Stribeck {
     }
 
     fn law(&self, _: &Scale, shape: &[f64], at: &At, _: f64, out: &mut [f64]) {
-        out[0] = (-(at.dq / shape[0]).powi(2)).exp() * at.sign;
+        let part = (at.dq / shape[0]).abs();
+        out[0] = (-shape.get(1).map_or(part * part, |&power| part.powf(power))).exp() * at.sign;
     }
 
     fn closed_form(&self, _: &Scale, shape: &[f64], amplitude: &[f64], j: usize) -> Option<String> {
         let [fs, vs] = [amplitude.first()?, shape.first()?].map(|x| number(*x));
-        Some(format!("{fs}*exp(-(dq{j}/{vs})^2)*sign(dq{j})"))
+        Some(match shape.get(1) {
+            Some(&power) => format!("{fs}*exp(-(abs(dq{j})/{vs})^{})*sign(dq{j})", number(power)),
+            None => format!("{fs}*exp(-(dq{j}/{vs})^2)*sign(dq{j})"),
+        })
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
@@ -92,9 +106,11 @@ impl JointLaw for Stribeck {
     }
 
     fn parameters(&self, scale: &Scale, shape: &[f64], a: &[f64], s: &[f64]) -> Vec<Parameter> {
-        vec![
+        let mut parameters = vec![
             Parameter::new("fs", a[0], s[0], scale.kind.torque_unit()),
             Parameter::new("vs", shape[0], 0.0, scale.kind.speed_unit()),
-        ]
+        ];
+        parameters.extend(shape.get(1).map(|&power| Parameter::new("delta", power, 0.0, "1")));
+        parameters
     }
 }
