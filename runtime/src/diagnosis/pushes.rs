@@ -143,7 +143,7 @@ fn pushed_in_motion(
         residual: &search.model.residual_on(&outside),
         beside: &beside,
         fitted: &search.model.fitted_on(&outside),
-        silent: &Silent::of(&laws(&search.model), outside.joints),
+        silent: &Silent::of(model.robot(), &laws(&search.model)),
     };
     let look = moving::look(context, &outside, &left, level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);

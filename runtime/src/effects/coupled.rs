@@ -54,6 +54,12 @@ impl CoupledRotor {
         (speed / Self::ROUNDING).tanh()
     }
 
+    /// The most that dry friction of the rotor holds against, `[on a, on b]`, N.m or N: at rest its sign is any.
+    pub fn dry_friction(&self, amplitude: &[f64]) -> [f64; 2] {
+        let coulomb = amplitude.get(1).map_or(0.0, |coulomb| coulomb.abs());
+        [self.ratio.abs() * coulomb, coulomb]
+    }
+
     /// Amplitudes and ratio as the quantities a person knows, with their standard deviations.
     pub fn parameters(&self, amplitude: &[f64], sigma: &[f64], ratio_sigma: f64) -> Vec<Parameter> {
         let names = [("viscous", "N.m.s/rad"), ("coulomb", "N.m"), ("inertia", "kg.m2")];
@@ -78,5 +84,28 @@ mod tests {
         let [on_a, on_b] = of([2.0, 1.001]);
         assert!((0.05..0.2).contains(&on_b) && on_a == -0.5 * on_b, "{on_a} {on_b}");
         assert!(of([2.0, 1.1])[1] > 0.999 && of([2.0, 0.9])[1] < -0.999);
+    }
+
+    #[test]
+    fn a_rotor_at_rest_holds_each_joint_by_what_it_turns_with_it() {
+        assert_eq!(CoupledRotor { ratio: -0.5 }.dry_friction(&[3.0, -0.2, 1.0]), [0.1, 0.2]);
+        assert_eq!(CoupledRotor { ratio: 0.5 }.dry_friction(&[]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_rotor_may_turn_with_neighbours_and_with_joints_that_have_one_between_them() {
+        use crate::model::Model;
+        let mut robot = crate::simulation::testing::arm().0.robot().clone();
+        let n = robot.joints();
+        // No motor of this one turns with another joint.
+        robot.drive.gear = (0..n * n).map(|k| f64::from(u8::from(k % (n + 1) == 0))).collect();
+        let pairs = |apart: usize| (apart..n).flat_map(move |j| [(j - apart, j), (j, j - apart)]);
+        let expected: Vec<Place> = (1..=2).flat_map(pairs).map(|(a, b)| Place::Pair(a, b)).collect();
+        assert_eq!(CoupledRotor::places(&robot), expected);
+        // Where joint 2's motor does already it is in the model.
+        let mut gear = robot.drive.gear.to_vec();
+        gear[n] = 0.5;
+        robot.drive.gear = gear.into();
+        assert!(!CoupledRotor::places(&robot).contains(&Place::Pair(0, 1)));
     }
 }

@@ -60,17 +60,28 @@ impl EffectTerm {
         }
     }
 
-    /// Other joints whose direction of motion its torque on a joint changes with, in a robot of so many joints: where these turn
-    /// round it is as uncertain as their friction.
-    pub fn turns_with(&self, joint: usize, joints: usize) -> Vec<usize> {
+    /// Linear forms of dq, besides its own speed, with whose sign its torque on a joint changes, in a robot of so many joints: the
+    /// speed of another one, or of a rotor that two of them drive. Where these turn round it is as uncertain as their friction.
+    pub fn turns_with(&self, joint: usize, joints: usize) -> Vec<Vec<f64>> {
+        let form = |of: &[(usize, f64)]| {
+            let mut form = vec![0.0; joints];
+            of.iter().filter(|(j, _)| *j < joints).for_each(|&(j, factor)| form[j] = factor);
+            form
+        };
         if let Some([own, heard]) = self.place.hears() {
-            return if own == joint { vec![heard] } else { Vec::new() };
+            return if own == joint { vec![form(&[(heard, 1.0)])] } else { Vec::new() };
+        }
+        if let (Form::Coupled, Some(pair @ [a, b]), Some(&ratio)) =
+            (self.effect.form(), self.place.pair(), self.shape.first())
+        {
+            return if pair.contains(&joint) { vec![form(&[(a, ratio), (b, 1.0)])] } else { Vec::new() };
         }
         let is_own = matches!(self.effect.form(), Form::Free) && self.place.joint() == Some(joint);
         let axes = if is_own { self.intervals(joints) } else { Vec::new() };
         let turns = |variable: Variable| variable.has_direction() || matches!(variable, Variable::Torque(_));
         let variables = axes.into_iter().map(|axis| axis.variable).filter(|variable| turns(*variable));
-        variables.filter_map(Variable::joint).filter(|other| *other != joint).collect()
+        let others = variables.filter_map(Variable::joint).filter(|other| *other != joint);
+        others.map(|other| form(&[(other, 1.0)])).collect()
     }
 
     /// Its name in the JSON: that of the effect, or of the user's law. A curve over nothing but the position of its joint has
@@ -209,15 +220,23 @@ mod tests {
     #[test]
     fn what_hears_a_joint_or_depends_on_its_direction_turns_with_it() {
         let crosstalk = term(EffectKind::TorqueCrosstalk, Place::Hears(1, 2), vec![]);
-        assert_eq!(crosstalk.turns_with(1, 3), [2]);
+        assert_eq!(crosstalk.turns_with(1, 3), [[0.0, 0.0, 1.0]]);
         assert!(crosstalk.turns_with(2, 3).is_empty());
         let axis = |variable| Axis { variable, centre: 0.0, half: 1.0 };
         let over = |axes: [Variable; 2]| FreeLaw::two(Together::Lines, axes.map(axis)).shape();
         let free = |axes| term(EffectKind::FreeForm, Place::Joint(0), over(axes));
         let speeds = free([Variable::Speed(0), Variable::Speed(2)]);
-        assert_eq!(speeds.turns_with(0, 3), [2]);
+        assert_eq!(speeds.turns_with(0, 3), [[0.0, 0.0, 1.0]]);
         assert!(speeds.turns_with(1, 3).is_empty());
         assert!(free([Variable::Position(1), Variable::Load(0)]).turns_with(0, 3).is_empty());
         assert!(term(EffectKind::Spring, Place::Joint(0), vec![]).turns_with(0, 3).is_empty());
+    }
+
+    #[test]
+    fn a_rotor_that_two_joints_drive_turns_round_where_their_speeds_cancel() {
+        let rotor = term(EffectKind::CoupledTransmission, Place::Pair(0, 2), vec![-0.5]);
+        assert_eq!(rotor.turns_with(0, 3), [[-0.5, 0.0, 1.0]]);
+        assert_eq!(rotor.turns_with(2, 3), rotor.turns_with(0, 3));
+        assert!(rotor.turns_with(1, 3).is_empty());
     }
 }

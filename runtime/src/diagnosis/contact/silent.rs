@@ -1,30 +1,33 @@
 //! Samples of a motion at which a model says nothing of a joint's torque that a push could be told from.
 //!
 //! Near a reversal, where a joint creeps, and where a motion begins or ends, friction, play and flexible gears come and go as a
-//! push does; what a joint hears of another one is as uncertain where that one turns round. And a curve says nothing of values
-//! beyond those that it was fitted to.
+//! push does; so do they where a rotor turns round that two joints drive, and what a joint hears of another one where that one
+//! does. And a curve says nothing of values beyond those that it was fitted to.
 
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::free::beyond;
+use crate::diagnosis::rows::signals::directions;
 use crate::diagnosis::rules::{CREEPING, REVERSAL_LEFT_OUT, SETTLING};
 use crate::effects::{Axis, EffectTerm, intervals_by_joint};
+use crate::model::Robot;
 
 /// Where a model with laws is silent.
 pub(in crate::diagnosis) struct Silent {
-    /// For each joint itself and those whose direction of motion its torque changes with.
-    turning: Vec<Vec<usize>>,
+    /// For each joint the linear forms of dq with whose sign its torque changes.
+    turning: Vec<Vec<Vec<f64>>>,
     /// Variables of each joint's curves with the intervals of values that these were fitted to.
     curves: Vec<Vec<Axis>>,
 }
 
 impl Silent {
-    /// Of a model with these laws, in a robot of so many joints.
-    pub fn of(laws: &[EffectTerm], joints: usize) -> Self {
-        let turning = |joint| {
-            let others = laws.iter().flat_map(|law| law.turns_with(joint, joints));
-            std::iter::once(joint).chain(others).collect()
-        };
-        Self { turning: (0..joints).map(turning).collect(), curves: intervals_by_joint(laws, joints) }
+    /// Of a robot with these laws.
+    pub fn of(robot: &Robot, laws: &[EffectTerm]) -> Self {
+        let joints = robot.joints();
+        let mut turning = directions(robot);
+        for (joint, forms) in turning.iter_mut().enumerate() {
+            forms.extend(laws.iter().flat_map(|law| law.turns_with(joint, joints)));
+        }
+        Self { turning, curves: intervals_by_joint(laws, joints) }
     }
 
     /// Whether it is at each sample of a motion.
@@ -32,11 +35,15 @@ impl Silent {
         let s = &context.signals[signal];
         let reach = (REVERSAL_LEFT_OUT * s.rate) as usize;
         let mut silent = vec![false; s.len()];
-        for &j in &self.turning[joint] {
-            let creeping = CREEPING * context.scales[j].speed;
-            let turns = near_reversals(&s.dq[j], reach);
-            let samples = silent.iter_mut().zip(turns.iter().zip(&s.dq[j]));
-            samples.for_each(|(silent, (turns, dq))| *silent |= *turns || dq.abs() < creeping);
+        for form in &self.turning[joint] {
+            let top = form.iter().zip(&context.scales).map(|(factor, scale)| factor.abs() * scale.speed);
+            let creeping = CREEPING * top.sum::<f64>();
+            let speed: Vec<f64> = (0..s.len())
+                .map(|t| form.iter().zip(&s.dq).map(|(factor, dq)| factor * dq[t]).sum())
+                .collect();
+            let turns = near_reversals(&speed, reach);
+            let samples = silent.iter_mut().zip(turns.iter().zip(&speed));
+            samples.for_each(|(silent, (turns, speed))| *silent |= *turns || speed.abs() < creeping);
         }
         let beyond = beyond(context, signal, &self.curves[joint]);
         silent.iter_mut().zip(beyond).for_each(|(silent, beyond)| *silent |= beyond);

@@ -8,7 +8,7 @@ use crate::diagnosis::predict::torques_on;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, STICTION};
-use crate::effects::{ContactForce, EffectTerm, JointTorque};
+use crate::effects::{ContactForce, CoupledRotor, EffectTerm, Form, JointTorque};
 use nalgebra::Vector3;
 
 /// What is seen of the outside while the robot holds still.
@@ -117,7 +117,8 @@ struct LawsAtRest {
     friction: Vec<f64>,
 }
 
-/// The laws as nothing moves: the mean of both directions, and half of the difference, which is friction.
+/// The laws as nothing moves: the mean of both directions, and half of the difference, which is friction. That of a rotor which
+/// two joints drive turns its sign over more than the speed of rest.
 fn laws_at_rest(context: &Context<'_>, laws: &[EffectTerm]) -> LawsAtRest {
     let mut friction = vec![0.0_f64; context.model.robot().joints()];
     let toward = |speed: f64| {
@@ -132,6 +133,14 @@ fn laws_at_rest(context: &Context<'_>, laws: &[EffectTerm]) -> LawsAtRest {
             for (f, b) in forth.iter_mut().zip(back) {
                 *most = most.max(0.5 * (*f - b));
                 *f = 0.5 * (*f + b);
+            }
+        }
+    }
+    for law in laws.iter().filter(|law| matches!(law.effect.form(), Form::Coupled)) {
+        let (Some(pair), Some(&ratio)) = (law.place.pair(), law.shape.first()) else { continue };
+        for (joint, dry) in pair.into_iter().zip(CoupledRotor { ratio }.dry_friction(&law.amplitude)) {
+            if let Some(friction) = friction.get_mut(joint) {
+                *friction += dry;
             }
         }
     }
