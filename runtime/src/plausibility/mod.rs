@@ -248,7 +248,22 @@ fn better(
         _ => best.powf(NEARLY),
     };
     all.retain(|(better, instead, _)| instead.same_family(&first) && *better > least);
+    if exclude_each_other(all.iter().map(|(_, instead, _)| instead)) {
+        return Vec::new();
+    }
     all.into_iter().map(|(_, instead, error)| (instead, error)).collect()
+}
+
+/// Whether gravities along several axes are among what is as good. It has one: a recording that any other one explains has
+/// something else in its torques that goes with the pose, as a sensor that hears a neighbour.
+fn exclude_each_other<'a>(instead: impl Iterator<Item = &'a Instead>) -> bool {
+    let axis = |instead: &Instead| match instead {
+        Instead::Gravity(g) => g.iter().position(|g| *g != 0.0),
+        _ => None,
+    };
+    let mut axes = instead.filter_map(axis);
+    let first = axes.next();
+    axes.any(|axis| Some(axis) != first)
 }
 
 /// Geometric mean of the joints' errors over those of another fit.
@@ -256,4 +271,19 @@ fn ratio(own: &[Option<f64>], other: &[Option<f64>]) -> f64 {
     let pairs = own.iter().zip(other).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
     let pairs: Vec<f64> = pairs.filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b).ln()).collect();
     (pairs.iter().sum::<f64>() / pairs.len().max(1) as f64).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gravities_along_several_axes_exclude_each_other_and_both_ways_along_one_do_not() {
+        let [down, up, aside] = [[0.0, 0.0, -9.81], [0.0, 0.0, 9.81], [9.81, 0.0, 0.0]].map(Instead::Gravity);
+        assert!(exclude_each_other([&up, &aside].into_iter()));
+        assert!(!exclude_each_other([&up, &down].into_iter()));
+        let sign = |joint| Instead::Sign { of: Signal::Torque, joint: JointIndex(joint) };
+        assert!(!exclude_each_other([&sign(0), &sign(1)].into_iter()));
+        assert!(!exclude_each_other(std::iter::empty()));
+    }
 }

@@ -17,7 +17,8 @@ pub(in crate::diagnosis) const SHORT_RECORDING: f64 = 12.0;
 /// Judgement; `docs/concealment_short.md`.
 pub(in crate::diagnosis) const SEGMENTS_OF_FEW_MOTIONS: usize = 8;
 /// Whole motions are held out where what the others leave open of the parameters is in no joint more than so many times the
-/// variance of its noise. Statistics: beyond that, held-out errors tell of the parameters and not of laws.
+/// variance of its noise; of what is held out the torques of a joint count where it is no more for that joint. Statistics: beyond
+/// that, held-out errors tell of the parameters and not of laws.
 pub(in crate::diagnosis) const LEFT_OPEN_BY_OTHERS: f64 = 1.0;
 /// The same of a single motion that is predicted forward in time, and of new motion that is from a baseline alone: stretches are
 /// less of a test, but that is given up where it would show nothing at all. Judgement: errors of ten times the noise.
