@@ -187,11 +187,12 @@ class Judged:
     notes: str
     seconds: float
 
-    def line(self):
+    def line(self, timed=True):
         hidden = " ".join(f"{label(e)} ({e['visible']:.1f})" for e in self.truth["effects"]) or "nothing"
         where = f"{self.truth['robot']} {self.truth['sensors']['rate']} Hz {self.truth['sensors']['noise']}"
         where += " baseline" if self.truth["baseline"] else ""
-        return f"{self.name:18} {self.verdict:9} {self.seconds:4.1f} s  {where}  {hidden}  {self.notes}"
+        took = f"{self.seconds:4.1f} s " if timed else ""
+        return f"{self.name:18} {self.verdict:9} {took} {where}  {hidden}  {self.notes}"
 
 
 def case(dynid, root, kind, seed, baseline, again=False):
@@ -216,11 +217,17 @@ def table(title, counts):
     return "\n".join(lines)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def arguments(description):
+    """What every run needs to know: which dynid, from which seed on."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--dynid", default="target/release/dynid")
-    parser.add_argument("--seeds", type=int, default=40)
     parser.add_argument("--first-seed", type=int, default=1)
+    return parser
+
+
+def main():
+    parser = arguments(__doc__)
+    parser.add_argument("--seeds", type=int, default=40)
     parser.add_argument("--kinds", help="null, single, pair, outside or names of effects, with commas; in turn by seed")
     parser.add_argument("--baseline", action="store_true", help="with a recording from before")
     parser.add_argument("--rescore", action="store_true", help="judge again what is in the folder of --keep")

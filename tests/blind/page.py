@@ -5,7 +5,6 @@
 Cases and verdicts are those of judge.py, `--jobs` of them at a time.
 """
 
-import argparse
 import sys
 import tempfile
 from collections import Counter
@@ -55,9 +54,7 @@ In brackets how many times the noise an effect is, where it shows most.
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--dynid", default="target/release/dynid")
-    parser.add_argument("--first-seed", type=int, default=1)
+    parser = judge.arguments(__doc__)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", default="docs/blind.md")
     a = parser.parse_args()
@@ -88,8 +85,7 @@ def main():
         counts[title][one.verdict] += 1
         if one.verdict not in ("right", "remainder"):
             # How long it took depends on the machine.
-            one.seconds = 0.0
-            wrong.append(one.line().replace(" 0.0 s ", ""))
+            wrong.append(one.line(timed=False))
     page = TEXT.format(first=a.first_seed, table=judge.table("hidden", counts), wrong="\n".join(wrong))
     Path(a.out).write_text(page)
 

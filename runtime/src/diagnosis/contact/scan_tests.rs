@@ -103,7 +103,7 @@ fn what_stands_out_where_a_load_is_borne_once_is_no_push() {
     let mut tracks = noise(&mut Pcg64::seed_from_u64(21));
     push(&mut tracks[2], 10.0, 0.5, 5.0);
     assert!(scan(&tracks, STEP, LEVEL).0.iter().any(|p| p.joint == 2));
-    // As much as it has in common with the load.
+    // A few of its rows are not most of them.
     tracks[2].once.extend((505..512).map(|place| (0, place)));
     assert!(scan(&tracks, STEP, LEVEL).0.iter().any(|p| p.joint == 2));
     tracks[2].once.extend((500..530).map(|place| (0, place)));

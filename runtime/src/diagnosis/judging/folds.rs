@@ -20,6 +20,11 @@ impl Fold {
     pub fn held(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.test.len()).filter(|&g| self.test[g])
     }
+
+    /// Those of them whose torques of a joint the others tell.
+    pub fn told<'a>(&'a self, design: &'a Design, joint: usize) -> impl Iterator<Item = usize> + 'a {
+        self.held().filter(move |&g| design.is_told(joint, g))
+    }
 }
 
 /// Every segment of the recording that is diagnosed held out once: a whole motion, a stretch of one, or of all.

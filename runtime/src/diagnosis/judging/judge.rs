@@ -162,12 +162,7 @@ impl Regression {
         let seen = |r: &usize| {
             !is_beyond(&self.beyond, *r) && curve.as_ref().is_none_or(|curve| !curve.contains(*r))
         };
-        self.held(fold, joint).flat_map(move |g| self.design.ranges[joint][g].clone()).filter(seen)
-    }
-
-    /// Segments that a fold holds out and whose torques of a joint the others tell.
-    fn held<'a>(&'a self, fold: &'a Fold, joint: usize) -> impl Iterator<Item = usize> + 'a {
-        fold.held().filter(move |&g| self.design.is_told(joint, g))
+        fold.told(&self.design, joint).flat_map(move |g| self.design.ranges[joint][g].clone()).filter(seen)
     }
 
     /// What a candidate takes of the squares that a fold leaves of a joint, and these, on the rows that are seen.
@@ -179,7 +174,7 @@ impl Regression {
         joint: usize,
     ) -> [f64; 2] {
         let is_curves = curve.as_ref().is_some_and(|curve| curve.joint == joint);
-        let mut rows = self.held(fold, joint).flat_map(|g| self.design.ranges[joint][g].clone());
+        let mut rows = fold.told(&self.design, joint).flat_map(|g| self.design.ranges[joint][g].clone());
         if is_curves || rows.any(|r| is_beyond(&self.beyond, r)) {
             let rows: Vec<usize> = self.seen(curve, fold, joint).collect();
             return prediction.gain_on(&self.design, joint, &rows);
@@ -188,7 +183,7 @@ impl Regression {
             Some(parts) => parts.gain(&prediction.amplitude, joint, g),
             None => prediction.gain(&self.design, joint, g),
         };
-        [self.held(fold, joint).map(gain).sum(), left[joint]]
+        [fold.told(&self.design, joint).map(gain).sum(), left[joint]]
     }
 
     /// Squared residual of a joint in the recording that is diagnosed, in units of its variance.

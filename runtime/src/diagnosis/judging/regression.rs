@@ -281,7 +281,7 @@ fn held_out_squares(design: &Design, whole: &Fit, folds: &[Fold], beyond: &[bool
                 fit.squares(design, j, g)
             }
         };
-        let of_joint = |j: usize| fold.held().filter(|&g| design.is_told(j, g)).map(|g| squares(j, g)).sum();
+        let of_joint = |j: usize| fold.told(design, j).map(|g| squares(j, g)).sum();
         (0..design.joints).map(of_joint).collect()
     };
     folds.iter().map(of_fold).collect()
