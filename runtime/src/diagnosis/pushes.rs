@@ -4,6 +4,7 @@
 use super::candidates::trial::dense_columns;
 use super::contact::felt::Around;
 use super::contact::moving;
+use super::contact::scan::Pushed;
 use super::contact::search::{self as contact_search, Contacts};
 use super::contact::silent::Silent;
 use super::contact::standing;
@@ -32,6 +33,8 @@ pub(super) struct Pushes {
     set_aside: bool,
     /// Seen by single joints, in what is left when the search is done.
     of_single_joints: Option<Contacts>,
+    /// Windows that the last look for them found.
+    seen: Vec<Pushed>,
     /// Whether those have been looked for.
     scanned: bool,
     /// What they were before a law took the place of some.
@@ -43,7 +46,14 @@ impl Pushes {
     pub fn found(model: &dyn Model, prepared: &Prepared, change: bool) -> Result<Self, DiagnosisError> {
         let signals = &prepared.motions.signals;
         let contacts = contact_search::find(&prepared.context(model)?, &prepared.aligned, signals);
-        Ok(Self { contacts, set_aside: !change, of_single_joints: None, scanned: false, explained: None })
+        Ok(Self {
+            contacts,
+            set_aside: !change,
+            of_single_joints: None,
+            seen: Vec::new(),
+            scanned: false,
+            explained: None,
+        })
     }
 
     /// Those whose rows are not used.
@@ -93,8 +103,9 @@ impl Pushes {
         // Once what was found is no longer among the rows, they show what else remains on a joint.
         let beside_laws = !is_alone(search) || self.scanned && is_unexplained(&search.model.slow);
         let level = if beside_laws { SCAN_LEVEL_BESIDE_LAWS } else { SCAN_LEVEL };
-        let (confirmed, found) =
-            pushed_in_motion(model, prepared, self.contacts.as_ref(), (search, level), settings);
+        let before = (self.contacts.as_ref(), &self.seen[..]);
+        let (confirmed, found, seen) = pushed_in_motion(model, prepared, before, (search, level), settings);
+        self.seen = seen;
         let refuted = self.contacts.is_some() && confirmed.is_none();
         self.contacts = confirmed;
         if self.scanned || !settings.single_joint_contacts {
@@ -121,15 +132,15 @@ impl Pushes {
     }
 }
 
-/// Of the contacts that are known, those that what the model with its effects leaves confirms; and the pushes that stand out
-/// of it besides, on single joints or several.
+/// Of the contacts that are known, those that what the model with its effects leaves confirms; the pushes that stand out
+/// of it besides, on single joints or several; and the windows that these were seen in, as the last look has `seen` others.
 fn pushed_in_motion(
     model: &dyn Model,
     prepared: &Prepared,
-    contacts: Option<&Contacts>,
+    (contacts, seen): (Option<&Contacts>, &[Pushed]),
     (search, level): (&Search<'_>, f64),
     settings: &Settings,
-) -> (Option<Contacts>, Option<Contacts>) {
+) -> (Option<Contacts>, Option<Contacts>, Vec<Pushed>) {
     let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
     let context = &search.model.context;
     let mut beside = uncertain(&search.model, &outside);
@@ -145,13 +156,13 @@ fn pushed_in_motion(
         fitted: &search.model.fitted_on(&outside),
         silent: &Silent::of(model.robot(), &laws(&search.model)),
     };
-    let look = moving::look(context, &outside, &left, level);
+    let look = moving::look(context, &outside, &left, seen, level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
     let design = all.as_ref().unwrap_or(&outside);
     let residual = search.model.residual_on(design);
     let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
     let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
-    (confirmed, moving::seen(&around, &look))
+    (confirmed, moving::seen(&around, &look), look.pushes)
 }
 
 /// Whether there are no laws beside pushes, found or not told apart or kept.

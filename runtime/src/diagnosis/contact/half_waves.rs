@@ -36,9 +36,9 @@ pub(super) struct HalfWaves {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     /// Amplitude of its half wave in standard deviations.
-    deviation: f64,
+    pub deviation: f64,
     /// First place.
-    from: usize,
+    pub from: usize,
     /// Number of its length.
     pub length: usize,
 }

@@ -13,17 +13,19 @@ use crate::effects::ContactForce;
 
 /// What a look at a residual finds.
 pub(in crate::diagnosis) struct Look {
-    pushes: Vec<Pushed>,
+    pub pushes: Vec<Pushed>,
     noise: Noise,
     /// Probability that one of all windows of the recording comes as far by accident, up to which it is a push.
     level: f64,
 }
 
-/// Looks for pushes in what a model leaves on the rows of a design that known contacts are left out of.
+/// Looks for pushes in what a model leaves on the rows of a design that known contacts are left out of; `known` were found in
+/// another look at them.
 pub(in crate::diagnosis) fn look(
     context: &Context<'_>,
     design: &Design,
     left: &Left<'_>,
+    known: &[Pushed],
     level: f64,
 ) -> Look {
     let signals = context.signals;
@@ -31,7 +33,7 @@ pub(in crate::diagnosis) fn look(
     let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
     let tracks: Vec<Track> =
         (0..design.joints).map(|joint| Track::of(context, design, left, joint)).collect();
-    let (pushes, noise) = scan(&tracks, step, level);
+    let (pushes, noise) = scan(&tracks, known, step, level);
     Look { pushes, noise, level }
 }
 

@@ -17,6 +17,7 @@ use crate::diagnosis::rules::{
     LARGEST_PUSHED_FRACTION, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES, SCAN_LEFT_BY_MODEL, SCAN_OWN_STRETCHES,
     SCAN_SUSPECT, SCAN_TOGETHER,
 };
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A window in which joints are pushed.
@@ -38,11 +39,17 @@ pub(in crate::diagnosis) struct Pushed {
 /// Windows in which joints are pushed, most certain first, none next to another; and what the residuals do by themselves.
 ///
 /// `step` is the time from one place to the next, s; `level` the probability of an accident in a whole recording, up to which
-/// a window is a push.
-pub(in crate::diagnosis) fn scan(tracks: &[Track], step: f64, level: f64) -> (Vec<Pushed>, Noise) {
+/// a window is a push; `known` were pushes in another look at these rows, and are judged again.
+pub(in crate::diagnosis) fn scan(
+    tracks: &[Track],
+    known: &[Pushed],
+    step: f64,
+    level: f64,
+) -> (Vec<Pushed>, Noise) {
     let mut scan = Scan::of(tracks, step);
+    scan.suspect(known);
     // A push bends the fit of the model, and what it leaves elsewhere: others are looked for beside it.
-    while scan.add_suspects() {
+    while scan.add_suspect() {
         scan.look();
     }
     // Beside what may be pushes, what all other windows do is what the residual does by itself. What is no push by that is one
@@ -76,6 +83,20 @@ struct Joint<'a> {
     waves: HalfWaves,
     /// What its largest windows do by themselves; `None` where there are too few of all joints.
     law: Option<Law>,
+}
+
+/// How surprising a window of a joint is, and the joint's place among those that are scanned.
+type Surprised = (f64, usize, Window);
+
+/// A window that one joint tells most of.
+struct Suspect {
+    doubt: f64,
+    /// Of the joint alone.
+    surprise: f64,
+    /// Its place among those that are scanned.
+    joint: usize,
+    motion: usize,
+    window: Window,
 }
 
 /// What may be a push.
@@ -177,7 +198,10 @@ impl<'a> Scan<'a> {
         self.chances.known = all.len().max(1);
         for (joint, own) in self.joints.iter_mut().zip(&mut of_joints) {
             let count = own.len() as f64;
-            let law = |common| of(own).map_or(common, |own| own.mean(count, common, SCAN_OWN_STRETCHES));
+            let law = |common: Law| match of(own).filter(|_| count >= SCAN_LEAST_STRETCHES as f64) {
+                Some(own) => own.mean(count, common, SCAN_OWN_STRETCHES),
+                None => common,
+            };
             joint.law = common.map(law);
         }
         of_joints
@@ -193,22 +217,72 @@ impl<'a> Scan<'a> {
         (SCAN_TOGETHER / self.step) as usize
     }
 
-    /// Adds the windows in which one joint does what it does by accident in one of [`SCAN_SUSPECT`] recordings, the surest first,
-    /// none next to another, as long as all of them are an exception; whether there are any.
-    fn add_suspects(&mut self) -> bool {
-        self.fit_laws(Law::of);
-        let mut beyond: Vec<(f64, usize, usize, Window)> = Vec::new();
+    /// Puts what is known to have been a push among the candidates.
+    fn suspect(&mut self, known: &[Pushed]) {
+        let is_scanned = |pushed: &&Pushed| self.joints.iter().any(|joint| joint.track.joint == pushed.joint);
+        let candidate = |pushed: &Pushed| Candidate { pushed: pushed.clone(), felt: Vec::new() };
+        self.candidates = known.iter().filter(is_scanned).map(candidate).collect();
+        if !self.candidates.is_empty() {
+            self.look();
+        }
+    }
+
+    /// Windows in which one joint, or all joints together, do what they do by accident in one of [`SCAN_SUSPECT`] recordings,
+    /// the surest first.
+    fn suspects(&self) -> Vec<Suspect> {
+        let mut of_windows: BTreeMap<[usize; 3], Vec<Surprised>> = BTreeMap::new();
         for (k, joint) in self.joints.iter().enumerate() {
             let Some(law) = joint.law else { continue };
-            let surprise = |(motion, w): (usize, Window)| (law.surprise(w.square()), k, motion, w);
-            let windows = joint.waves.of_targets().map(surprise);
-            beyond.extend(windows.filter(|(surprise, ..)| self.chances.of_one(*surprise) <= SCAN_SUSPECT));
+            for (motion, window) in joint.waves.of_targets() {
+                let surprise = law.surprise(window.square());
+                if surprise > 0.0 {
+                    let at = [motion, window.length, window.from];
+                    of_windows.entry(at).or_default().push((surprise, k, window));
+                }
+            }
         }
-        beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let before = self.candidates.len();
-        let mut pushed: usize = self.candidates.iter().map(|c| c.places().len()).sum();
-        for (_, k, motion, window) in beyond {
-            let joint = &self.joints[k];
+        let mut common = None;
+        let mut suspects = Vec::new();
+        for ([motion, ..], felt) in of_windows {
+            let Some(&(surprise, joint, window)) = felt.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
+                continue;
+            };
+            let mut doubt = self.chances.of_one(surprise);
+            let sum = felt.iter().map(|(surprise, ..)| surprise).sum::<f64>();
+            if felt.len() > 1 && self.chances.of_all(sum) <= SCAN_SUSPECT {
+                let mut deviations = vec![None; self.joints.len()];
+                felt.iter().for_each(|(_, k, window)| deviations[*k] = Some(window.deviation));
+                let common = common.get_or_insert_with(|| self.common());
+                doubt = doubt.min(self.doubt(common, self.lengths[window.length], &deviations));
+            }
+            if doubt <= SCAN_SUSPECT {
+                suspects.push(Suspect { doubt, surprise, joint, motion, window });
+            }
+        }
+        suspects.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.surprise.total_cmp(&a.surprise)));
+        suspects
+    }
+
+    /// How what joints do away from candidates goes together.
+    fn common(&self) -> Common {
+        let waves: Vec<&HalfWaves> = self.joints.iter().map(|joint| &joint.waves).collect();
+        Common::of(&waves, &self.lengths, |(motion, places)| !self.is_near(motion, places))
+    }
+
+    /// Probability that all joints together come as far by accident as they do in a window of so many places.
+    fn doubt(&self, common: &Common, places: usize, felt: &[Option<f64>]) -> f64 {
+        let of_joint = |(joint, felt): (&Joint<'_>, Option<f64>)| Some(joint.law?.surprise(felt?.powi(2)));
+        let alone = common.alone(places, felt);
+        self.chances.of_all(self.joints.iter().zip(alone).filter_map(of_joint).sum())
+    }
+
+    /// Adds the surest suspect that is next to no candidate, as long as all of them are an exception; whether there is one. Of one
+    /// alone: what it bends elsewhere would be a candidate beside it, and a model can make the one of the other.
+    fn add_suspect(&mut self) -> bool {
+        self.fit_laws(Law::of);
+        let pushed: usize = self.candidates.iter().map(|c| c.places().len()).sum();
+        for Suspect { joint, motion, window, .. } in self.suspects() {
+            let joint = &self.joints[joint];
             if pushed as f64 > LARGEST_PUSHED_FRACTION * joint.waves.targets() as f64
                 || self.is_near(motion, joint.waves.places(window))
             {
@@ -217,12 +291,18 @@ impl<'a> Scan<'a> {
             let Some(Refined { square, from, to, edges }) = joint.waves.refined(motion, window) else {
                 continue;
             };
-            pushed += to - from;
-            let (joint, places) = (joint.track.joint, [from, to - 1]);
-            let pushed = Pushed { joint, motion, places, edges, square, doubt: 1.0 };
+            let pushed = Pushed {
+                joint: joint.track.joint,
+                motion,
+                places: [from, to - 1],
+                edges,
+                square,
+                doubt: 1.0,
+            };
             self.candidates.push(Candidate { pushed, felt: Vec::new() });
+            return true;
         }
-        self.candidates.len() > before
+        false
     }
 
     /// Judges the candidates by what all other windows do, and drops those that do not pass a level; whether there were any. Where
@@ -232,15 +312,10 @@ impl<'a> Scan<'a> {
         for (joint, mut others) in self.joints.iter_mut().zip(others) {
             joint.law = joint.law.map(|law| law.with_tail(&mut others));
         }
-        let waves: Vec<&HalfWaves> = self.joints.iter().map(|joint| &joint.waves).collect();
-        let common = Common::of(&waves, &self.lengths, |(motion, places)| !self.is_near(motion, places));
-        for candidate in &mut self.candidates {
-            let of_joint =
-                |(joint, felt): (&Joint<'_>, Option<f64>)| Some(joint.law?.surprise(felt?.powi(2)));
-            let alone = common.alone(candidate.places().len(), &candidate.felt);
-            let surprise = self.joints.iter().zip(alone).filter_map(of_joint).sum();
-            candidate.pushed.doubt = self.chances.of_all(surprise);
-        }
+        let common = self.common();
+        let doubt = |c: &Candidate| self.doubt(&common, c.places().len(), &c.felt);
+        let doubts: Vec<f64> = self.candidates.iter().map(doubt).collect();
+        self.candidates.iter_mut().zip(doubts).for_each(|(c, doubt)| c.pushed.doubt = doubt);
         let before = self.candidates.len();
         self.candidates.retain(|c| c.pushed.doubt <= level);
         self.candidates.len() < before

@@ -120,7 +120,10 @@ pub(in crate::diagnosis) const SCAN_LONGEST: f64 = 2.7;
 pub(in crate::diagnosis) const SCAN_SUSPECT: f64 = 0.05;
 /// Rows that a joint needs to be scanned. Statistics: for the autoregression of its residual.
 pub(in crate::diagnosis) const SCAN_LEAST_ROWS: usize = 60;
-/// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles.
+/// Fewest stretches that the law of largest means is fitted to. Statistics: quartiles; that so few know it badly is counted.
+pub(in crate::diagnosis) const SCAN_FEWEST_STRETCHES: usize = 4;
+/// With fewer stretches a joint has no law of its own, and a recording that of its baseline. Statistics: the scale is known to a
+/// third.
 pub(in crate::diagnosis) const SCAN_LEAST_STRETCHES: usize = 8;
 /// Stretches that count as much as all joints together for the law of one joint. Statistics: size against power in the
 /// tests of `scan`.

@@ -269,13 +269,15 @@ impl<'a> ExtendedModel<'a> {
         columns
     }
 
-    /// What the model with all terms leaves of the torques on the rows of another design of the same motions.
+    /// What the model with all terms leaves of the torques on the rows of another design of the same motions, as it was fitted on
+    /// rows of that window: how the nuisances bend a course over frequency holds up to where they were fitted, and no further.
     pub fn residual_on(&self, design: &Design) -> Vec<f64> {
         let mut residual = design.y.clone();
         let mut subtract = |column: &[f64], x: f64| {
             residual.iter_mut().zip(column).for_each(|(r, c)| *r -= c * x);
         };
-        let chi = &self.slow.fit.chi;
+        let of_window = if design.step == self.slow.design.step { &self.slow } else { &self.fast };
+        let chi = &of_window.fit.chi;
         for (column, &x) in design.columns.iter().zip(chi.iter()) {
             subtract(column, x);
         }
@@ -286,10 +288,10 @@ impl<'a> ExtendedModel<'a> {
         if let Some(more) = more_of_standing_laws(&self.context, design) {
             subtract(&more, 1.0);
         }
-        for (c, column) in self.slow.gains.clone().zip(gain_columns(&self.context, design)) {
+        for (c, column) in of_window.gains.clone().zip(gain_columns(&self.context, design)) {
             subtract(&column, chi[c]);
         }
-        for (term, range) in self.terms.iter().zip(&self.slow.term_columns) {
+        for (term, range) in self.terms.iter().zip(&of_window.term_columns) {
             for (k, column) in self.columns_of(design, term).iter().enumerate() {
                 subtract(column, term.fixed.unwrap_or_else(|| chi[range.start + k]));
             }
