@@ -19,6 +19,7 @@ pub(in crate::diagnosis) mod silent;
 pub(in crate::diagnosis) mod spread;
 pub(in crate::diagnosis) mod squares;
 pub(in crate::diagnosis) mod standing;
+pub(in crate::diagnosis) mod suspects;
 pub(in crate::diagnosis) mod track;
 pub(in crate::diagnosis) mod uneven;
 pub(in crate::diagnosis) mod white;

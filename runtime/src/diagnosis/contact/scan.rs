@@ -7,17 +7,18 @@
 
 use crate::diagnosis::contact::absorbed::{Amplitude, put_beside};
 use crate::diagnosis::contact::common::Common;
-use crate::diagnosis::contact::half_waves::{HalfWaves, Refined, Window, lengths, stretches};
+use crate::diagnosis::contact::half_waves::{HalfWaves, Refined, lengths, stretches};
 use crate::diagnosis::contact::largest::{Chances, Law};
 use crate::diagnosis::contact::memory::Spread;
 use crate::diagnosis::contact::noise::{Noise, Own};
+use crate::diagnosis::contact::suspects::{Suspect, suspects};
 use crate::diagnosis::contact::track::Track;
 use crate::diagnosis::contact::white::{Scratch, White};
 use crate::diagnosis::rules::{
     LARGEST_PUSHED_FRACTION, SCAN_LEAST_ROWS, SCAN_LEAST_STRETCHES, SCAN_LEFT_BY_MODEL, SCAN_OWN_STRETCHES,
-    SCAN_SUSPECT, SCAN_TOGETHER,
+    SCAN_TOGETHER,
 };
-use std::collections::BTreeMap;
+use std::cell::OnceCell;
 use std::ops::Range;
 
 /// A window in which joints are pushed.
@@ -83,20 +84,6 @@ struct Joint<'a> {
     waves: HalfWaves,
     /// What its largest windows do by themselves; `None` where there are too few of all joints.
     law: Option<Law>,
-}
-
-/// How surprising a window of a joint is, and the joint's place among those that are scanned.
-type Surprised = (f64, usize, Window);
-
-/// A window that one joint tells most of.
-struct Suspect {
-    doubt: f64,
-    /// Of the joint alone.
-    surprise: f64,
-    /// Its place among those that are scanned.
-    joint: usize,
-    motion: usize,
-    window: Window,
 }
 
 /// What may be a push.
@@ -227,40 +214,15 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Windows in which one joint, or all joints together, do what they do by accident in one of [`SCAN_SUSPECT`] recordings,
-    /// the surest first.
+    /// What may be pushes besides, the surest first.
     fn suspects(&self) -> Vec<Suspect> {
-        let mut of_windows: BTreeMap<[usize; 3], Vec<Surprised>> = BTreeMap::new();
-        for (k, joint) in self.joints.iter().enumerate() {
-            let Some(law) = joint.law else { continue };
-            for (motion, window) in joint.waves.of_targets() {
-                let surprise = law.surprise(window.square());
-                if surprise > 0.0 {
-                    let at = [motion, window.length, window.from];
-                    of_windows.entry(at).or_default().push((surprise, k, window));
-                }
-            }
-        }
-        let mut common = None;
-        let mut suspects = Vec::new();
-        for ([motion, ..], felt) in of_windows {
-            let Some(&(surprise, joint, window)) = felt.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
-                continue;
-            };
-            let mut doubt = self.chances.of_one(surprise);
-            let sum = felt.iter().map(|(surprise, ..)| surprise).sum::<f64>();
-            if felt.len() > 1 && self.chances.of_all(sum) <= SCAN_SUSPECT {
-                let mut deviations = vec![None; self.joints.len()];
-                felt.iter().for_each(|(_, k, window)| deviations[*k] = Some(window.deviation));
-                let common = common.get_or_insert_with(|| self.common());
-                doubt = doubt.min(self.doubt(common, self.lengths[window.length], &deviations));
-            }
-            if doubt <= SCAN_SUSPECT {
-                suspects.push(Suspect { doubt, surprise, joint, motion, window });
-            }
-        }
-        suspects.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.surprise.total_cmp(&a.surprise)));
-        suspects
+        let joints: Vec<(Option<Law>, &HalfWaves)> =
+            self.joints.iter().map(|joint| (joint.law, &joint.waves)).collect();
+        let common = OnceCell::new();
+        let together = |places: usize, felt: &[Option<f64>]| {
+            self.doubt(common.get_or_init(|| self.common()), places, felt)
+        };
+        suspects(&joints, self.chances, together)
     }
 
     /// How what joints do away from candidates goes together.

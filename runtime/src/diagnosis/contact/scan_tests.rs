@@ -188,6 +188,19 @@ fn what_joints_feel_at_a_time_adds_up() {
 }
 
 #[test]
+fn what_no_joint_tells_alone_all_joints_may() {
+    let mut rng = Pcg64::seed_from_u64(25);
+    let once = |_| {
+        let mut tracks = noise(&mut rng);
+        tracks.iter_mut().for_each(|track| push(track, 10.0, 0.5, 1.4));
+        usize::from(!scan(&tracks, &[], STEP, LEVEL).0.is_empty())
+    };
+    let found = (0..60).map(once).sum::<usize>();
+    println!("{found} of 60");
+    assert!(found >= 40, "{found} of 60");
+}
+
+#[test]
 fn what_a_model_takes_over_of_a_push_is_counted() {
     // A column of the model that is half of every push at its time.
     let mut rng = Pcg64::seed_from_u64(19);
