@@ -20,7 +20,7 @@ use super::search::free_form::slow_part;
 use super::search::state::Search;
 use super::search::tangents::{along_starts, tangents};
 use super::settings::Settings;
-use crate::effects::{EffectKind, EffectTerm, Place};
+use crate::effects::{EffectKind, EffectTerm, Place, SmoothingWindow};
 use crate::model::Model;
 
 /// Windows in which something outside seems to have pushed the robot.
@@ -151,7 +151,7 @@ fn pushed_in_motion(
         beside.extend(dense_columns(context, &outside, ripple, Place::Joint(joint), &orders, false));
     }
     let left = Left {
-        residual: &search.model.residual_on(&outside),
+        residual: &search.model.residual_on(&outside, SmoothingWindow::Fast),
         beside: &beside,
         fitted: &search.model.fitted_on(&outside),
         silent: &Silent::of(model.robot(), &laws(&search.model)),
@@ -159,7 +159,7 @@ fn pushed_in_motion(
     let look = moving::look(context, &outside, &left, seen, level);
     let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
     let design = all.as_ref().unwrap_or(&outside);
-    let residual = search.model.residual_on(design);
+    let residual = search.model.residual_on(design, SmoothingWindow::Fast);
     let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
     let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
     (confirmed, moving::seen(&around, &look), look.pushes)
@@ -199,7 +199,7 @@ fn uncertain(model: &ExtendedModel<'_>, design: &Design) -> Vec<Vec<f64>> {
 /// Whether contacts still stand out of what the model with its effects leaves.
 fn remain(contacts: &Contacts, prepared: &Prepared, search: &Search<'_>) -> bool {
     let aligned = &prepared.aligned;
-    let residual = search.model.residual_on(aligned);
+    let residual = search.model.residual_on(aligned, SmoothingWindow::Slow);
     let sigma = &search.model.slow.sigma;
     contact_search::remain(contacts, aligned, &residual, sigma, &prepared.motions.signals)
 }

@@ -182,7 +182,6 @@ mod tests {
         doubts.sort_by(f64::total_cmp);
         for share in [0.1, 0.02, 0.005] {
             let said = doubts[(share * runs as f64) as usize];
-            println!("{share}: {said}");
             assert!((0.5 * share..share / least).contains(&said), "{share}: {said}");
         }
     }

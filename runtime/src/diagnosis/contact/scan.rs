@@ -48,7 +48,7 @@ pub(in crate::diagnosis) fn scan(
     level: f64,
 ) -> (Vec<Pushed>, Noise) {
     let mut scan = Scan::of(tracks, step);
-    scan.suspect(known);
+    scan.look_again_at(known);
     // A push bends the fit of the model, and what it leaves elsewhere: others are looked for beside it.
     while scan.add_suspect() {
         scan.look();
@@ -95,6 +95,11 @@ struct Candidate {
 }
 
 impl Candidate {
+    /// Before any look at what joints feel of it.
+    fn unfelt(pushed: Pushed) -> Self {
+        Self { pushed, felt: Vec::new() }
+    }
+
     fn places(&self) -> Range<usize> {
         self.pushed.places[0]..self.pushed.places[1] + 1
     }
@@ -185,10 +190,8 @@ impl<'a> Scan<'a> {
         self.chances.known = all.len().max(1);
         for (joint, own) in self.joints.iter_mut().zip(&mut of_joints) {
             let count = own.len() as f64;
-            let law = |common: Law| match of(own).filter(|_| count >= SCAN_LEAST_STRETCHES as f64) {
-                Some(own) => own.mean(count, common, SCAN_OWN_STRETCHES),
-                None => common,
-            };
+            let own = of(own).filter(|_| count >= SCAN_LEAST_STRETCHES as f64);
+            let law = |common| own.map_or(common, |own: Law| own.mean(count, common, SCAN_OWN_STRETCHES));
             joint.law = common.map(law);
         }
         of_joints
@@ -205,10 +208,9 @@ impl<'a> Scan<'a> {
     }
 
     /// Puts what is known to have been a push among the candidates.
-    fn suspect(&mut self, known: &[Pushed]) {
+    fn look_again_at(&mut self, known: &[Pushed]) {
         let is_scanned = |pushed: &&Pushed| self.joints.iter().any(|joint| joint.track.joint == pushed.joint);
-        let candidate = |pushed: &Pushed| Candidate { pushed: pushed.clone(), felt: Vec::new() };
-        self.candidates = known.iter().filter(is_scanned).map(candidate).collect();
+        self.candidates = known.iter().filter(is_scanned).cloned().map(Candidate::unfelt).collect();
         if !self.candidates.is_empty() {
             self.look();
         }
@@ -261,7 +263,7 @@ impl<'a> Scan<'a> {
                 square,
                 doubt: 1.0,
             };
-            self.candidates.push(Candidate { pushed, felt: Vec::new() });
+            self.candidates.push(Candidate::unfelt(pushed));
             return true;
         }
         false

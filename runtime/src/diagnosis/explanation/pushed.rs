@@ -12,7 +12,7 @@ use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::search::extended_model::ExtendedModel;
 use crate::diagnosis::search::term::Accepted;
-use crate::effects::ContactForce;
+use crate::effects::{ContactForce, SmoothingWindow};
 use crate::model::JointIndex;
 
 /// The standard model, which knows of no push, on all rows of which the curves of the `model` say something.
@@ -41,7 +41,7 @@ pub(in crate::diagnosis) fn aware(
     contacts: &Contacts,
     mut held: HeldOutSquares,
 ) -> HeldOutSquares {
-    let residual = model.residual_on(all);
+    let residual = model.residual_on(all, SmoothingWindow::Slow);
     let outside = &model.slow.design;
     for (segment, left, whole) in &mut held.by_segment {
         for joint in 0..all.joints {

@@ -269,14 +269,15 @@ impl<'a> ExtendedModel<'a> {
         columns
     }
 
-    /// What the model with all terms leaves of the torques on the rows of another design of the same motions, as it was fitted on
-    /// rows of that window: how the nuisances bend a course over frequency holds up to where they were fitted, and no further.
-    pub fn residual_on(&self, design: &Design) -> Vec<f64> {
+    /// What the model with all terms leaves of the torques on the rows of another design of the same motions, of this window, as it
+    /// was fitted on its own rows of it: how the nuisances bend a course over frequency holds up to where they were fitted, and no
+    /// further.
+    pub fn residual_on(&self, design: &Design, window: SmoothingWindow) -> Vec<f64> {
         let mut residual = design.y.clone();
         let mut subtract = |column: &[f64], x: f64| {
             residual.iter_mut().zip(column).for_each(|(r, c)| *r -= c * x);
         };
-        let of_window = if design.step == self.slow.design.step { &self.slow } else { &self.fast };
+        let of_window = self.regression(window);
         let chi = &of_window.fit.chi;
         for (column, &x) in design.columns.iter().zip(chi.iter()) {
             subtract(column, x);
