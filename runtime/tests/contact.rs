@@ -68,6 +68,18 @@ fn pushes_on_single_joints_are_found_with_their_windows_and_torques() {
 }
 
 #[test]
+fn a_push_that_lasts_as_long_as_a_stroke_is_no_law_over_its_state() {
+    let robot = planar();
+    let name = recorded(&robot, vec![], 1)[0].name.clone();
+    for (window, joint, largest) in [([2.6, 4.2], 2, 0.8), ([4.0, 5.5], 1, -1.5)] {
+        let pushed = on_joint(&name, window, joint, largest);
+        let diagnosis = diagnosed(&robot, &recorded(&robot, vec![pushed], 3), &[]);
+        let seen = &contact(&diagnosis).contacts[0];
+        assert!(seen.window[0] < window[1] && seen.window[1] > window[0], "{seen:?}");
+    }
+}
+
+#[test]
 fn joints_that_feel_one_push_are_told_together() {
     let robot = planar();
     let name = recorded(&robot, vec![], 1)[0].name.clone();

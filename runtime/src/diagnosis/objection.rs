@@ -1,6 +1,7 @@
 //! What is said against a finding by evidence that the search has not seen.
 
 use crate::diagnosis::outcome::Finding;
+use crate::diagnosis::search::term::Accepted;
 use crate::effects::{EffectKind, Place};
 
 /// A law at a place that is not to be named.
@@ -13,6 +14,11 @@ pub(crate) struct Objection {
 }
 
 impl Objection {
+    /// To a law of the model that cannot be what it was taken for.
+    pub(super) fn to_term(term: &Accepted) -> Self {
+        Self { effect: term.effect, place: term.place, still_possible: false }
+    }
+
     /// To a finding.
     pub fn to(finding: &Finding, still_possible: bool) -> Self {
         Self { effect: finding.term.effect, place: finding.term.place, still_possible }

@@ -3,20 +3,23 @@
 
 use super::candidates::trial::dense_columns;
 use super::contact::felt::Around;
+use super::contact::in_place::half_wave_in_place;
 use super::contact::moving;
 use super::contact::scan::Pushed;
 use super::contact::search::{self as contact_search, Contacts};
 use super::contact::silent::Silent;
 use super::contact::standing;
 use super::contact::track::Left;
-use super::error::DiagnosisError;
+use super::error::{DiagnosisError, SingularDesign};
 use super::explanation::finding::terms;
+use super::judging::passage::{Elsewhere, Passage};
 use super::judging::regression::Regression;
 use super::preparation::Prepared;
 use super::rows::design::Design;
 use super::rules::{MOSTLY_UNEXPLAINED, SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
 use super::search::extended_model::ExtendedModel;
 use super::search::free_form::slow_part;
+use super::search::round::Tie;
 use super::search::state::Search;
 use super::search::tangents::{along_starts, tangents};
 use super::settings::Settings;
@@ -39,6 +42,12 @@ pub(super) struct Pushes {
     scanned: bool,
     /// What they were before a law took the place of some.
     explained: Option<Box<Pushes>>,
+    /// Those that have taken the place of laws which show in one passage only, by the fast rows.
+    in_place_of_laws: Vec<Pushed>,
+    /// The same with what the last look says of them.
+    of_passages: Option<Contacts>,
+    /// Laws of which the rest of the motion does not tell whether they are there instead.
+    not_told: Vec<Tie>,
 }
 
 impl Pushes {
@@ -53,12 +62,16 @@ impl Pushes {
             seen: Vec::new(),
             scanned: false,
             explained: None,
+            in_place_of_laws: Vec::new(),
+            of_passages: None,
+            not_told: Vec::new(),
         })
     }
 
     /// Those whose rows are not used.
     pub fn set_aside(&self) -> Option<Contacts> {
-        Contacts::joined(self.contacts.clone().filter(|_| self.set_aside), self.of_single_joints.clone())
+        let contacts = self.contacts.clone().filter(|_| self.set_aside);
+        Contacts::joined(contacts, Contacts::joined(self.of_single_joints.clone(), self.of_passages.clone()))
     }
 
     /// How many were seen by single joints.
@@ -97,15 +110,14 @@ impl Pushes {
                 return true;
             }
         }
-        if self.scanned && self.of_single_joints.is_none() && self.contacts.is_none() {
+        let all = [&self.of_single_joints, &self.contacts, &self.of_passages];
+        if self.scanned && all.into_iter().all(Option::is_none) {
             return false;
         }
         // Once what was found is no longer among the rows, they show what else remains on a joint.
         let beside_laws = !is_alone(search) || self.scanned && is_unexplained(&search.model.slow);
         let level = if beside_laws { SCAN_LEVEL_BESIDE_LAWS } else { SCAN_LEVEL };
-        let before = (self.contacts.as_ref(), &self.seen[..]);
-        let (confirmed, found, seen) = pushed_in_motion(model, prepared, before, (search, level), settings);
-        self.seen = seen;
+        let (confirmed, found) = self.in_motion((model, prepared), (search, level), settings);
         let refuted = self.contacts.is_some() && confirmed.is_none();
         self.contacts = confirmed;
         if self.scanned || !settings.single_joint_contacts {
@@ -127,42 +139,87 @@ impl Pushes {
         let rest = standing::at_rest(context, &laws, &prepared.moving.friction_known, &motions.slowest);
         Contacts::joined(
             Contacts::joined(self.contacts.clone(), self.of_single_joints.clone()),
-            rest.contacts(motions.signals.len()),
+            Contacts::joined(self.of_passages.clone(), rest.contacts(motions.signals.len())),
         )
     }
-}
 
-/// Of the contacts that are known, those that what the model with its effects leaves confirms; the pushes that stand out
-/// of it besides, on single joints or several; and the windows that these were seen in, as the last look has `seen` others.
-fn pushed_in_motion(
-    model: &dyn Model,
-    prepared: &Prepared,
-    (contacts, seen): (Option<&Contacts>, &[Pushed]),
-    (search, level): (&Search<'_>, f64),
-    settings: &Settings,
-) -> (Option<Contacts>, Option<Contacts>, Vec<Pushed>) {
-    let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
-    let context = &search.model.context;
-    let mut beside = uncertain(&search.model, &outside);
-    // A wave over the angle of a joint that creeps comes and goes as slowly as a push.
-    let ripple = EffectKind::TorqueRipple;
-    for (joint, lines) in search.lines_beside_model(settings) {
-        let orders: Vec<f64> = lines.iter().map(|line| line.order).collect();
-        beside.extend(dense_columns(context, &outside, ripple, Place::Joint(joint), &orders, false));
+    /// Of the contacts that are known, those that what the model with its effects leaves confirms; and the pushes that stand out
+    /// of it besides, on single joints or several.
+    fn in_motion(
+        &mut self,
+        (model, prepared): (&dyn Model, &Prepared),
+        (search, level): (&Search<'_>, f64),
+        settings: &Settings,
+    ) -> (Option<Contacts>, Option<Contacts>) {
+        let contacts = self.contacts.as_ref();
+        let outside = prepared.motions.rows(model, contacts.map(|c| c.windows.as_slice())).fast;
+        let context = &search.model.context;
+        let mut beside = uncertain(&search.model, &outside);
+        // A wave over the angle of a joint that creeps comes and goes as slowly as a push.
+        let ripple = EffectKind::TorqueRipple;
+        for (joint, lines) in search.lines_beside_model(settings) {
+            let orders: Vec<f64> = lines.iter().map(|line| line.order).collect();
+            beside.extend(dense_columns(context, &outside, ripple, Place::Joint(joint), &orders, false));
+        }
+        let left = Left {
+            residual: &search.model.residual_on(&outside, SmoothingWindow::Fast),
+            beside: &beside,
+            fitted: &search.model.fitted_on(&outside),
+            silent: &Silent::of(model.robot(), &laws(&search.model)),
+        };
+        let certain = &self.in_place_of_laws;
+        let look = moving::look(context, &outside, &left, (&self.seen, certain), level);
+        let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
+        let design = all.as_ref().unwrap_or(&outside);
+        let residual = search.model.residual_on(design, SmoothingWindow::Fast);
+        let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
+        let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
+        self.of_passages = moving::certain(&around, &look, certain);
+        let found = moving::seen(&around, &look);
+        self.seen = look.pushes;
+        (confirmed, found)
     }
-    let left = Left {
-        residual: &search.model.residual_on(&outside, SmoothingWindow::Fast),
-        beside: &beside,
-        fitted: &search.model.fitted_on(&outside),
-        silent: &Silent::of(model.robot(), &laws(&search.model)),
-    };
-    let look = moving::look(context, &outside, &left, seen, level);
-    let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
-    let design = all.as_ref().unwrap_or(&outside);
-    let residual = search.model.residual_on(design, SmoothingWindow::Fast);
-    let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
-    let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
-    (confirmed, moving::seen(&around, &look), look.pushes)
+
+    /// Puts pushes in the place of laws that show in one passage only, where half a wave explains nearly as much; whether there are
+    /// any more than there were.
+    ///
+    /// # Errors
+    /// [`SingularDesign`] where the model without a law has no fit.
+    pub fn take_the_place_of(
+        &mut self,
+        laws: &[(usize, Passage)],
+        search: &Search<'_>,
+    ) -> Result<bool, SingularDesign> {
+        let before = self.in_place_of_laws.len();
+        let (model, slow, fast) = (&search.model, &search.model.slow, &search.model.fast.design);
+        for (k, passage) in laws {
+            let term = &model.terms[*k];
+            let wave = half_wave_in_place(slow, slow.term_columns[*k].clone(), &term.shows_on, passage)?;
+            let Some(wave) = wave else { continue };
+            let finer = slow.design.spacing(wave.motion) / fast.spacing(wave.motion);
+            let push = wave.as_push(finer.max(1), 1.0 - term.confidence);
+            // Laws of several joints may have followed one push.
+            if !self.in_place_of_laws.iter().any(|other| other.overlaps(&push)) {
+                self.in_place_of_laws.push(push);
+            }
+            if passage.elsewhere == Elsewhere::Untold {
+                self.not_told.push(Tie {
+                    effects: [EffectKind::Contact, term.effect],
+                    places: [Place::Joint(wave.joint), term.place],
+                });
+            }
+        }
+        if self.in_place_of_laws.len() == before {
+            return Ok(false);
+        }
+        self.of_passages = Some(moving::set_aside(&model.context.signals, fast, &self.in_place_of_laws));
+        Ok(true)
+    }
+
+    /// Laws that the motion does not tell from pushes.
+    pub fn not_told(&self) -> &[Tie] {
+        &self.not_told
+    }
 }
 
 /// Whether there are no laws beside pushes, found or not told apart or kept.

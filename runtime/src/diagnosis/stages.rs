@@ -2,10 +2,11 @@
 
 use super::contact::search::Contacts;
 use super::contact::standing;
-use super::error::DiagnosisError;
+use super::error::{DiagnosisError, SingularDesign};
 use super::explanation::explain::{Ended, explain, small};
 use super::explanation::standard_model::StandardModelFit;
 use super::explanation::standstill;
+use super::judging::passage::Elsewhere;
 use super::large_error::LargeError;
 use super::objection::Objection;
 use super::outcome::{Diagnosis, Finding, Sampling};
@@ -144,12 +145,17 @@ impl<'a> Course<'a> {
             // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
             let Some(report) = self.searched(&mut begun.search, pushes, settings)? else { return Ok(None) };
 
-            // 5. Numbers, errors, curves, sentences.
+            // 5. What shows in one passage only may be a push.
+            let Some(mut objected) = self.refuted(&begun.search, pushes, settings)? else { return Ok(None) };
+
+            // 6. Numbers, errors, curves, sentences.
             self.progress.at(0.92, "explanations");
             let mut diagnosis = self.explained(&mut begun, report, pushes, settings)?;
 
-            // 6. What harms, or other evidence speaks against, is left out, and the search goes on.
-            let mut objected = harmful(&diagnosis);
+            // 7. What harms, or other evidence speaks against, is left out, and the search goes on.
+            if objected.is_empty() {
+                objected = harmful(&diagnosis);
+            }
             if objected.is_empty() {
                 objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
             }
@@ -229,6 +235,25 @@ impl<'a> Course<'a> {
         Ok((!differ).then_some(report))
     }
 
+    /// Laws that show in one passage only, and that the rest of the motion refutes; `None` where a push explains one of those that
+    /// show in one passage nearly as well.
+    fn refuted(
+        &self,
+        search: &Search<'_>,
+        pushes: &mut Pushes,
+        settings: &Settings,
+    ) -> Result<Option<Vec<Objection>>, SingularDesign> {
+        if self.known.is_some() {
+            return Ok(Some(Vec::new()));
+        }
+        let laws = search.of_single_passages()?;
+        if settings.single_joint_contacts && pushes.take_the_place_of(&laws, search)? {
+            return Ok(None);
+        }
+        let refuted = laws.iter().filter(|(_, passage)| passage.elsewhere == Elsewhere::Refutes);
+        Ok(Some(refuted.map(|(k, _)| Objection::to_term(&search.model.terms[*k])).collect()))
+    }
+
     fn explained(
         &self,
         begun: &mut Begun<'_>,
@@ -247,6 +272,7 @@ impl<'a> Course<'a> {
             rate: prepared.rate.as_ref(),
             sampling: begun.sampling.clone(),
         };
+        search.ties.extend(pushes.not_told());
         let small = small(search, settings);
         search.model = search.model.without_nuisances()?;
         let mut diagnosis = Diagnosis { small, ..explain(search, ended, settings)? };

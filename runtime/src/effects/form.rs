@@ -237,7 +237,9 @@ impl Form {
     /// Joints (0-based) that such an effect at a place is named on; empty for the whole robot.
     pub fn named_joints(self, robot: &Robot, place: Place) -> Vec<usize> {
         match self {
-            Self::Joint(_) | Self::Compliance(_) | Self::Free => place.joint().into_iter().collect(),
+            Self::Joint(_) | Self::Compliance(_) | Self::Free | Self::Window => {
+                place.joint().into_iter().collect()
+            }
             Self::Heard(_) => place.hears().map(|[own, _]| own).into_iter().collect(),
             Self::Coupled => place.pair().into_iter().flatten().collect(),
             Self::Sensitivity(law) if law.together() => Vec::new(),
@@ -250,7 +252,6 @@ impl Form {
                 place.link().and_then(|frame| law.named_joint(robot, frame)).into_iter().collect()
             }
             Self::User => place.law().map(UserLaw::joint).into_iter().collect(),
-            Self::Window => Vec::new(),
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::diagnosis::contact::force::{JointRow, UnitForces, as_torques};
 use crate::diagnosis::contact::noise::Noise;
 use crate::diagnosis::contact::squares::{Squares, mean_beside};
 use crate::diagnosis::contact::windows::told;
+use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{
@@ -70,6 +71,13 @@ impl Felt {
         noise.doubt(self.joints.iter().map(|(joint, _, row)| (*joint, row.residual / row.sigma)))
     }
 
+    /// Probability that a joint comes as far by accident in these places alone.
+    pub fn doubt_of(&self, joint: usize) -> f64 {
+        let of_joint = self.joints.iter().find(|(j, ..)| *j == joint);
+        let square = of_joint.map_or(0.0, |(_, _, row)| (row.residual / row.sigma).powi(2));
+        Evidence::fisher(square, 1, f64::INFINITY).p_value
+    }
+
     /// Torques of unit forces at the origin of a frame, in the middle.
     fn unit(&self, around: &Around<'_>, frame: usize) -> UnitForces {
         let s = &around.context.signals[self.motion];
@@ -105,14 +113,12 @@ impl Felt {
 }
 
 /// A push as a force on a link where at least two joints feel it and one force explains them all; else as the torques of
-/// the joints that feel it, among them the one it was `found` on; and the probability that it is an accident, no less than these
-/// torques allow. `None` where no joint has rows there.
+/// the joints that feel it, among them the one it was `found` on. `None` where no joint has rows there.
 pub(in crate::diagnosis) fn wrench(
     around: &Around<'_>,
     felt: &Felt,
-    noise: &Noise,
     (found, edges, doubt): (usize, [f64; 2], f64),
-) -> Option<(ContactForce, f64)> {
+) -> Option<ContactForce> {
     let s = &around.context.signals[felt.motion];
     let spacing = around.design.spacing(felt.motion);
     let means = felt.means();
@@ -125,8 +131,6 @@ pub(in crate::diagnosis) fn wrench(
             sigma: row.sigma.hypot(SCAN_EDGE * row.residual),
         })
         .collect();
-    // No surer than what is told of it: the sizes of its torques over their standard deviations.
-    let doubt = doubt.max(felt.doubt(noise));
     let many = torques.len();
     let mut push = as_torques(
         around.context.model.robot(),
@@ -139,7 +143,7 @@ pub(in crate::diagnosis) fn wrench(
     if many >= 2 {
         put_force(around, felt, &means, &mut push);
     }
-    (many > 0).then_some((push, doubt))
+    (many > 0).then_some(push)
 }
 
 /// The outermost link on which a force explains what all joints feel as well as on any other, where it does.

@@ -7,6 +7,7 @@ pub(in crate::diagnosis) mod curves;
 pub(in crate::diagnosis) mod felt;
 pub(in crate::diagnosis) mod force;
 pub(in crate::diagnosis) mod half_waves;
+pub(in crate::diagnosis) mod in_place;
 pub(in crate::diagnosis) mod largest;
 pub(in crate::diagnosis) mod memory;
 pub(in crate::diagnosis) mod moving;

@@ -106,6 +106,11 @@ impl Candidate {
 }
 
 impl Pushed {
+    /// Whether both have a place in common.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.is_near(other.motion, other.places, 0)
+    }
+
     /// Whether places of a motion are next to it.
     fn is_near(&self, motion: usize, [from, to]: [usize; 2], gap: usize) -> bool {
         self.motion == motion && from <= self.places[1] + gap && self.places[0] <= to + gap

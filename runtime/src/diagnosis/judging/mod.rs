@@ -13,6 +13,7 @@ pub(in crate::diagnosis) mod judge;
 mod judge_tests;
 mod lag_products;
 pub(in crate::diagnosis) mod partial_regression;
+pub(in crate::diagnosis) mod passage;
 pub(in crate::diagnosis) mod prediction;
 pub(in crate::diagnosis) mod projection;
 pub(in crate::diagnosis) mod regression;

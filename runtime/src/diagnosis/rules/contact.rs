@@ -83,6 +83,9 @@ pub(in crate::diagnosis) const SCAN_KNOTS: [usize; 2] = [2, 8];
 /// Loads this far apart in time, s, are borne twice. Mechanics: a stroke's acceleration takes no longer, and what is borne for
 /// longer is seen at its beginning and at its end.
 pub(in crate::diagnosis) const PASSAGE: f64 = 1.0;
+/// A law is refuted by the rest of the motion where its amplitudes are by accident as far from those of all motion there with less
+/// than this probability. Statistics: the usual 1 %, of laws that the rest does not show by itself.
+pub(in crate::diagnosis) const REFUTED: f64 = 0.01;
 /// Length of the stretches whose largest means the law is fitted to, s. Statistics: a dozen of them in a recording of
 /// half a minute, each with many independent means.
 pub(in crate::diagnosis) const SCAN_STRETCH: f64 = 2.0;

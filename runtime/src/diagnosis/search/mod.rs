@@ -21,6 +21,7 @@ pub(in crate::diagnosis) mod round;
 pub(in crate::diagnosis) mod run;
 pub(in crate::diagnosis) mod select;
 mod sharpen;
+pub(in crate::diagnosis) mod single_passage;
 pub(in crate::diagnosis) mod small_law;
 pub(in crate::diagnosis) mod standing;
 pub(in crate::diagnosis) mod state;

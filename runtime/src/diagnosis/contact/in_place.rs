@@ -1,0 +1,139 @@
+//! A push in the place of a law that shows in one passage only.
+
+use crate::diagnosis::candidates::trial::Trial;
+use crate::diagnosis::contact::scan::Pushed;
+use crate::diagnosis::error::SingularDesign;
+use crate::diagnosis::judging::passage::Passage;
+use crate::diagnosis::judging::regression::Regression;
+use crate::diagnosis::rows::design::Design;
+use crate::diagnosis::rules::{NEARLY_AS_MUCH, SCAN_EDGE, SCAN_LENGTHS, SCAN_SHORTEST, SCAN_STEPS};
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// Half a wave on joints at the same time.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::diagnosis) struct HalfWave {
+    /// The one that tells most of it, 0-based.
+    pub joint: usize,
+    pub motion: usize,
+    /// On the grid of the rows of the regression.
+    pub places: Range<usize>,
+    /// Squares that it takes away, in units of the noise.
+    pub gain: f64,
+}
+
+impl HalfWave {
+    /// As a push on a grid of rows that is so many times finer, which is an accident with this probability.
+    pub fn as_push(&self, finer: usize, doubt: f64) -> Pushed {
+        // A push need not be half a wave.
+        let edge = SCAN_EDGE * (finer * self.places.len()) as f64;
+        Pushed {
+            joint: self.joint,
+            motion: self.motion,
+            places: [finer * self.places.start, finer * self.places.end],
+            edges: [edge; 2],
+            square: self.gain,
+            doubt,
+        }
+    }
+}
+
+/// The half wave within a passage, with an amplitude of its own on each of these joints, that explains most, where that is nearly
+/// as much as the law of these columns does.
+///
+/// # Errors
+/// [`SingularDesign`] where there is no fit without the law.
+pub(in crate::diagnosis) fn half_wave_in_place(
+    regression: &Regression,
+    law: Range<usize>,
+    joints: &[usize],
+    passage: &Passage,
+) -> Result<Option<HalfWave>, SingularDesign> {
+    let (design, fit) = regression.without(law)?;
+    let of_law = fit.weighted_squares(&design) - regression.fit.weighted_squares(&regression.design);
+    let mut best: Option<HalfWave> = None;
+    for places in windows(&design, passage) {
+        let columns =
+            joints.iter().map(|&j| vec![(j, on_rows(&design, j, passage.motion, &places))]).collect();
+        let mut trial = Trial::new(&design, Vec::new(), columns);
+        trial.needed = 1;
+        let Some((amplitude, gain)) = fit.project_out(&trial).and_then(|part| part.solve_beside(&[])) else {
+            continue;
+        };
+        if best.as_ref().is_none_or(|best| gain > best.gain) {
+            let size = |k: usize| amplitude[k].abs() / regression.sigma[joints[k]];
+            let most = (0..joints.len()).max_by(|a, b| size(*a).total_cmp(&size(*b)));
+            let Some(joint) = most.map(|k| joints[k]) else { continue };
+            best = Some(HalfWave { joint, motion: passage.motion, places, gain });
+        }
+    }
+    Ok(best.filter(|wave| wave.gain >= NEARLY_AS_MUCH * of_law))
+}
+
+/// Windows of many lengths within a passage.
+fn windows(design: &Design, passage: &Passage) -> Vec<Range<usize>> {
+    let mut lengths: Vec<usize> = SCAN_LENGTHS
+        .iter()
+        .map(|length| ((length / design.step).round() as usize).max(SCAN_SHORTEST))
+        .filter(|length| *length <= passage.places.len())
+        .collect();
+    lengths.dedup();
+    let of_length = |length: usize| {
+        let last = passage.places.end - length;
+        let from = (passage.places.start..=last).step_by((length / SCAN_STEPS).max(1));
+        from.map(move |from| from..from + length)
+    };
+    lengths.into_iter().flat_map(of_length).collect()
+}
+
+/// Half a wave over places of a motion on the rows of a joint.
+fn on_rows(design: &Design, joint: usize, motion: usize, places: &Range<usize>) -> Vec<f64> {
+    let value = |r: usize| {
+        let place = design.place(r);
+        if design.rows[r].signal != motion || !places.contains(&place) {
+            return 0.0;
+        }
+        (PI * ((place - places.start) as f64 + 0.5) / places.len() as f64).sin()
+    };
+    design.of_joint(joint).map(value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::judging::passage::Elsewhere;
+    use crate::diagnosis::judging::testing::correlated;
+    use crate::testing::normal;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64;
+
+    const ROWS: usize = 500;
+
+    /// What takes the place, on two joints, of a law on the first that is `torque` of each row of one motion.
+    fn in_place_of(torque: impl Fn(usize) -> f64) -> Option<HalfWave> {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let mut columns: Vec<Vec<f64>> = (0..2).map(|_| correlated(&mut rng, 2 * ROWS, 0.9)).collect();
+        columns.push((0..2 * ROWS).map(|r| if r < ROWS { torque(r) } else { 0.0 }).collect());
+        let y = (0..2 * ROWS).map(|r| columns[0][r] + columns[2][r] + 0.2 * normal(&mut rng)).collect();
+        let design = Design::made_up(2, &[(0, true)], ROWS, columns, y);
+        let regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
+        let passage = Passage { motion: 0, places: 180..310, elsewhere: Elsewhere::Untold };
+        half_wave_in_place(&regression, 2..3, &[0, 1], &passage).expect("regular")
+    }
+
+    #[test]
+    fn what_leans_once_is_half_a_wave() {
+        let plateau = |r: usize| if (200..280).contains(&r) { 1.0 } else { 0.0 };
+        let wave = in_place_of(plateau).expect("a half wave makes four fifths of a plateau");
+        assert_eq!((wave.joint, wave.motion), (0, 0));
+        assert!(wave.places.start.abs_diff(195) <= 15 && wave.places.end.abs_diff(285) <= 15, "{wave:?}");
+        let push = wave.as_push(2, 0.01);
+        assert_eq!(push.places, [2 * wave.places.start, 2 * wave.places.end]);
+    }
+
+    #[test]
+    fn what_swings_is_none() {
+        let swings = |r: usize| if (200..280).contains(&r) { (0.4 * r as f64).sin() } else { 0.0 };
+        assert_eq!(in_place_of(swings), None);
+    }
+}
