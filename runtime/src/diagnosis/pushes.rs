@@ -190,14 +190,14 @@ impl Pushes {
         laws: &[(usize, Passage)],
         search: &Search<'_>,
     ) -> Result<bool, SingularDesign> {
-        let before = self.in_place_of_laws.len();
+        let (before, longest) = (self.in_place_of_laws.len(), search.longest_push());
         let (model, slow, fast) = (&search.model, &search.model.slow, &search.model.fast.design);
         for (k, passage) in laws {
             let term = &model.terms[*k];
-            let wave = half_wave_in_place(slow, slow.term_columns[*k].clone(), &term.shows_on, passage)?;
+            let wave = half_wave_in_place(slow, slow.term_columns[*k].clone(), &term.shows_on, longest)?;
             let Some(wave) = wave else { continue };
-            let finer = slow.design.spacing(wave.motion) / fast.spacing(wave.motion);
-            let push = wave.as_push(finer.max(1), 1.0 - term.confidence);
+            let spacings = [&slow.design, fast].map(|design| design.spacing(wave.motion));
+            let push = wave.as_push(spacings, 1.0 - term.confidence);
             // Laws of several joints may have followed one push.
             if !self.in_place_of_laws.iter().any(|other| other.overlaps(&push)) {
                 self.in_place_of_laws.push(push);
@@ -212,7 +212,7 @@ impl Pushes {
         if self.in_place_of_laws.len() == before {
             return Ok(false);
         }
-        self.of_passages = Some(moving::set_aside(&model.context.signals, fast, &self.in_place_of_laws));
+        self.of_passages = Some(moving::set_aside(model.context.signals, fast, &self.in_place_of_laws));
         Ok(true)
     }
 

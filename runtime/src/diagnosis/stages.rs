@@ -236,7 +236,7 @@ impl<'a> Course<'a> {
     }
 
     /// Laws that show in one passage only, and that the rest of the motion refutes; `None` where a push explains one of those that
-    /// show in one passage nearly as well.
+    /// show in one passage nearly as well. A push is the last explanation: before it come all laws that the rest does not refute.
     fn refuted(
         &self,
         search: &Search<'_>,
@@ -247,11 +247,20 @@ impl<'a> Course<'a> {
             return Ok(Some(Vec::new()));
         }
         let laws = search.of_single_passages()?;
+        let refuted = |in_catalogue: bool| -> Vec<Objection> {
+            let terms = laws.iter().filter(|(_, passage)| passage.elsewhere == Elsewhere::Refutes);
+            let terms = terms.map(|(k, _)| &search.model.terms[*k]);
+            let wanted = terms.filter(|term| (term.effect != EffectKind::FreeForm) == in_catalogue);
+            wanted.map(Objection::to_term).collect()
+        };
+        let of_catalogue = refuted(true);
+        if !of_catalogue.is_empty() {
+            return Ok(Some(of_catalogue));
+        }
         if settings.single_joint_contacts && pushes.take_the_place_of(&laws, search)? {
             return Ok(None);
         }
-        let refuted = laws.iter().filter(|(_, passage)| passage.elsewhere == Elsewhere::Refutes);
-        Ok(Some(refuted.map(|(k, _)| Objection::to_term(&search.model.terms[*k])).collect()))
+        Ok(Some(refuted(false)))
     }
 
     fn explained(

@@ -46,6 +46,21 @@ impl Felt {
     /// Mean torques from the first place to the last, as half waves beside the model have them, or, where a joint reverses there,
     /// the residual itself; joints that stand still all the time say nothing.
     pub fn of(around: &Around<'_>, noise: &Noise, motion: usize, places: [usize; 2]) -> Self {
+        Self::with(around, noise, (motion, places), |joint| noise.pushed(joint, motion, places))
+    }
+
+    /// Mean torques as the residual itself has them, of a model that was fitted without these rows.
+    pub fn of_residual(around: &Around<'_>, noise: &Noise, motion: usize, places: [usize; 2]) -> Self {
+        Self::with(around, noise, (motion, places), |_| None)
+    }
+
+    /// Mean torques with their standard deviations as `pushed` tells them of a joint, else those of the residual.
+    fn with(
+        around: &Around<'_>,
+        noise: &Noise,
+        (motion, places): (usize, [usize; 2]),
+        pushed: impl Fn(usize) -> Option<[f64; 2]>,
+    ) -> Self {
         let design = around.design;
         let of_joint = |joint: usize| {
             let spacing = design.spacing(motion);
@@ -54,7 +69,7 @@ impl Felt {
             let rows: Vec<usize> = rows.filter(inside).collect();
             let sigma = noise.sigma(joint, rows.len()).filter(|_| !rows.is_empty())?;
             let left = rows.iter().map(|&r| around.residual[r]).sum::<f64>() / rows.len() as f64;
-            let [mean, sigma] = noise.pushed(joint, motion, places).unwrap_or([left, sigma]);
+            let [mean, sigma] = pushed(joint).unwrap_or([left, sigma]);
             let sigma = sigma.hypot(around.context.signals[motion].rounding[joint]);
             let y = rows.iter().map(|&r| design.torque(r)).sum::<f64>() / rows.len() as f64;
             Some((joint, rows, JointRow { joint, residual: mean, y, sigma: sigma.max(1e-12) }))

@@ -3,10 +3,10 @@
 use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::contact::scan::Pushed;
 use crate::diagnosis::error::SingularDesign;
-use crate::diagnosis::judging::passage::Passage;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{NEARLY_AS_MUCH, SCAN_EDGE, SCAN_LENGTHS, SCAN_SHORTEST, SCAN_STEPS};
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -23,14 +23,16 @@ pub(in crate::diagnosis) struct HalfWave {
 }
 
 impl HalfWave {
-    /// As a push on a grid of rows that is so many times finer, which is an accident with this probability.
-    pub fn as_push(&self, finer: usize, doubt: f64) -> Pushed {
+    /// As a push on other rows, given the samples from one row to the next of these and of those; it is an accident with this
+    /// probability.
+    pub fn as_push(&self, [own, other]: [usize; 2], doubt: f64) -> Pushed {
+        let on_other = |place: usize| place * own / other.max(1);
         // A push need not be half a wave.
-        let edge = SCAN_EDGE * (finer * self.places.len()) as f64;
+        let edge = SCAN_EDGE * on_other(self.places.len()) as f64;
         Pushed {
             joint: self.joint,
             motion: self.motion,
-            places: [finer * self.places.start, finer * self.places.end],
+            places: [self.places.start, self.places.end].map(on_other),
             edges: [edge; 2],
             square: self.gain,
             doubt,
@@ -38,8 +40,9 @@ impl HalfWave {
     }
 }
 
-/// The half wave within a passage, with an amplitude of its own on each of these joints, that explains most, where that is nearly
-/// as much as the law of these columns does.
+/// The half wave of so many places, at most, with an amplitude of its own on each of these joints, that explains most, where that is
+/// nearly as much as the law of these columns does. The law need not show most where it is: a push that is no part of the model bends
+/// the rest of it.
 ///
 /// # Errors
 /// [`SingularDesign`] where there is no fit without the law.
@@ -47,14 +50,13 @@ pub(in crate::diagnosis) fn half_wave_in_place(
     regression: &Regression,
     law: Range<usize>,
     joints: &[usize],
-    passage: &Passage,
+    longest: usize,
 ) -> Result<Option<HalfWave>, SingularDesign> {
     let (design, fit) = regression.without(law)?;
     let of_law = fit.weighted_squares(&design) - regression.fit.weighted_squares(&regression.design);
     let mut best: Option<HalfWave> = None;
-    for places in windows(&design, passage) {
-        let columns =
-            joints.iter().map(|&j| vec![(j, on_rows(&design, j, passage.motion, &places))]).collect();
+    for (motion, places) in windows(&design, longest) {
+        let columns = joints.iter().map(|&j| vec![(j, on_rows(&design, j, motion, &places))]).collect();
         let mut trial = Trial::new(&design, Vec::new(), columns);
         trial.needed = 1;
         let Some((amplitude, gain)) = fit.project_out(&trial).and_then(|part| part.solve_beside(&[])) else {
@@ -64,26 +66,32 @@ pub(in crate::diagnosis) fn half_wave_in_place(
             let size = |k: usize| amplitude[k].abs() / regression.sigma[joints[k]];
             let most = (0..joints.len()).max_by(|a, b| size(*a).total_cmp(&size(*b)));
             let Some(joint) = most.map(|k| joints[k]) else { continue };
-            best = Some(HalfWave { joint, motion: passage.motion, places, gain });
+            best = Some(HalfWave { joint, motion, places, gain });
         }
     }
     Ok(best.filter(|wave| wave.gain >= NEARLY_AS_MUCH * of_law))
 }
 
-/// Windows of many lengths within a passage.
-fn windows(design: &Design, passage: &Passage) -> Vec<Range<usize>> {
+/// Windows of the recording, by motion, of many lengths up to the longest.
+fn windows(design: &Design, longest: usize) -> Vec<(usize, Range<usize>)> {
     let mut lengths: Vec<usize> = SCAN_LENGTHS
         .iter()
         .map(|length| ((length / design.step).round() as usize).max(SCAN_SHORTEST))
-        .filter(|length| *length <= passage.places.len())
+        .filter(|length| *length <= longest)
         .collect();
     lengths.dedup();
-    let of_length = |length: usize| {
-        let last = passage.places.end - length;
-        let from = (passage.places.start..=last).step_by((length / SCAN_STEPS).max(1));
-        from.map(move |from| from..from + length)
-    };
-    lengths.into_iter().flat_map(of_length).collect()
+    let targets: BTreeSet<usize> =
+        design.target_segments().into_iter().map(|g| design.segments[g].signal).collect();
+    let spans = design.spans();
+    let mut windows = Vec::new();
+    for (motion, span) in targets.into_iter().map(|motion| (motion, &spans[motion])) {
+        for &length in &lengths {
+            let last = (span.end + 1).saturating_sub(length);
+            let from = (span.start..last).step_by((length / SCAN_STEPS).max(1));
+            windows.extend(from.map(|from| (motion, from..from + length)));
+        }
+    }
+    windows
 }
 
 /// Half a wave over places of a motion on the rows of a joint.
@@ -101,7 +109,6 @@ fn on_rows(design: &Design, joint: usize, motion: usize, places: &Range<usize>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::judging::passage::Elsewhere;
     use crate::diagnosis::judging::testing::correlated;
     use crate::testing::normal;
     use rand::SeedableRng;
@@ -117,8 +124,7 @@ mod tests {
         let y = (0..2 * ROWS).map(|r| columns[0][r] + columns[2][r] + 0.2 * normal(&mut rng)).collect();
         let design = Design::made_up(2, &[(0, true)], ROWS, columns, y);
         let regression = Regression::new(design, Vec::new()).expect("a small problem is regular");
-        let passage = Passage { motion: 0, places: 180..310, elsewhere: Elsewhere::Untold };
-        half_wave_in_place(&regression, 2..3, &[0, 1], &passage).expect("regular")
+        half_wave_in_place(&regression, 2..3, &[0, 1], 120).expect("regular")
     }
 
     #[test]
@@ -127,8 +133,8 @@ mod tests {
         let wave = in_place_of(plateau).expect("a half wave makes four fifths of a plateau");
         assert_eq!((wave.joint, wave.motion), (0, 0));
         assert!(wave.places.start.abs_diff(195) <= 15 && wave.places.end.abs_diff(285) <= 15, "{wave:?}");
-        let push = wave.as_push(2, 0.01);
-        assert_eq!(push.places, [2 * wave.places.start, 2 * wave.places.end]);
+        let push = wave.as_push([5, 2], 0.01);
+        assert_eq!(push.places, [wave.places.start, wave.places.end].map(|place| 5 * place / 2));
     }
 
     #[test]

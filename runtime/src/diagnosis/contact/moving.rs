@@ -20,13 +20,13 @@ pub(in crate::diagnosis) struct Look {
     level: f64,
 }
 
-/// Looks for pushes in what a model leaves on the rows of a design that known contacts are left out of; `known` were found in
-/// another look at them, and those that are `certain` are not judged.
+/// Looks for pushes in what a model leaves on the rows of a design that known contacts are left out of, beside `pushes` that were
+/// found in another look at them, and others that are certain.
 pub(in crate::diagnosis) fn look(
     context: &Context<'_>,
     design: &Design,
     left: &Left<'_>,
-    (known, certain): (&[Pushed], &[Pushed]),
+    pushes: (&[Pushed], &[Pushed]),
     level: f64,
 ) -> Look {
     let signals = context.signals;
@@ -34,8 +34,7 @@ pub(in crate::diagnosis) fn look(
     let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
     let tracks: Vec<Track> =
         (0..design.joints).map(|joint| Track::of(context, design, left, joint)).collect();
-    let (mut pushes, noise) = scan(&tracks, &[certain, known].concat(), step, level);
-    pushes.retain(|push| !certain.iter().any(|other| other.overlaps(push)));
+    let (pushes, noise) = scan(&tracks, pushes, step, level);
     Look { pushes, noise, level }
 }
 
@@ -58,7 +57,7 @@ pub(in crate::diagnosis) fn seen(around: &Around<'_>, look: &Look) -> Option<Con
 /// Pushes that are certain by themselves, with what all joints feel of them. `None` where no joint does.
 pub(in crate::diagnosis) fn certain(around: &Around<'_>, look: &Look, pushes: &[Pushed]) -> Option<Contacts> {
     let of_push = |push: &Pushed| {
-        let felt = Felt::of(around, &look.noise, push.motion, push.places);
+        let felt = Felt::of_residual(around, &look.noise, push.motion, push.places);
         let doubt = push.doubt.max(felt.doubt_of(push.joint));
         Some((felt, doubt))
     };

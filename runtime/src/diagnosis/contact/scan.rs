@@ -40,15 +40,16 @@ pub(in crate::diagnosis) struct Pushed {
 /// Windows in which joints are pushed, most certain first, none next to another; and what the residuals do by themselves.
 ///
 /// `step` is the time from one place to the next, s; `level` the probability of an accident in a whole recording, up to which
-/// a window is a push; `known` were pushes in another look at these rows, and are judged again.
+/// a window is a push; `known` were pushes in another look at these rows, and are judged again; those that are `certain` are
+/// not, nor are they among those that are found.
 pub(in crate::diagnosis) fn scan(
     tracks: &[Track],
-    known: &[Pushed],
+    (known, certain): (&[Pushed], &[Pushed]),
     step: f64,
     level: f64,
 ) -> (Vec<Pushed>, Noise) {
     let mut scan = Scan::of(tracks, step);
-    scan.look_again_at(known);
+    scan.look_again_at(known, certain);
     // A push bends the fit of the model, and what it leaves elsewhere: others are looked for beside it.
     while scan.add_suspect() {
         scan.look();
@@ -90,14 +91,16 @@ struct Joint<'a> {
 #[derive(Clone)]
 struct Candidate {
     pushed: Pushed,
+    /// Whether something else tells that it is one.
+    is_certain: bool,
     /// What each joint that is scanned feels, in standard deviations, beside the model and the other candidates.
     felt: Vec<Option<f64>>,
 }
 
 impl Candidate {
     /// Before any look at what joints feel of it.
-    fn unfelt(pushed: Pushed) -> Self {
-        Self { pushed, felt: Vec::new() }
+    fn unfelt(pushed: Pushed, is_certain: bool) -> Self {
+        Self { pushed, is_certain, felt: Vec::new() }
     }
 
     fn places(&self) -> Range<usize> {
@@ -212,10 +215,12 @@ impl<'a> Scan<'a> {
         (SCAN_TOGETHER / self.step) as usize
     }
 
-    /// Puts what is known to have been a push among the candidates.
-    fn look_again_at(&mut self, known: &[Pushed]) {
-        let is_scanned = |pushed: &&Pushed| self.joints.iter().any(|joint| joint.track.joint == pushed.joint);
-        self.candidates = known.iter().filter(is_scanned).cloned().map(Candidate::unfelt).collect();
+    /// Puts what was a push in another look, and what certainly is one, among the candidates.
+    fn look_again_at(&mut self, known: &[Pushed], certain: &[Pushed]) {
+        let pushes = certain.iter().map(|p| (p, true)).chain(known.iter().map(|p| (p, false)));
+        let is_scanned = |(p, _): &(&Pushed, bool)| self.joints.iter().any(|j| j.track.joint == p.joint);
+        let candidate = |(pushed, is_certain): (&Pushed, bool)| Candidate::unfelt(pushed.clone(), is_certain);
+        self.candidates = pushes.filter(is_scanned).map(candidate).collect();
         if !self.candidates.is_empty() {
             self.look();
         }
@@ -268,7 +273,7 @@ impl<'a> Scan<'a> {
                 square,
                 doubt: 1.0,
             };
-            self.candidates.push(Candidate::unfelt(pushed));
+            self.candidates.push(Candidate::unfelt(pushed, false));
             return true;
         }
         false
@@ -286,7 +291,7 @@ impl<'a> Scan<'a> {
         let doubts: Vec<f64> = self.candidates.iter().map(doubt).collect();
         self.candidates.iter_mut().zip(doubts).for_each(|(c, doubt)| c.pushed.doubt = doubt);
         let before = self.candidates.len();
-        self.candidates.retain(|c| c.pushed.doubt <= level);
+        self.candidates.retain(|c| c.is_certain || c.pushed.doubt <= level);
         self.candidates.len() < before
     }
 
@@ -298,7 +303,8 @@ impl<'a> Scan<'a> {
             let few = pushed as f64 <= LARGEST_PUSHED_FRACTION * joint.waves.targets() as f64;
             // There a law of the load is as good, of a motor that saturates or a gear that is pressed.
             let is_law = |c: &&Candidate| joint.track.is_borne_once(c.pushed.motion, c.places());
-            if few { own.filter(|c| !is_law(c)).map(|c| c.pushed.clone()).collect() } else { Vec::new() }
+            let found = own.filter(|c| !c.is_certain && !is_law(c));
+            if few { found.map(|c| c.pushed.clone()).collect() } else { Vec::new() }
         };
         self.joints.iter().flat_map(of_joint).collect()
     }

@@ -34,8 +34,8 @@ impl Search<'_> {
         found.into_iter().filter_map(Result::transpose).collect()
     }
 
-    /// Places that a push may take, as an exception.
-    fn longest_push(&self) -> usize {
+    /// Places of slow rows that a push may take, as an exception.
+    pub(in crate::diagnosis) fn longest_push(&self) -> usize {
         let design = &self.model.slow.design;
         let is_target = |motion: usize| self.model.context.signals[motion].is_target;
         let spans = design.spans().into_iter().enumerate();
