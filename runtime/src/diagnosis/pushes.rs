@@ -190,10 +190,12 @@ impl Pushes {
         laws: &[(usize, Passage)],
         search: &Search<'_>,
     ) -> Result<bool, SingularDesign> {
-        let (before, longest) = (self.in_place_of_laws.len(), search.longest_push());
+        let before = self.in_place_of_laws.len();
         let (model, slow, fast) = (&search.model, &search.model.slow, &search.model.fast.design);
         for (k, passage) in laws {
             let term = &model.terms[*k];
+            let places = self.in_place_of_laws.iter().map(|push| push.places[1] - push.places[0]);
+            let longest = search.longest_push(places.sum::<usize>() as f64 * fast.step);
             let wave = half_wave_in_place(slow, slow.term_columns[*k].clone(), &term.shows_on, longest)?;
             let Some(wave) = wave else { continue };
             let spacings = [&slow.design, fast].map(|design| design.spacing(wave.motion));

@@ -14,7 +14,7 @@ impl Search<'_> {
     /// # Errors
     /// [`SingularDesign`] where a model on the way has no fit.
     pub(in crate::diagnosis) fn of_single_passages(&self) -> Result<Vec<(usize, Passage)>, SingularDesign> {
-        let longest = self.longest_push();
+        let longest = self.longest_push(0.0);
         let of_term = |k: usize| {
             let term = &self.model.terms[k];
             if term.effect.properties().window != SmoothingWindow::Slow
@@ -34,12 +34,13 @@ impl Search<'_> {
         found.into_iter().filter_map(Result::transpose).collect()
     }
 
-    /// Places of slow rows that a push may take, as an exception.
-    pub(in crate::diagnosis) fn longest_push(&self) -> usize {
+    /// Places of slow rows that a push may take, as an exception beside others of so many seconds.
+    pub(in crate::diagnosis) fn longest_push(&self, others: f64) -> usize {
         let design = &self.model.slow.design;
         let is_target = |motion: usize| self.model.context.signals[motion].is_target;
         let spans = design.spans().into_iter().enumerate();
         let places: usize = spans.filter(|(motion, _)| is_target(*motion)).map(|(_, span)| span.len()).sum();
-        design.rows_within(SCAN_LONGEST).min((LARGEST_PUSHED_FRACTION * places as f64) as usize)
+        let pushed = LARGEST_PUSHED_FRACTION * places as f64 * design.step - others;
+        (pushed.clamp(0.0, SCAN_LONGEST) / design.step) as usize
     }
 }
