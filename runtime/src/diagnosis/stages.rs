@@ -145,19 +145,26 @@ impl<'a> Course<'a> {
             // 4. What looked like pushes from outside may be explained by what is now in the model: then once more.
             let Some(report) = self.searched(&mut begun.search, pushes, settings)? else { return Ok(None) };
 
-            // 5. What shows in one passage only may be a push.
-            let Some(mut objected) = self.refuted(&begun.search, pushes, settings)? else { return Ok(None) };
+            // 5. What shows in one passage only may be a push, if nothing else speaks against it.
+            let mut in_their_place = pushes.clone();
+            let refuted = self.refuted(&begun.search, &mut in_their_place, settings)?;
 
             // 6. Numbers, errors, curves, sentences.
             self.progress.at(0.92, "explanations");
             let mut diagnosis = self.explained(&mut begun, report, pushes, settings)?;
 
             // 7. What harms, or other evidence speaks against, is left out, and the search goes on.
-            if objected.is_empty() {
-                objected = harmful(&diagnosis);
-            }
+            let mut objected = harmful(&diagnosis);
             if objected.is_empty() {
                 objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
+            }
+
+            if objected.is_empty() {
+                let Some(refuted) = refuted else {
+                    *pushes = in_their_place;
+                    return Ok(None);
+                };
+                objected = refuted;
             }
             let Some(model) = without_effects.as_ref().filter(|_| !objected.is_empty()) else {
                 return Ok(Some(diagnosis));
