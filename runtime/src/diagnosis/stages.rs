@@ -158,7 +158,6 @@ impl<'a> Course<'a> {
             if objected.is_empty() {
                 objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
             }
-
             if objected.is_empty() {
                 let Some(refuted) = refuted else {
                     *pushes = in_their_place;

@@ -1,11 +1,12 @@
 //! A push in the place of a law that shows in one passage only.
 
 use crate::diagnosis::candidates::trial::Trial;
+use crate::diagnosis::contact::half_waves::lengths;
 use crate::diagnosis::contact::scan::Pushed;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
-use crate::diagnosis::rules::{NEARLY_AS_MUCH, SCAN_EDGE, SCAN_LENGTHS, SCAN_SHORTEST, SCAN_STEPS};
+use crate::diagnosis::rules::{NEARLY_AS_MUCH, SCAN_EDGE, SCAN_STEPS};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -74,12 +75,7 @@ pub(in crate::diagnosis) fn half_wave_in_place(
 
 /// Windows of the recording, by motion, of many lengths up to the longest.
 fn windows(design: &Design, longest: usize) -> Vec<(usize, Range<usize>)> {
-    let mut lengths: Vec<usize> = SCAN_LENGTHS
-        .iter()
-        .map(|length| ((length / design.step).round() as usize).max(SCAN_SHORTEST))
-        .filter(|length| *length <= longest)
-        .collect();
-    lengths.dedup();
+    let lengths: Vec<usize> = lengths(design.step).into_iter().filter(|length| *length <= longest).collect();
     let targets: BTreeSet<usize> =
         design.target_segments().into_iter().map(|g| design.segments[g].signal).collect();
     let spans = design.spans();
