@@ -5,7 +5,7 @@ use super::candidates::trial::dense_columns;
 use super::contact::felt::Around;
 use super::contact::in_place::half_wave_in_place;
 use super::contact::moving;
-use super::contact::scan::Pushed;
+use super::contact::pushed::Pushed;
 use super::contact::search::{self as contact_search, Contacts};
 use super::contact::silent::Silent;
 use super::contact::standing;

@@ -193,18 +193,28 @@ impl HalfWaves {
                 }
             }
         }
-        // What is over sooner is an impact, and none where the rows are too far apart to tell.
-        let [shortest, longest] = [SCAN_IMPACT, SCAN_LONGEST].map(|lasts| (lasts / self.step) as usize);
         let best = tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0))?;
-        if !(shortest..=longest.max(shortest)).contains(&(best.2 - best.1)) {
+        if !lasts_as_pushes(best.2 - best.1, self.step) {
             return None;
         }
-        let near: Vec<&(f64, usize, usize)> = tried.iter().filter(|t| t.0 >= best.0 - 1.0).collect();
-        let width = |edge: fn(&(f64, usize, usize)) -> usize| {
-            let (low, high) = near.iter().fold((usize::MAX, 0), |(l, h), t| (l.min(edge(t)), h.max(edge(t))));
-            // A push need not be a half wave.
-            (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
-        };
-        Some(Refined { square: best.0, from: best.1, to: best.2, edges: [width(|t| t.1), width(|t| t.2)] })
+        Some(Refined { square: best.0, from: best.1, to: best.2, edges: edge_deviation(&tried, best) })
     }
+}
+
+/// Whether a window of so many places, `step` s apart, lasts as long as pushes do: what is over sooner is an impact, and none
+/// where the rows are too far apart to tell.
+pub(super) fn lasts_as_pushes(places: usize, step: f64) -> bool {
+    let [shortest, longest] = [SCAN_IMPACT, SCAN_LONGEST].map(|lasts| (lasts / step) as usize);
+    (shortest..=longest.max(shortest)).contains(&places)
+}
+
+/// Standard deviations of the first place and the last of a window, from those `(square, from, to)` that were tried around the
+/// best: as far as the square falls by one, and as far as pushes that are no half waves begin and end elsewhere.
+pub(super) fn edge_deviation(tried: &[(f64, usize, usize)], best: (f64, usize, usize)) -> [f64; 2] {
+    let near = || tried.iter().filter(|t| t.0 >= best.0 - 1.0);
+    let width = |edge: fn(&(f64, usize, usize)) -> usize| {
+        let (low, high) = near().map(edge).fold((usize::MAX, 0), |(low, high), x| (low.min(x), high.max(x)));
+        (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
+    };
+    [width(|t| t.1), width(|t| t.2)]
 }

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::contact::half_waves::lengths;
-use crate::diagnosis::contact::scan::Pushed;
+use crate::diagnosis::contact::pushed::Pushed;
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;

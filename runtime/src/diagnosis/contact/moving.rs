@@ -2,7 +2,8 @@
 
 use crate::diagnosis::contact::felt::{Around, Felt, wrench};
 use crate::diagnosis::contact::noise::Noise;
-use crate::diagnosis::contact::scan::{Pushed, scan};
+use crate::diagnosis::contact::pushed::Pushed;
+use crate::diagnosis::contact::scan::scan;
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::contact::track::{Left, Track};
 use crate::diagnosis::contact::windows::{duration, told};

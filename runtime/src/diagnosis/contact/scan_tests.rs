@@ -85,6 +85,20 @@ fn a_long_push_in_a_few_seconds_is_found() {
 }
 
 #[test]
+fn a_push_that_a_residual_would_remember_as_slow_noise_is_found() {
+    let mut rng = Pcg64::seed_from_u64(17);
+    let mut once = || {
+        let mut tracks = noise_of(&mut rng, 2, 600);
+        push(&mut tracks[0], 4.0, 2.4, 2.0);
+        let found = scan(&tracks, (&[], &[]), STEP, LEVEL).0;
+        found.iter().any(|p| p.joint == 0 && p.places[0] < 320 && p.places[1] > 200)
+    };
+    let hits = (0..60).filter(|_| once()).count();
+    println!("{hits} of 60");
+    assert!(hits >= 48, "{hits} of 60");
+}
+
+#[test]
 fn what_was_found_is_judged_again() {
     let mut tracks = noise(&mut Pcg64::seed_from_u64(24));
     push(&mut tracks[1], 10.0, 0.5, 4.0);

@@ -37,6 +37,8 @@ pub(in crate::diagnosis) struct White {
     deviations: Vec<f64>,
     /// First row of the stretch of neighbouring rows that each row is in, and the row after its last.
     stretch: Vec<[usize; 2]>,
+    /// Residual beside the curves and the pushes, its noise of one size, with all that it remembers.
+    pub(super) even: Vec<f64>,
     /// White residual, in its own standard deviations, orthogonal to the curves.
     pub(super) residual: Vec<f64>,
     /// White curves, orthonormal.
@@ -82,6 +84,7 @@ impl White {
             memory,
             deviations,
             stretch,
+            even: Vec::new(),
             residual: Vec::new(),
             curves: Vec::new(),
             absorbed: Vec::new(),
@@ -89,6 +92,7 @@ impl White {
         };
         white.curves = orthonormal(curves.iter().map(|c| white.whitened(c)).collect());
         white.residual = without(&white.whitened(&left), &white.curves);
+        white.even = unpushed;
         white.scale().then_some(white)
     }
 
@@ -127,11 +131,38 @@ impl White {
         (0..x.len()).map(|t| self.memory.innovation(t - self.stretch[t][0], |back| x[t - back])).collect()
     }
 
+    /// Order of the autoregression of what it remembers.
+    pub(super) fn order(&self) -> usize {
+        self.memory.order()
+    }
+
+    /// First row of the stretch of neighbouring rows that a row is in, and the row after its last.
+    pub(super) fn stretch(&self, row: usize) -> [usize; 2] {
+        self.stretch[row]
+    }
+
     /// Rows of a motion within places.
     fn within(&self, motion: usize, places: &Range<usize>) -> Range<usize> {
         let m = &self.motions[motion];
         let at = |place: usize| m.first + m.places.partition_point(|p| *p < place);
         at(places.start)..at(places.end)
+    }
+
+    /// Rows of a motion within places, and the half wave over these places at them, its noise of one size; `None` where too few
+    /// of its rows are there. `wave` is overwritten.
+    pub(super) fn even_half_wave(
+        &self,
+        motion: usize,
+        places: &Range<usize>,
+        wave: &mut Vec<f64>,
+    ) -> Option<Range<usize>> {
+        let rows = self.within(motion, places);
+        if (rows.len() as f64) < SCAN_PRESENT * places.len() as f64 || rows.len() < 2 {
+            return None;
+        }
+        wave.clear();
+        wave.extend(rows.clone().map(|r| self.height(motion, r, places) / self.deviations[r]));
+        Some(rows)
     }
 
     /// The half wave over places of a motion, over all rows.
@@ -153,13 +184,8 @@ impl White {
     /// Amplitude of the half wave over places of a motion, N.m or N, and its standard deviation; `None` where too few of its rows
     /// are there, or the curves over the joint's state or the model make most of it. `scratch` is kept between calls.
     pub fn half_wave(&self, motion: usize, places: Range<usize>, scratch: &mut Scratch) -> Option<[f64; 2]> {
-        let rows = self.within(motion, &places);
-        if (rows.len() as f64) < SCAN_PRESENT * places.len() as f64 || rows.len() < 2 {
-            return None;
-        }
+        let rows = self.even_half_wave(motion, &places, &mut scratch.wave)?;
         let reach = (rows.end + self.memory.order()).min(self.stretch[rows.end - 1][1]);
-        scratch.wave.clear();
-        scratch.wave.extend(rows.clone().map(|r| self.height(motion, r, &places) / self.deviations[r]));
         scratch.wave.resize(reach - rows.start, 0.0);
         scratch.white.clear();
         for t in rows.start..reach {

@@ -1,0 +1,201 @@
+//! Pushes that hide themselves: they are most of what the memory of a residual is fitted to.
+//!
+//! An autoregression that is fitted with a long push among its rows takes it for noise that is slow, and the fit of a model
+//! spreads a large one over all rows: neither stands out of its residual. Here the memory is fitted anew beside the
+//! half wave of each window, and the window with which the residual is likeliest, as a normal autoregression, is one to try (as
+//! for outliers that mask themselves: Chen and Liu 1993, Joint estimation of model parameters and outlier effects in time
+//! series).
+
+use crate::diagnosis::contact::half_waves::{edge_deviation, lasts_as_pushes};
+use crate::diagnosis::contact::pushed::Pushed;
+use crate::diagnosis::contact::white::White;
+use crate::diagnosis::rules::SCAN_STEPS;
+use std::ops::Range;
+
+/// The window of a joint with which its residual is likeliest.
+pub(super) struct Likeliest {
+    motion: usize,
+    places: Range<usize>,
+    /// Standard deviations of its first place and its last.
+    edges: [f64; 2],
+    /// Twice the gain of the logarithm of the likelihood.
+    pub gain: f64,
+}
+
+impl Likeliest {
+    /// As a push of a joint, before it is judged.
+    pub fn as_push(&self, joint: usize) -> Pushed {
+        let places = [self.places.start, self.places.end - 1];
+        Pushed { joint, motion: self.motion, places, edges: self.edges, square: self.gain, doubt: 1.0 }
+    }
+}
+
+/// Of windows of these lengths in the recording that is diagnosed, those that are free, `(motion, places)`; `step` is the time
+/// from one place to the next, s. `None` where none makes the residual likelier, or what does lasts too short or too long.
+pub(super) fn likeliest(
+    white: &White,
+    lengths: &[usize],
+    step: f64,
+    is_free: impl Fn((usize, [usize; 2])) -> bool,
+) -> Option<Likeliest> {
+    let remembering = Remembering::of(white)?;
+    let mut wave = Vec::new();
+    let mut best: Option<(f64, usize, Range<usize>)> = None;
+    for motion in white.motions.iter().filter(|m| m.is_target) {
+        for &length in lengths {
+            let last = (motion.length() + 1).saturating_sub(length);
+            let from = (0..last).step_by((length / SCAN_STEPS).max(1));
+            for from in from.filter(|from| is_free((motion.motion, [*from, from + length]))) {
+                let gain = remembering.gain(motion.motion, from..from + length, &mut wave).unwrap_or(0.0);
+                if gain > best.as_ref().map_or(0.0, |best| best.0) {
+                    best = Some((gain, motion.motion, from..from + length));
+                }
+            }
+        }
+    }
+    let (gain, motion, places) = best?;
+    let likeliest = remembering.refined(motion, (gain, places));
+    lasts_as_pushes(likeliest.places.len(), step).then_some(likeliest)
+}
+
+/// A residual with all that it remembers.
+struct Remembering<'a> {
+    white: &'a White,
+    /// Sums of products of values so many rows apart, from none up to the order of its autoregression.
+    products: Vec<f64>,
+    /// Logarithm of the variance that the autoregression leaves.
+    log_variance: f64,
+}
+
+impl<'a> Remembering<'a> {
+    fn of(white: &'a White) -> Option<Self> {
+        let x = &white.even;
+        let mut products = vec![0.0; white.order() + 1];
+        for t in 0..x.len() {
+            let behind = t - white.stretch(t)[0];
+            for (back, sum) in products.iter_mut().enumerate().take(behind + 1) {
+                *sum += x[t] * x[t - back];
+            }
+        }
+        let log_variance = log_variance(&products)?;
+        Some(Self { white, products, log_variance })
+    }
+
+    /// Twice the gain of the logarithm of the likelihood by the half wave over places of a motion; `None` where too few of its
+    /// rows are there. `wave` is overwritten.
+    fn gain(&self, motion: usize, places: Range<usize>, wave: &mut Vec<f64>) -> Option<f64> {
+        let x = &self.white.even;
+        let rows = self.white.even_half_wave(motion, &places, wave)?;
+        let square: f64 = wave.iter().map(|w| w * w).sum();
+        let amplitude = rows.clone().zip(&*wave).map(|(r, w)| x[r] * w).sum::<f64>() / square;
+        let taken = |r: usize| if rows.contains(&r) { amplitude * wave[r - rows.start] } else { 0.0 };
+        let mut products = self.products.clone();
+        for t in rows.clone() {
+            let [from, to] = self.white.stretch(t);
+            for (back, sum) in products.iter_mut().enumerate() {
+                // Pairs in which this row is the later one, and those in which a row before the wave's end is not in the wave.
+                if t >= from + back {
+                    *sum -= taken(t) * (x[t - back] - taken(t - back));
+                }
+                if t + back < to {
+                    *sum -= taken(t) * x[t + back];
+                }
+            }
+        }
+        Some(x.len() as f64 * (self.log_variance - log_variance(&products)?))
+    }
+
+    /// The likeliest window near one of the grid.
+    fn refined(&self, motion: usize, (gain, near): (f64, Range<usize>)) -> Likeliest {
+        let reach = (near.len() / 4).max(2);
+        let fine = (near.len() / (2 * SCAN_STEPS)).max(1);
+        let end = self.white.motions[motion].length();
+        let mut wave = Vec::new();
+        let mut tried = vec![(gain, near.start, near.end)];
+        for from in (near.start.saturating_sub(reach)..=near.start + reach).step_by(fine) {
+            for to in (near.end.saturating_sub(reach)..=(near.end + reach).min(end)).step_by(fine) {
+                if to >= from + near.len().div_ceil(2).max(2)
+                    && let Some(gain) = self.gain(motion, from..to, &mut wave)
+                {
+                    tried.push((gain, from, to));
+                }
+            }
+        }
+        let best = tried.iter().copied().fold(tried[0], |best, t| if t.0 > best.0 { t } else { best });
+        let edges = edge_deviation(&tried, best);
+        Likeliest { motion, places: best.1..best.2, edges, gain: best.0 }
+    }
+}
+
+/// Logarithm of the variance that an autoregression leaves of a series with these sums of products (Levinson's recursion);
+/// `None` where there is none.
+fn log_variance(products: &[f64]) -> Option<f64> {
+    let mut left = *products.first()?;
+    let mut coefficients: Vec<f64> = Vec::with_capacity(products.len());
+    for order in 1..products.len() {
+        let made: f64 = coefficients.iter().zip(products[1..order].iter().rev()).map(|(a, x)| a * x).sum();
+        let reflection = ((products[order] - made) / left).clamp(-0.999, 0.999);
+        for k in 0..order / 2 {
+            let (a, b) = (coefficients[k], coefficients[order - 2 - k]);
+            coefficients[k] = a - reflection * b;
+            coefficients[order - 2 - k] = b - reflection * a;
+        }
+        coefficients.push(reflection);
+        left *= 1.0 - reflection * reflection;
+    }
+    (left.is_finite() && left > 0.0).then(|| left.ln())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::contact::track::Track;
+    use crate::testing::normal;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64;
+    use std::collections::HashSet;
+
+    const STEP: f64 = 0.02;
+
+    /// 8 s of noise that is white, with a pause, and a push of 2 s.
+    fn pushed(seed: u64) -> White {
+        let mut rng = Pcg64::seed_from_u64(seed);
+        let push =
+            |k: usize| if (150..250).contains(&k) { (0.01 * (k - 150) as f64 * 3.14).sin() } else { 0.0 };
+        let row = |k: usize| (k, 2.0 * push(k) + normal(&mut rng));
+        let rows = (0..400).filter(|k| !(60..70).contains(k)).map(row).collect();
+        let motions = vec![(true, rows)];
+        let track =
+            Track { joint: 0, motions, beside: vec![], sizes: vec![], columns: vec![], once: HashSet::new() };
+        White::of(&track, &[]).expect("noise has a spread")
+    }
+
+    #[test]
+    fn the_gain_is_that_of_a_memory_fitted_to_the_residual_without_the_half_wave() {
+        let white = pushed(1);
+        let remembering = Remembering::of(&white).expect("noise remembers");
+        let mut wave = Vec::new();
+        let rows = white.even_half_wave(0, &(140..260), &mut wave).expect("all rows are there");
+        let product: f64 = rows.clone().zip(&wave).map(|(r, w)| white.even[r] * w).sum();
+        let amplitude = product / wave.iter().map(|w| w * w).sum::<f64>();
+        let mut without = white.clone();
+        rows.zip(&wave).for_each(|(r, w)| without.even[r] -= amplitude * w);
+        let left = Remembering::of(&without).expect("noise remembers").log_variance;
+        let gain = remembering.gain(0, 140..260, &mut wave).expect("all rows are there");
+        assert!((gain - white.even.len() as f64 * (remembering.log_variance - left)).abs() < 1e-9, "{gain}");
+        assert!(gain > 30.0, "{gain}");
+    }
+
+    #[test]
+    fn the_likeliest_window_is_that_of_the_push() {
+        for seed in 1..10 {
+            let found = likeliest(&pushed(seed), &[8, 15, 25, 50, 80], STEP, |_| true).expect("a push");
+            assert!(found.places.start.abs_diff(150) < 25 && found.places.end.abs_diff(250) < 25);
+        }
+    }
+
+    #[test]
+    fn next_to_nothing_that_is_free_nothing_is_likely() {
+        assert!(likeliest(&pushed(1), &[8, 15], STEP, |_| false).is_none());
+    }
+}
