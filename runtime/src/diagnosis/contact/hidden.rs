@@ -160,8 +160,8 @@ mod tests {
     /// 8 s of noise that is white, with a pause, and a push of 2 s.
     fn pushed(seed: u64) -> White {
         let mut rng = Pcg64::seed_from_u64(seed);
-        let push =
-            |k: usize| if (150..250).contains(&k) { (0.01 * (k - 150) as f64 * 3.14).sin() } else { 0.0 };
+        let half_wave = |k: usize| (std::f64::consts::PI * (k as f64 - 150.0) / 100.0).sin();
+        let push = |k: usize| if (150..250).contains(&k) { half_wave(k) } else { 0.0 };
         let row = |k: usize| (k, 2.0 * push(k) + normal(&mut rng));
         let rows = (0..400).filter(|k| !(60..70).contains(k)).map(row).collect();
         let motions = vec![(true, rows)];

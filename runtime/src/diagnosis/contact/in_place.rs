@@ -2,13 +2,11 @@
 
 use crate::diagnosis::candidates::trial::Trial;
 use crate::diagnosis::contact::half_waves::lengths;
-use crate::diagnosis::contact::pushed::Pushed;
+use crate::diagnosis::contact::pushed::{Pushed, half_wave};
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rules::{NEARLY_AS_MUCH, SCAN_EDGE, SCAN_STEPS};
-use std::collections::BTreeSet;
-use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Half a wave on joints at the same time.
@@ -76,11 +74,8 @@ pub(in crate::diagnosis) fn half_wave_in_place(
 /// Windows of the recording, by motion, of many lengths up to the longest.
 fn windows(design: &Design, longest: usize) -> Vec<(usize, Range<usize>)> {
     let lengths: Vec<usize> = lengths(design.step).into_iter().filter(|length| *length <= longest).collect();
-    let targets: BTreeSet<usize> =
-        design.target_segments().into_iter().map(|g| design.segments[g].signal).collect();
-    let spans = design.spans();
     let mut windows = Vec::new();
-    for (motion, span) in targets.into_iter().map(|motion| (motion, &spans[motion])) {
+    for (motion, span) in design.target_spans() {
         for &length in &lengths {
             let last = (span.end + 1).saturating_sub(length);
             let from = (span.start..last).step_by((length / SCAN_STEPS).max(1));
@@ -93,11 +88,7 @@ fn windows(design: &Design, longest: usize) -> Vec<(usize, Range<usize>)> {
 /// Half a wave over places of a motion on the rows of a joint.
 fn on_rows(design: &Design, joint: usize, motion: usize, places: &Range<usize>) -> Vec<f64> {
     let value = |r: usize| {
-        let place = design.place(r);
-        if design.rows[r].signal != motion || !places.contains(&place) {
-            return 0.0;
-        }
-        (PI * ((place - places.start) as f64 + 0.5) / places.len() as f64).sin()
+        if design.rows[r].signal == motion { half_wave(design.place(r), places) } else { 0.0 }
     };
     design.of_joint(joint).map(value).collect()
 }

@@ -1,5 +1,6 @@
 //! Windows in which joints are pushed, and those in which they may be.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// A window in which joints are pushed.
@@ -49,4 +50,12 @@ impl Pushed {
     pub(super) fn is_near(&self, motion: usize, [from, to]: [usize; 2], gap: usize) -> bool {
         self.motion == motion && from <= self.places[1] + gap && self.places[0] <= to + gap
     }
+}
+
+/// Height at a place of half a sine wave over places, zero beside them: as the torque of a push rises and falls.
+pub(super) fn half_wave(place: usize, places: &Range<usize>) -> f64 {
+    if !places.contains(&place) {
+        return 0.0;
+    }
+    (PI * ((place - places.start) as f64 + 0.5) / places.len() as f64).sin()
 }

@@ -5,7 +5,8 @@
 //! is there when it comes to rest or still there when it leaves cannot be told from another load.
 
 use crate::diagnosis::rules::{
-    AVERAGED_AT_REST, GAP_AT_REST, ONE_IN_A_HUNDRED, SETTLING, SHORTEST_PUSH_AT_REST, SHORTEST_REST, STICTION,
+    AVERAGED_AT_REST, GAP_AT_REST, LEVEL_AT_REST, ONE_IN_A_HUNDRED, SETTLING, SHORTEST_PUSH_AT_REST,
+    SHORTEST_REST, STICTION,
 };
 
 use statrs::function::erf::erfc;
@@ -31,7 +32,7 @@ pub(in crate::diagnosis) struct Push {
     /// Standard deviation of both, s.
     pub edges: [f64; 2],
     pub joints: Vec<Pressed>,
-    /// Probability that static friction on any joint explains it.
+    /// Probability that static friction on any joint explains one like it in any of the times that the robot stands.
     pub doubt: f64,
 }
 
@@ -58,6 +59,8 @@ pub(in crate::diagnosis) struct Standing<'a> {
     pub still: &'a [bool],
     /// Coulomb friction of each joint; `None` where it is not known.
     pub coulomb: &'a [Option<f64>],
+    /// Times that the robot stands in all motions: friction may hold a torque by accident in each.
+    pub times: usize,
 }
 
 /// What is seen of the outside while the robot stands.
@@ -81,7 +84,7 @@ struct Run {
 /// Looks for pushes and loads in all stretches of one motion in which the robot holds still.
 pub(in crate::diagnosis) fn look(standing: &Standing<'_>) -> Seen {
     let mut seen = Seen::default();
-    for stretch in stretches(standing) {
+    for stretch in stretches(standing.still, standing.rate) {
         seen.time += (stretch[1] - stretch[0]) as f64 / standing.rate;
         let mut runs = Vec::new();
         for (j, coulomb) in standing.coulomb.iter().enumerate() {
@@ -109,7 +112,8 @@ pub(in crate::diagnosis) fn look(standing: &Standing<'_>) -> Seen {
                 None => together.push(vec![run]),
             }
         }
-        seen.pushes.extend(together.iter().map(|runs| push(standing, runs)));
+        let pushes = together.iter().map(|runs| push(standing, runs));
+        seen.pushes.extend(pushes.filter(|push| push.doubt <= LEVEL_AT_REST));
     }
     seen
 }
@@ -120,11 +124,10 @@ impl Standing<'_> {
     }
 }
 
-/// Stretches of standing still, without the settling after a motion: `[from, to)`.
-pub(in crate::diagnosis) fn stretches(standing: &Standing<'_>) -> Vec<[usize; 2]> {
-    let settling = (SETTLING * standing.rate) as usize;
-    let shortest = (SHORTEST_REST * standing.rate) as usize;
-    let still = standing.still;
+/// Stretches of a motion of this rate in which the robot holds still, without the settling after a motion: `[from, to)`.
+pub(in crate::diagnosis) fn stretches(still: &[bool], rate: f64) -> Vec<[usize; 2]> {
+    let settling = (SETTLING * rate) as usize;
+    let shortest = (SHORTEST_REST * rate) as usize;
     let mut found = Vec::new();
     let mut t = 0;
     while t < still.len() {
@@ -205,7 +208,7 @@ fn push(standing: &Standing<'_>, runs: &[Run]) -> Push {
         let largest = level.iter().copied().fold(0.0_f64, |a, b| if b.abs() > a.abs() { b } else { a });
         // All of the band alike.
         let sigma = coulomb / 3.0_f64.sqrt();
-        doubt = doubt.min(held_by_friction(largest, coulomb, standing.coulomb.len()));
+        doubt = doubt.min(held_by_friction(largest, coulomb, standing.coulomb.len() * standing.times));
         match joints.iter_mut().find(|p| p.joint == run.joint) {
             Some(p) if p.largest.abs() < largest.abs() => (p.mean, p.largest) = (mean, largest),
             Some(_) => {}
@@ -221,13 +224,13 @@ fn push(standing: &Standing<'_>, runs: &[Run]) -> Push {
     }
 }
 
-/// Probability that the static friction of one of so many joints takes a torque.
+/// Probability that static friction takes a torque, on any of so many joints and times.
 ///
 /// Static friction is Coulomb friction times 1 + x, x normal with the spread that makes [`STICTION`] rare.
-fn held_by_friction(torque: f64, coulomb: f64, joints: usize) -> f64 {
+fn held_by_friction(torque: f64, coulomb: f64, chances: usize) -> f64 {
     let spread = (STICTION - 1.0) / ONE_IN_A_HUNDRED;
     let z = (torque.abs() / coulomb.max(1e-12) - 1.0) / spread;
-    (joints as f64 * 0.5 * erfc(z / 2.0_f64.sqrt())).min(1.0)
+    (chances as f64 * 0.5 * erfc(z / 2.0_f64.sqrt())).min(1.0)
 }
 
 #[cfg(test)]

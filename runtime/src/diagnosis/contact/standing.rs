@@ -10,6 +10,7 @@ use crate::diagnosis::rows::signals::{ModelTorques, Signals};
 use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, STICTION};
 use crate::effects::{ContactForce, CoupledRotor, EffectTerm, Form, JointTorque};
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// What is seen of the outside while the robot holds still.
 pub(in crate::diagnosis) struct AtRest {
@@ -65,13 +66,10 @@ pub(in crate::diagnosis) fn at_rest(
         coulomb: coulomb.clone(),
         by_joint: std::array::from_fn(|_| vec![0.0; coulomb.len()]),
     };
-    for (k, s) in context.signals.iter().enumerate().filter(|(_, s)| s.is_target) {
-        let inside = s.edge_samples.min(s.len())
-            ..s.len().saturating_sub(s.edge_samples).max(s.edge_samples.min(s.len()));
-        let still: Vec<bool> = inside
-            .clone()
-            .map(|t| s.dq.iter().zip(slowest).all(|(dq, least)| dq[t].abs() < *least))
-            .collect();
+    let motions: Vec<_> = context.signals.iter().map(|s| holds_still(s, slowest)).collect();
+    let targets = || context.signals.iter().zip(&motions).enumerate().filter(|(_, (s, _))| s.is_target);
+    let times = targets().map(|(_, (s, (_, still)))| stretches(still, s.rate).len()).sum();
+    for (k, (s, (inside, still))) in targets() {
         if !still.contains(&true) {
             continue;
         }
@@ -83,13 +81,14 @@ pub(in crate::diagnosis) fn at_rest(
             rate: s.rate,
             start: s.time(inside.start),
             beyond: &beyond,
-            still: &still,
+            still,
             coulomb: &coulomb,
+            times,
         };
         let Seen { pushes, loads, time } = look(&standing);
         found.time += time;
         found.loads.extend(loads.into_iter().map(|load| (k, load)));
-        for t in stretches(&standing).into_iter().flat_map(|[a, b]| a..b) {
+        for t in stretches(still, s.rate).into_iter().flat_map(|[a, b]| a..b) {
             let time = standing.start + t as f64 / s.rate;
             let pushed = pushes.iter().any(|p| (p.window[0]..=p.window[1]).contains(&time));
             for (j, c) in coulomb.iter().enumerate() {
@@ -107,6 +106,15 @@ pub(in crate::diagnosis) fn at_rest(
         }
     }
     found
+}
+
+/// The samples of a motion without its ends, and whether the whole robot holds still at each.
+fn holds_still(s: &Signals, slowest: &[f64]) -> (Range<usize>, Vec<bool>) {
+    let from = s.edge_samples.min(s.len());
+    let inside = from..s.len().saturating_sub(s.edge_samples).max(from);
+    let slow = |t: usize| s.dq.iter().zip(slowest).all(|(dq, least)| dq[t].abs() < *least);
+    let still = inside.clone().map(slow).collect();
+    (inside, still)
 }
 
 /// What laws are at rest.

@@ -8,6 +8,7 @@
 //! (`absorbed`): a fit takes over a part of every push, and of the noise, and what it leaves is smaller than either.
 
 use crate::diagnosis::contact::memory::Memory;
+use crate::diagnosis::contact::pushed::half_wave;
 use crate::diagnosis::contact::spread::spread;
 use crate::diagnosis::contact::track::Track;
 use crate::diagnosis::contact::uneven::deviations;
@@ -148,6 +149,12 @@ impl White {
         at(places.start)..at(places.end)
     }
 
+    /// Place of a row of a motion.
+    fn place(&self, motion: usize, row: usize) -> usize {
+        let m = &self.motions[motion];
+        m.places[row - m.first]
+    }
+
     /// Rows of a motion within places, and the half wave over these places at them, its noise of one size; `None` where too few
     /// of its rows are there. `wave` is overwritten.
     pub(super) fn even_half_wave(
@@ -161,7 +168,8 @@ impl White {
             return None;
         }
         wave.clear();
-        wave.extend(rows.clone().map(|r| self.height(motion, r, places) / self.deviations[r]));
+        let place = |r: usize| self.place(motion, r);
+        wave.extend(rows.clone().map(|r| half_wave(place(r), places) / self.deviations[r]));
         Some(rows)
     }
 
@@ -169,16 +177,9 @@ impl White {
     pub fn of_half_wave(&self, motion: usize, places: Range<usize>) -> Vec<f64> {
         let mut rows = vec![0.0; self.residual.len()];
         for r in self.within(motion, &places) {
-            rows[r] = self.height(motion, r, &places);
+            rows[r] = half_wave(self.place(motion, r), &places);
         }
         rows
-    }
-
-    /// Height of a half wave at a row.
-    fn height(&self, motion: usize, row: usize, places: &Range<usize>) -> f64 {
-        let m = &self.motions[motion];
-        let at = (m.places[row - m.first] - places.start) as f64 + 0.5;
-        (std::f64::consts::PI * at / places.len() as f64).sin()
     }
 
     /// Amplitude of the half wave over places of a motion, N.m or N, and its standard deviation; `None` where too few of its rows

@@ -6,7 +6,7 @@
 use crate::diagnosis::error::SingularDesign;
 use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::judging::significance::Evidence;
-use crate::diagnosis::rows::design::{Design, Segment};
+use crate::diagnosis::rows::design::Design;
 use crate::diagnosis::rows::fit::Fit;
 use crate::diagnosis::rules::{REFUTED, TOLD_APART};
 use nalgebra::DVector;
@@ -115,11 +115,7 @@ impl Regression {
 /// The motion of the recording and the places in it, so many at most, whose rows gain most together.
 fn most_gained(design: &Design, gains: &[f64], longest: usize) -> Option<(usize, Range<usize>)> {
     let mut best: Option<(f64, usize, Range<usize>)> = None;
-    for (motion, span) in design.spans().into_iter().enumerate().filter(|(_, span)| !span.is_empty()) {
-        let of_motion = |s: &&Segment| s.signal == motion;
-        if !design.segments.iter().find(of_motion).is_some_and(|s| s.is_target) {
-            continue;
-        }
+    for (motion, span) in design.target_spans() {
         let mut of_places = vec![0.0; span.len()];
         for (r, gain) in gains.iter().enumerate().filter(|(r, _)| design.rows[*r].signal == motion) {
             of_places[design.place(r) - span.start] += gain;
@@ -168,29 +164,28 @@ mod tests {
         regression.passage(2..3, 1.0, LONGEST).expect("regular").expect("rows")
     }
 
-    fn said(rng: &mut Pcg64, seen: bool, amplitudes: [f64; 2], what: Elsewhere) -> usize {
-        (0..200).filter(|_| passage(rng, seen, amplitudes).elsewhere == what).count()
+    /// How many of 200 say this.
+    fn said(seed: u64, seen: bool, amplitudes: [f64; 2], what: Elsewhere) -> usize {
+        let mut rng = Pcg64::seed_from_u64(seed);
+        (0..200).filter(|_| passage(&mut rng, seen, amplitudes).elsewhere == what).count()
     }
 
     #[test]
     fn a_law_that_is_there_in_all_motion_shows_elsewhere() {
-        let mut rng = Pcg64::seed_from_u64(1);
-        let shows = said(&mut rng, true, [0.3, 0.0], Elsewhere::Shows);
+        let shows = said(1, true, [0.3, 0.0], Elsewhere::Shows);
         assert!(shows >= 198, "{shows} of 200");
     }
 
     #[test]
     fn what_happens_in_one_passage_is_refuted_by_motion_that_would_show_it() {
-        let mut rng = Pcg64::seed_from_u64(2);
-        let refuted = said(&mut rng, true, [0.0, 1.0], Elsewhere::Refutes);
+        let refuted = said(2, true, [0.0, 1.0], Elsewhere::Refutes);
         // One in twenty shows elsewhere by accident.
         assert!((180..=199).contains(&refuted), "{refuted} of 200");
     }
 
     #[test]
     fn of_what_the_motion_passes_once_the_rest_tells_nothing() {
-        let mut rng = Pcg64::seed_from_u64(3);
-        let untold = said(&mut rng, false, [1.0, 0.0], Elsewhere::Untold);
+        let untold = said(3, false, [1.0, 0.0], Elsewhere::Untold);
         // The edges of what is passed may be outside of the passage.
         assert!(untold >= 180, "{untold} of 200");
     }

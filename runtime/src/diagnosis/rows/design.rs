@@ -291,6 +291,13 @@ impl Design {
         spans
     }
 
+    /// The motions of the recording that is diagnosed, each with its places from its first row to its last.
+    pub fn target_spans(&self) -> Vec<(usize, Range<usize>)> {
+        let is_target = |motion: usize| self.segments.iter().any(|s| s.signal == motion && s.is_target);
+        let spans = self.spans().into_iter().enumerate();
+        spans.filter(|(motion, span)| !span.is_empty() && is_target(*motion)).collect()
+    }
+
     /// Rows in a stretch of motion of this duration, s.
     pub fn rows_within(&self, duration: f64) -> usize {
         (duration / self.step).ceil() as usize

@@ -47,6 +47,9 @@ pub(in crate::diagnosis) const FORCE_RIDGE_ABSOLUTE: f64 = 1e-12;
 pub(in crate::diagnosis) const STICTION: f64 = 1.25;
 /// Standard normal deviate that is passed once in a hundred times: what ties [`STICTION`] to a spread. Statistics.
 pub(in crate::diagnosis) const ONE_IN_A_HUNDRED: f64 = 2.326_347_874;
+/// False alarms per recording of a robot that stands, however often it does. Judgement: one in a thousand, as what a model
+/// leaves out adds to what friction seems to hold.
+pub(in crate::diagnosis) const LEVEL_AT_REST: f64 = 1e-3;
 /// Shortest push against a robot at rest, s: what is shorter is an impact. Mechanics.
 pub(in crate::diagnosis) const SHORTEST_PUSH_AT_REST: f64 = 0.2;
 /// Torques at rest are averaged over this long, s. Mechanics: a hand does not push faster.

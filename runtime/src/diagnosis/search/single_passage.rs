@@ -37,9 +37,7 @@ impl Search<'_> {
     /// Places of slow rows that a push may take, as an exception beside others of so many seconds.
     pub(in crate::diagnosis) fn longest_push(&self, others: f64) -> usize {
         let design = &self.model.slow.design;
-        let is_target = |motion: usize| self.model.context.signals[motion].is_target;
-        let spans = design.spans().into_iter().enumerate();
-        let places: usize = spans.filter(|(motion, _)| is_target(*motion)).map(|(_, span)| span.len()).sum();
+        let places: usize = design.target_spans().iter().map(|(_, span)| span.len()).sum();
         let pushed = LARGEST_PUSHED_FRACTION * places as f64 * design.step - others;
         (pushed.clamp(0.0, SCAN_LONGEST) / design.step) as usize
     }
