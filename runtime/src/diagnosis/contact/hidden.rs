@@ -93,7 +93,7 @@ impl<'a> Remembering<'a> {
         for t in rows.clone() {
             let [from, to] = self.white.stretch(t);
             for (back, sum) in products.iter_mut().enumerate() {
-                // Pairs in which this row is the later one, and those in which a row before the wave's end is not in the wave.
+                // Pairs with this row as the later one, the wave taken out of both; and with it as the earlier one, out of it.
                 if t >= from + back {
                     *sum -= taken(t) * (x[t - back] - taken(t - back));
                 }
