@@ -1,6 +1,7 @@
 //! Half waves of many lengths in the white residual of one joint.
 
 use crate::diagnosis::contact::memory::widening;
+use crate::diagnosis::contact::pushed::Pushed;
 use crate::diagnosis::contact::white::{Motion, Scratch, White};
 use crate::diagnosis::rules::{
     SCAN_EDGE, SCAN_IMPACT, SCAN_LENGTHS, SCAN_LONGEST, SCAN_SHORTEST, SCAN_STEPS, SCAN_STRETCH,
@@ -52,7 +53,7 @@ impl Window {
 
 /// The window whose half wave fits best.
 pub(super) struct Refined {
-    /// Squared deviation.
+    /// Squared deviation, or what else windows were compared by.
     pub square: f64,
     /// First place.
     pub from: usize,
@@ -60,6 +61,33 @@ pub(super) struct Refined {
     pub to: usize,
     /// Standard deviations of both, in places.
     pub edges: [f64; 2],
+}
+
+impl Refined {
+    /// The best of windows `(square, from, to)` that were tried, with how well its edges are known: as far as the square falls by
+    /// one, and as far as pushes that are no half waves begin and end elsewhere. `step` is the time from one place to the next, s.
+    /// `None` where what fits best is over too soon, or lasts too long.
+    pub fn best_of(tried: &[(f64, usize, usize)], step: f64) -> Option<Self> {
+        let (square, from, to) = tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0))?;
+        // What is over sooner is an impact, and none where the rows are too far apart to tell.
+        let [shortest, longest] = [SCAN_IMPACT, SCAN_LONGEST].map(|lasts| (lasts / step) as usize);
+        if !(shortest..=longest.max(shortest)).contains(&(to - from)) {
+            return None;
+        }
+        let near = || tried.iter().filter(|t| t.0 >= square - 1.0);
+        let width = |edge: fn(&(f64, usize, usize)) -> usize| {
+            let (low, high) =
+                near().map(edge).fold((usize::MAX, 0), |(low, high), x| (low.min(x), high.max(x)));
+            (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (to - from) as f64)
+        };
+        Some(Self { square, from, to, edges: [width(|t| t.1), width(|t| t.2)] })
+    }
+
+    /// As a push of a joint in a motion, before it is judged.
+    pub fn as_push(&self, joint: usize, motion: usize) -> Pushed {
+        let Self { square, from, to, edges } = *self;
+        Pushed { joint, motion, places: [from, to - 1], edges, square, doubt: 1.0 }
+    }
 }
 
 /// Lengths of windows in rows, each once; `step` is the time from one to the next, s.
@@ -193,28 +221,6 @@ impl HalfWaves {
                 }
             }
         }
-        let best = tried.iter().copied().max_by(|x, y| x.0.total_cmp(&y.0))?;
-        if !lasts_as_pushes(best.2 - best.1, self.step) {
-            return None;
-        }
-        Some(Refined { square: best.0, from: best.1, to: best.2, edges: edge_deviation(&tried, best) })
+        Refined::best_of(&tried, self.step)
     }
-}
-
-/// Whether a window of so many places, `step` s apart, lasts as long as pushes do: what is over sooner is an impact, and none
-/// where the rows are too far apart to tell.
-pub(super) fn lasts_as_pushes(places: usize, step: f64) -> bool {
-    let [shortest, longest] = [SCAN_IMPACT, SCAN_LONGEST].map(|lasts| (lasts / step) as usize);
-    (shortest..=longest.max(shortest)).contains(&places)
-}
-
-/// Standard deviations of the first place and the last of a window, from those `(square, from, to)` that were tried around the
-/// best: as far as the square falls by one, and as far as pushes that are no half waves begin and end elsewhere.
-pub(super) fn edge_deviation(tried: &[(f64, usize, usize)], best: (f64, usize, usize)) -> [f64; 2] {
-    let near = || tried.iter().filter(|t| t.0 >= best.0 - 1.0);
-    let width = |edge: fn(&(f64, usize, usize)) -> usize| {
-        let (low, high) = near().map(edge).fold((usize::MAX, 0), |(low, high), x| (low.min(x), high.max(x)));
-        (0.5 * high.saturating_sub(low) as f64).max(0.5).hypot(SCAN_EDGE * (best.2 - best.1) as f64)
-    };
-    [width(|t| t.1), width(|t| t.2)]
 }

@@ -6,38 +6,21 @@
 //! for outliers that mask themselves: Chen and Liu 1993, Joint estimation of model parameters and outlier effects in time
 //! series).
 
-use crate::diagnosis::contact::half_waves::{edge_deviation, lasts_as_pushes};
-use crate::diagnosis::contact::pushed::Pushed;
+use crate::diagnosis::contact::half_waves::Refined;
+use crate::diagnosis::contact::memory::raise_order;
 use crate::diagnosis::contact::white::White;
 use crate::diagnosis::rules::SCAN_STEPS;
 use std::ops::Range;
 
-/// The window of a joint with which its residual is likeliest.
-pub(super) struct Likeliest {
-    motion: usize,
-    places: Range<usize>,
-    /// Standard deviations of its first place and its last.
-    edges: [f64; 2],
-    /// Twice the gain of the logarithm of the likelihood.
-    pub gain: f64,
-}
-
-impl Likeliest {
-    /// As a push of a joint, before it is judged.
-    pub fn as_push(&self, joint: usize) -> Pushed {
-        let places = [self.places.start, self.places.end - 1];
-        Pushed { joint, motion: self.motion, places, edges: self.edges, square: self.gain, doubt: 1.0 }
-    }
-}
-
-/// Of windows of these lengths in the recording that is diagnosed, those that are free, `(motion, places)`; `step` is the time
-/// from one place to the next, s. `None` where none makes the residual likelier, or what does lasts too short or too long.
+/// The window of a joint with which its residual is likeliest, and its motion, of windows of these lengths in the recording that is
+/// diagnosed, those that are free, `(motion, places)`; its square is twice the gain of the logarithm of the likelihood. `step` is
+/// the time from one place to the next, s. `None` where none makes the residual likelier, or what does lasts too short or too long.
 pub(super) fn likeliest(
     white: &White,
     lengths: &[usize],
     step: f64,
     is_free: impl Fn((usize, [usize; 2])) -> bool,
-) -> Option<Likeliest> {
+) -> Option<(usize, Refined)> {
     let remembering = Remembering::of(white)?;
     let mut wave = Vec::new();
     let mut best: Option<(f64, usize, Range<usize>)> = None;
@@ -54,8 +37,7 @@ pub(super) fn likeliest(
         }
     }
     let (gain, motion, places) = best?;
-    let likeliest = remembering.refined(motion, (gain, places));
-    lasts_as_pushes(likeliest.places.len(), step).then_some(likeliest)
+    Some((motion, Refined::best_of(&remembering.tried_near(motion, (gain, places)), step)?))
 }
 
 /// A residual with all that it remembers.
@@ -105,8 +87,8 @@ impl<'a> Remembering<'a> {
         Some(x.len() as f64 * (self.log_variance - log_variance(&products)?))
     }
 
-    /// The likeliest window near one of the grid.
-    fn refined(&self, motion: usize, (gain, near): (f64, Range<usize>)) -> Likeliest {
+    /// Windows near one of the grid: the gain of each, its first place and the one after its last.
+    fn tried_near(&self, motion: usize, (gain, near): (f64, Range<usize>)) -> Vec<(f64, usize, usize)> {
         let reach = (near.len() / 4).max(2);
         let fine = (near.len() / (2 * SCAN_STEPS)).max(1);
         let end = self.white.motions[motion].length();
@@ -121,26 +103,17 @@ impl<'a> Remembering<'a> {
                 }
             }
         }
-        let best = tried.iter().copied().fold(tried[0], |best, t| if t.0 > best.0 { t } else { best });
-        let edges = edge_deviation(&tried, best);
-        Likeliest { motion, places: best.1..best.2, edges, gain: best.0 }
+        tried
     }
 }
 
-/// Logarithm of the variance that an autoregression leaves of a series with these sums of products (Levinson's recursion);
+/// Logarithm of the variance that an autoregression leaves of a series with these sums of products;
 /// `None` where there is none.
 fn log_variance(products: &[f64]) -> Option<f64> {
     let mut left = *products.first()?;
     let mut coefficients: Vec<f64> = Vec::with_capacity(products.len());
-    for order in 1..products.len() {
-        let made: f64 = coefficients.iter().zip(products[1..order].iter().rev()).map(|(a, x)| a * x).sum();
-        let reflection = ((products[order] - made) / left).clamp(-0.999, 0.999);
-        for k in 0..order / 2 {
-            let (a, b) = (coefficients[k], coefficients[order - 2 - k]);
-            coefficients[k] = a - reflection * b;
-            coefficients[order - 2 - k] = b - reflection * a;
-        }
-        coefficients.push(reflection);
+    for _ in 1..products.len() {
+        let reflection = raise_order(&mut coefficients, products, left);
         left *= 1.0 - reflection * reflection;
     }
     (left.is_finite() && left > 0.0).then(|| left.ln())
@@ -189,8 +162,8 @@ mod tests {
     #[test]
     fn the_likeliest_window_is_that_of_the_push() {
         for seed in 1..10 {
-            let found = likeliest(&pushed(seed), &[8, 15, 25, 50, 80], STEP, |_| true).expect("a push");
-            assert!(found.places.start.abs_diff(150) < 25 && found.places.end.abs_diff(250) < 25);
+            let (_, found) = likeliest(&pushed(seed), &[8, 15, 25, 50, 80], STEP, |_| true).expect("a push");
+            assert!(found.from.abs_diff(150) < 25 && found.to.abs_diff(250) < 25);
         }
     }
 

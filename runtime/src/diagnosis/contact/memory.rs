@@ -142,13 +142,9 @@ fn autoregression(correlation: &[f64], rows: usize) -> (Vec<Vec<f64>>, Vec<f64>)
     let least = ((rows as f64).cbrt() as usize).min(correlation.len() - 1);
     let mut best = (f64::INFINITY, least);
     for order in 1..correlation.len() {
-        let before: &Vec<f64> = &all[order - 1];
-        let made: f64 = before.iter().enumerate().map(|(k, a)| a * correlation[order - 1 - k]).sum();
+        let mut now: Vec<f64> = all[order - 1].clone();
         let left = variances[order - 1];
-        let reflection = ((correlation[order] - made) / left.max(1e-12)).clamp(-0.999, 0.999);
-        let mut now: Vec<f64> =
-            before.iter().enumerate().map(|(k, a)| a - reflection * before[order - 2 - k]).collect();
-        now.push(reflection);
+        let reflection = raise_order(&mut now, correlation, left.max(1e-12));
         all.push(now);
         variances.push(left * (1.0 - reflection * reflection));
         let criterion =
@@ -160,6 +156,22 @@ fn autoregression(correlation: &[f64], rows: usize) -> (Vec<Vec<f64>>, Vec<f64>)
     all.truncate(best.1 + 1);
     variances.truncate(best.1 + 1);
     (all, variances)
+}
+
+/// One step of Levinson's recursion: the coefficients of an autoregression become those of the next order, where `lags` are
+/// covariances by lag and `left` is the variance that the order before leaves. Returns the reflection coefficient r: the next one
+/// leaves 1 - r² of that.
+pub(super) fn raise_order(coefficients: &mut Vec<f64>, lags: &[f64], left: f64) -> f64 {
+    let order = coefficients.len() + 1;
+    let made: f64 = coefficients.iter().enumerate().map(|(k, a)| a * lags[order - 1 - k]).sum();
+    let reflection = ((lags[order] - made) / left).clamp(-0.999, 0.999);
+    for k in 0..order / 2 {
+        let (a, b) = (coefficients[k], coefficients[order - 2 - k]);
+        coefficients[k] = a - reflection * b;
+        coefficients[order - 2 - k] = b - reflection * a;
+    }
+    coefficients.push(reflection);
+    reflection
 }
 
 /// Autocorrelations of an autoregression, lags 0 to `longest`.

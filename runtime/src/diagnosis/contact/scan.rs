@@ -6,7 +6,7 @@
 //! window beyond what their noise has in common (`common`) adds up. What may be a push on any joint tells nothing of these laws.
 
 use crate::diagnosis::contact::common::Common;
-use crate::diagnosis::contact::half_waves::{HalfWaves, Refined};
+use crate::diagnosis::contact::half_waves::HalfWaves;
 use crate::diagnosis::contact::hidden::likeliest;
 use crate::diagnosis::contact::largest::Law;
 use crate::diagnosis::contact::noise::Noise;
@@ -73,23 +73,13 @@ impl Scanned<'_> {
     /// alone: what it bends elsewhere would be a candidate beside it, and a model can make the one of the other.
     fn add_suspect(&mut self) -> bool {
         self.fit_laws(Law::of);
-        let pushed: usize = self.candidates.iter().map(|c| c.places().len()).sum();
         for Suspect { joint, motion, window, .. } in self.suspects() {
             let joint = &self.joints[joint];
-            if pushed as f64 > joint.most_pushed() || self.is_near(motion, joint.waves.places(window)) {
+            if !self.has_room(joint) || self.is_near(motion, joint.waves.places(window)) {
                 continue;
             }
-            let Some(Refined { square, from, to, edges }) = joint.waves.refined(motion, window) else {
-                continue;
-            };
-            let pushed = Pushed {
-                joint: joint.track.joint,
-                motion,
-                places: [from, to - 1],
-                edges,
-                square,
-                doubt: 1.0,
-            };
+            let Some(window) = joint.waves.refined(motion, window) else { continue };
+            let pushed = window.as_push(joint.track.joint, motion);
             self.candidates.push(Candidate::unfelt(pushed, false));
             return true;
         }
@@ -99,17 +89,14 @@ impl Scanned<'_> {
     /// Tries the window with which the residual of a joint is likeliest; whether it is a push beside all others. Else nothing is as
     /// it was with it.
     fn uncover(&mut self, level: f64) -> bool {
-        let pushed: usize = self.candidates.iter().map(|c| c.places().len()).sum();
         let is_free = |(motion, places)| !self.is_near(motion, places);
-        let joints = self.joints.iter().filter(|joint| pushed as f64 <= joint.most_pushed());
+        let joints = self.joints.iter().filter(|joint| self.has_room(joint));
         let windows = joints.filter_map(|joint| {
-            likeliest(joint.waves.white(), &self.lengths, self.step, is_free)
-                .map(|window| (joint.track.joint, window))
+            let (motion, window) = likeliest(joint.waves.white(), &self.lengths, self.step, is_free)?;
+            Some(window.as_push(joint.track.joint, motion))
         });
-        let Some((joint, window)) = windows.max_by(|a, b| a.1.gain.total_cmp(&b.1.gain)) else {
-            return false;
-        };
-        self.candidates.push(Candidate::unfelt(window.as_push(joint), false));
+        let Some(pushed) = windows.max_by(|a, b| a.square.total_cmp(&b.square)) else { return false };
+        self.candidates.push(Candidate::unfelt(pushed, false));
         self.look();
         self.judge();
         let is_push = self.candidates.last().is_some_and(|c| c.pushed.doubt <= level);
@@ -118,6 +105,12 @@ impl Scanned<'_> {
             self.look();
         }
         is_push
+    }
+
+    /// Whether the candidates take so little of what a joint moves that more of them would still be an exception.
+    fn has_room(&self, joint: &Joint<'_>) -> bool {
+        let pushed: usize = self.candidates.iter().map(|c| c.places().len()).sum();
+        pushed as f64 <= joint.most_pushed()
     }
 
     /// Drops candidates that are no push by what all other windows do, which those are then among.

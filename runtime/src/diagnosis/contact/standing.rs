@@ -66,10 +66,10 @@ pub(in crate::diagnosis) fn at_rest(
         coulomb: coulomb.clone(),
         by_joint: std::array::from_fn(|_| vec![0.0; coulomb.len()]),
     };
-    let motions: Vec<_> = context.signals.iter().map(|s| holds_still(s, slowest)).collect();
-    let targets = || context.signals.iter().zip(&motions).enumerate().filter(|(_, (s, _))| s.is_target);
-    let times = targets().map(|(_, (s, (_, still)))| stretches(still, s.rate).len()).sum();
-    for (k, (s, (inside, still))) in targets() {
+    let targets = context.signals.iter().enumerate().filter(|(_, s)| s.is_target);
+    let targets: Vec<_> = targets.map(|(k, s)| (k, s, holds_still(s, slowest))).collect();
+    let times = targets.iter().map(|(_, s, (_, still))| stretches(still, s.rate).len()).sum();
+    for (k, s, (inside, still)) in targets {
         if !still.contains(&true) {
             continue;
         }
@@ -81,14 +81,14 @@ pub(in crate::diagnosis) fn at_rest(
             rate: s.rate,
             start: s.time(inside.start),
             beyond: &beyond,
-            still,
+            still: &still,
             coulomb: &coulomb,
             times,
         };
         let Seen { pushes, loads, time } = look(&standing);
         found.time += time;
         found.loads.extend(loads.into_iter().map(|load| (k, load)));
-        for t in stretches(still, s.rate).into_iter().flat_map(|[a, b]| a..b) {
+        for t in stretches(&still, s.rate).into_iter().flat_map(|[a, b]| a..b) {
             let time = standing.start + t as f64 / s.rate;
             let pushed = pushes.iter().any(|p| (p.window[0]..=p.window[1]).contains(&time));
             for (j, c) in coulomb.iter().enumerate() {
