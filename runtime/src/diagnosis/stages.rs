@@ -8,14 +8,14 @@ use super::explanation::standard_model::StandardModelFit;
 use super::explanation::standstill;
 use super::judging::passage::Elsewhere;
 use super::large_error::LargeError;
-use super::objection::Objection;
-use super::outcome::{Diagnosis, Finding, Sampling};
+use super::objection::{Objection, harmful, no_larger_than_accidents};
+use super::outcome::{Diagnosis, Sampling};
 use super::preparation::{Prepared, nothing_moves};
 use super::pushes::Pushes;
 use super::rate::LAW;
 use super::reference::Reference;
 use super::rows::fit::Fit;
-use super::rules::{RECURRING, SHOWS_IN_ALL};
+use super::rules::RECURRING;
 use super::search::extended_model::ExtendedModel;
 use super::search::report::SearchReport;
 use super::search::state::Search;
@@ -155,6 +155,7 @@ impl<'a> Course<'a> {
 
             // 7. What harms, or other evidence speaks against, is left out, and the search goes on.
             let mut objected = harmful(&diagnosis);
+            objected.extend(no_larger_than_accidents(&diagnosis));
             if objected.is_empty() {
                 objected = objections.as_mut().map_or_else(Vec::new, |object| object(&mut diagnosis));
             }
@@ -317,20 +318,6 @@ impl<'a> Course<'a> {
         let standard = StandardModelFit::new(&search.model.without_nuisances()?)?;
         Ok(Begun { search, standard, sampling })
     }
-}
-
-/// Laws that make motion which was held out worse, once nothing is fitted beside them that is never named; where only all
-/// together do so, as beside a transient, one that hardly makes its own joints better.
-fn harmful(diagnosis: &Diagnosis) -> Vec<Objection> {
-    let judged = || diagnosis.findings.iter().filter(|f| f.without.is_some());
-    let harms = |f: &&Finding| f.held_out_after > f.held_out_before;
-    let mut harmful: Vec<&Finding> = judged().filter(harms).collect();
-    if harmful.is_empty() && diagnosis.held_out.after > diagnosis.held_out.before {
-        let left = |f: &Finding| f.held_out_after / f.held_out_before.max(1e-300);
-        let hardly_helps = judged().filter(|f| left(f) > SHOWS_IN_ALL);
-        harmful.extend(hardly_helps.max_by(|a, b| left(a).total_cmp(&left(b))));
-    }
-    harmful.into_iter().map(|f| Objection::to(f, false)).collect()
 }
 
 fn at_rest(model: &dyn Model, prepared: &Prepared) -> Result<Diagnosis, DiagnosisError> {

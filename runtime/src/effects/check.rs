@@ -1,6 +1,6 @@
 //! Whether a term that comes from a file can be evaluated on a robot.
 
-use super::{At, EffectTerm, Form, FreeLaw, JointLaw, Place, Scale};
+use super::{At, EffectTerm, Form, FreeLaw, JointLaw, Moved, Place, Scale};
 use crate::model::{JointNumber, Robot};
 
 /// What of a term cannot be.
@@ -97,7 +97,7 @@ impl EffectTerm {
         let scale = self.scale.map_or(WIDE, Scale::from);
         let mut out = vec![0.0; self.amplitude.len()];
         for dq in [0.0, 1e-3, -1.0] {
-            let memory = law.advance(&self.shape, 0.0, dq);
+            let memory = law.advance(&scale, &self.shape, 0.0, Moved { travel: dq, step: 1.0 });
             law.law(&scale, &self.shape, &At { dq, sign: 1.0, ..At::default() }, memory, &mut out);
             if out.iter().any(|x| !x.is_finite()) {
                 return wrong("shape", format!("no {} has {:?}", self.effect.id(), self.shape));

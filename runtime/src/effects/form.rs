@@ -111,6 +111,20 @@ impl Form {
         }
     }
 
+    /// As [`Self::shape_search`], of a shape within the grid of its own form of the law.
+    pub fn shape_search_of(
+        self,
+        place: Place,
+        scales: &[Scale],
+        grid: &[&[f64]],
+        shape: &[f64],
+    ) -> ShapeSearch {
+        let all = self.shape_search(place, scales, grid);
+        let of_form: Vec<&[f64]> =
+            grid.iter().copied().filter(|other| all.is_same_form(other, shape)).collect();
+        self.shape_search(place, scales, &of_form)
+    }
+
     /// How shapes between those of a grid are searched at a place.
     pub fn shape_search(self, place: Place, scales: &[Scale], grid: &[&[f64]]) -> ShapeSearch {
         match self {

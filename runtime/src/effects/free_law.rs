@@ -5,7 +5,7 @@
 
 use super::spline::{BENDS, FINE_SPLINES, SPLINES, bends, steps};
 use super::together::Together;
-use super::variable::Variable;
+use super::variable::{STANDSTILL, Variable};
 
 /// A variable and the interval of its values that a curve is over.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,13 +27,20 @@ pub struct Seen {
     pub direction: f64,
 }
 
-/// Speeds below this part of the interval count as no direction of another joint: its sign is noise there.
-const STANDSTILL: f64 = 0.02;
-
 impl Axis {
-    /// Its position in the interval, -1 to 1 within it.
-    fn place(&self, value: f64) -> f64 {
+    /// Its position in the interval, -1 to 1 within it, in proportion to its value.
+    fn along(&self, value: f64) -> f64 {
         (value - self.centre) / self.half.max(f64::MIN_POSITIVE)
+    }
+
+    /// The same as curves see it: where what depends on the variable fades, by the root of the part of the interval before it,
+    /// so that the first of four intervals is a sixteenth of it.
+    fn place(&self, value: f64) -> f64 {
+        let along = self.along(value);
+        if !self.variable.fades() {
+            return along;
+        }
+        2.0 * (0.5 * (along + 1.0)).max(0.0).sqrt() - 1.0
     }
 
     /// A value with its direction; that of the joint that the torque acts on is `own`, and certain.
@@ -57,7 +64,7 @@ impl Axis {
         let place = self.place(at.value);
         match together {
             Together::Fine => out.extend(steps::<FINE_SPLINES>(place)),
-            Together::Lines => out.push(place.clamp(-1.0, 1.0)),
+            Together::Lines => out.push(self.along(at.value).clamp(-1.0, 1.0)),
             _ => out.extend(steps::<SPLINES>(place)),
         }
         if self.variable.has_direction() {
@@ -65,6 +72,9 @@ impl Axis {
         }
     }
 }
+
+/// Parts of an interval along which what fades falls to a third: together they make any fall between the first and the last.
+const FADES_ALONG: [f64; 3] = [0.025, 0.1, 0.4];
 
 /// The sum of two positions, or the first less the second: what a cable that runs over both joints is bent by, or the direction
 /// in space of a link behind parallel axes.
@@ -159,7 +169,25 @@ impl FreeLaw {
         let same = axes.windows(2).any(|w| w[0].variable == w[1].variable);
         let is_position = |axis: &Axis| matches!(axis.variable, Variable::Position(_));
         let adds = together.sign_of_second().is_none() || axes.iter().all(is_position);
-        (whole && !same && adds).then_some(Self { together, axes })
+        let law = Self { together, axes };
+        let fades = together != Together::Fading || law.fading().is_some();
+        (whole && !same && adds && fades).then_some(law)
+    }
+
+    /// Whether what two variables do together may be friction that fades: one has the direction of a joint, the other tells how
+    /// long ago this joint stood.
+    pub fn may_fade([a, b]: [Variable; 2]) -> bool {
+        let of_one = |speed: Variable, since: Variable| {
+            speed.has_direction() && since.fades() && speed.joint() == since.joint()
+        };
+        of_one(a, b) || of_one(b, a)
+    }
+
+    /// Places of the variable with a direction, and of the one that it fades along; `None` where it is no such law.
+    fn fading(&self) -> Option<[usize; 2]> {
+        let [a, b] = self.axes.as_slice() else { return None };
+        let fades = self.together == Together::Fading && Self::may_fade([a.variable, b.variable]);
+        fades.then_some(if a.variable.has_direction() { [0, 1] } else { [1, 0] })
     }
 
     /// Whether a shape means a curve over the position of this joint and nothing else.
@@ -174,6 +202,9 @@ impl FreeLaw {
     pub fn amplitudes(&self) -> usize {
         if self.together.sign_of_second().is_some() {
             return FINE_SPLINES;
+        }
+        if self.together == Together::Fading {
+            return FADES_ALONG.len();
         }
         let curves: usize = self.axes.iter().map(|axis| axis.curve(self.together)).sum();
         let products = match self.axes.as_slice() {
@@ -193,6 +224,11 @@ impl FreeLaw {
         out.clear();
         if let (Some(sum), [a, b]) = (self.sum(), at) {
             out.extend(steps::<FINE_SPLINES>(sum.place(a.value, b.value)));
+            return;
+        }
+        if let Some([speed, along]) = self.fading() {
+            let gone = 0.5 * (self.axes[along].along(at[along].value) + 1.0).max(0.0);
+            out.extend(FADES_ALONG.map(|part| at[speed].direction * (-gone / part).exp()));
             return;
         }
         if self.together.has_curves() {
@@ -248,7 +284,11 @@ mod tests {
             [FreeLaw::one(q), FreeLaw::fine(q), FreeLaw::fine(dq), FreeLaw::line(q), FreeLaw::line(dq)];
         let of_two = |pair| Together::OF_ANY_TWO.map(|together| FreeLaw::two(together, pair));
         let sums = Together::OF_POSITIONS.map(|together| FreeLaw::two(together, [q, p]));
-        let laws = alone.into_iter().chain(of_two([q, dq])).chain(of_two([dq, time])).chain(sums);
+        let since = [Variable::TravelSinceReversal(0), Variable::TimeSinceReversal(0)].map(axis);
+        let fading = since.into_iter().flat_map(|s| [[s, dq], [dq, s]]);
+        let fading = fading.map(|pair| FreeLaw::two(Together::Fading, pair));
+        let laws =
+            alone.into_iter().chain(of_two([q, dq])).chain(of_two([dq, time])).chain(sums).chain(fading);
         for law in laws {
             assert_eq!(FreeLaw::from_shape(&law.shape(), 2), Some(law.clone()));
             let mut out = Vec::new();
@@ -270,6 +310,9 @@ mod tests {
         assert!(FreeLaw::from_shape(&twice, 2).is_none(), "one variable twice");
         let mixed = FreeLaw::two(Together::Sum, [axis(Variable::Position(1)), axis(Variable::Time)]);
         assert!(FreeLaw::from_shape(&mixed.shape(), 2).is_none(), "a sum of a position and a time");
+        let apart = [Variable::TravelSinceReversal(1), Variable::Speed(0)].map(axis);
+        let fading = FreeLaw::two(Together::Fading, apart);
+        assert!(FreeLaw::from_shape(&fading.shape(), 2).is_none(), "the rest of another joint");
     }
 
     #[test]
@@ -285,6 +328,44 @@ mod tests {
             assert!((up + down).abs() < 1e-12);
         }
         assert_ne!(at(1.3, 1.0), at(0.3, 1.0));
+    }
+
+    #[test]
+    fn friction_fades_along_the_way_in_the_direction_of_the_joint() {
+        let over = |variable| Axis { variable, centre: 1.0, half: 1.0 };
+        let law =
+            FreeLaw::two(Together::Fading, [Variable::Speed(0), Variable::TravelSinceReversal(0)].map(over));
+        let at = |travel: f64, direction: f64| {
+            let mut out = Vec::new();
+            law.columns(
+                &[Seen { value: direction, direction }, Seen { value: travel, direction: 0.0 }],
+                &mut out,
+            );
+            out
+        };
+        assert_eq!(at(0.0, 1.0), [1.0; 3]);
+        assert_eq!(at(0.0, -1.0), [-1.0; 3]);
+        assert!(
+            at(0.2, 1.0).iter().zip([4.0_f64, 1.0, 0.25]).all(|(x, gone)| (x - (-gone).exp()).abs() < 1e-12)
+        );
+    }
+
+    #[test]
+    fn a_curve_over_what_fades_bends_where_it_is_small_and_a_line_over_it_is_straight() {
+        let over = |variable| Axis { variable, centre: 1.0, half: 1.0 };
+        let moved = |law: FreeLaw, from: f64| {
+            let at = |value: f64| {
+                let mut out = Vec::new();
+                law.columns(&[Seen { value, direction: 0.0 }], &mut out);
+                out
+            };
+            let apart = at(from).iter().zip(at(from + 0.05)).map(|(a, b)| (a - b).abs()).sum::<f64>();
+            apart
+        };
+        let [travel, q] = [Variable::TravelSinceReversal(0), Variable::Position(0)].map(over);
+        assert!(moved(FreeLaw::one(travel), 0.0) > 2.0 * moved(FreeLaw::one(q), 0.0));
+        assert!(moved(FreeLaw::one(travel), 1.5) < moved(FreeLaw::one(q), 1.5));
+        assert_eq!(moved(FreeLaw::line(travel), 0.0), moved(FreeLaw::line(q), 0.0));
     }
 
     #[test]

@@ -78,6 +78,15 @@ pub struct At {
     pub friction: f64,
 }
 
+/// What a joint has moved by from one instant to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Moved {
+    /// rad or m, with its direction.
+    pub travel: f64,
+    /// s.
+    pub step: f64,
+}
+
 /// How a law acts where its joint is at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AtRest {
@@ -181,8 +190,8 @@ pub trait JointLaw: Sync {
         0.0
     }
 
-    /// New inner state after a travel of the joint; laws without memory keep 0.
-    fn advance(&self, _shape: &[f64], memory: f64, _travel: f64) -> f64 {
+    /// New inner state after a step of the motion; laws without memory keep 0.
+    fn advance(&self, _scale: &Scale, _shape: &[f64], memory: f64, _moved: Moved) -> f64 {
         memory
     }
 

@@ -51,7 +51,7 @@ pub use coupled::CoupledRotor;
 pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, SpecialCase, ToldBy, Words};
 pub use form::Form;
 pub use free_law::{Axis, FreeLaw, Seen, Sum};
-pub use joint_law::{At, AtRest, HEARD_JOINT, JointLaw, Scale};
+pub use joint_law::{At, AtRest, HEARD_JOINT, JointLaw, Moved, Scale};
 pub use place::Place;
 pub use quantity::{Parameter, Quantities, unit_behind};
 pub use rigid_body::{BODY_SYMBOLS, BodyEstimate, BodyOnLink, body_columns, body_detail};
@@ -65,6 +65,8 @@ pub(crate) use term::named;
 pub use term::{EffectTerm, TermScale, intervals_by_joint, times_faster};
 pub use together::Together;
 pub use user_law::{LawError, UserLaw};
+#[cfg(feature = "diagnosis")]
+pub(crate) use variable::STANDSTILL;
 pub use variable::{SinceReversal, Variable};
 
 #[cfg(test)]

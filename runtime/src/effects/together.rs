@@ -19,10 +19,12 @@ pub enum Together {
     Sum,
     /// The same over the first less the second.
     Difference,
+    /// What has the direction of one and fades along the other: friction that wears off after a rest.
+    Fading,
 }
 
 impl Together {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::One,
         Self::Added,
         Self::Multiplied,
@@ -31,6 +33,7 @@ impl Together {
         Self::Lines,
         Self::Sum,
         Self::Difference,
+        Self::Fading,
     ];
 
     /// Ways in which any two variables may come together.
@@ -51,7 +54,7 @@ impl Together {
 
     /// Whether there is a curve or a line over each variable.
     pub(super) fn has_curves(self) -> bool {
-        !matches!(self, Self::Multiplied | Self::Sum | Self::Difference)
+        !matches!(self, Self::Multiplied | Self::Sum | Self::Difference | Self::Fading)
     }
 
     /// Whether there are products of two variables.

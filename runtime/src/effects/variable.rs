@@ -2,6 +2,9 @@
 
 use crate::model::{JointIndex, JointKind, Robot};
 
+/// Below this part of its speeds a joint has no direction: the sign is noise there.
+pub(crate) const STANDSTILL: f64 = 0.02;
+
 /// A quantity of a joint (0-based), or of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Variable {
@@ -17,9 +20,9 @@ pub enum Variable {
     Torque(usize),
     /// Time in the motion.
     Time,
-    /// Time since the joint last reversed.
+    /// Time since the joint last reversed or stood.
     TimeSinceReversal(usize),
-    /// Distance since the joint last reversed.
+    /// Distance since the joint last reversed or stood.
     TravelSinceReversal(usize),
 }
 
@@ -86,6 +89,11 @@ impl Variable {
         }
     }
 
+    /// Whether what depends on it fades, so that most happens where it is small: its curves bend more narrowly there.
+    pub(super) fn fades(self) -> bool {
+        matches!(self, Self::TimeSinceReversal(_) | Self::TravelSinceReversal(_))
+    }
+
     /// Whether it has a direction, at whose change a torque may jump.
     pub fn has_direction(self) -> bool {
         matches!(self, Self::Speed(_))
@@ -118,8 +126,8 @@ impl Variable {
             Self::Load(j) => of("load", j),
             Self::Torque(j) => of("torque", j),
             Self::Time => "time".into(),
-            Self::TimeSinceReversal(j) => of("time since the last reversal", j),
-            Self::TravelSinceReversal(j) => of("distance since the last reversal", j),
+            Self::TimeSinceReversal(j) => of("time since the last reversal or rest", j),
+            Self::TravelSinceReversal(j) => of("distance since the last reversal or rest", j),
         }
     }
 
@@ -135,24 +143,27 @@ impl Variable {
     }
 }
 
-/// Time and distance since a joint last reversed, from instant to instant.
+/// Time and distance since a joint last reversed or stood, from instant to instant: what a contact that slides has forgotten
+/// of its rest.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SinceReversal {
     /// s.
     pub time: f64,
     /// rad or m.
     pub travel: f64,
-    forward: bool,
+    /// Direction of motion, 0 where the joint stands.
+    direction: f64,
 }
 
 impl SinceReversal {
-    /// The joint has moved on by `travel` in `step` seconds and has speed `dq`.
+    /// The joint has moved on by `travel` in `step` seconds and has speed `dq`, 0 where it stands.
     pub fn advance(&mut self, dq: f64, travel: f64, step: f64) {
-        if (dq > 0.0) == self.forward {
+        let direction = if dq == 0.0 { 0.0 } else { dq.signum() };
+        if direction != 0.0 && direction == self.direction {
             self.time += step;
             self.travel += travel.abs();
         } else {
-            *self = Self { forward: dq > 0.0, ..Self::default() };
+            *self = Self { direction, ..Self::default() };
         }
     }
 }
@@ -181,5 +192,17 @@ mod tests {
             since.advance(dq, travel, 0.5);
         }
         assert!((since.time - 0.5).abs() < 1e-12 && (since.travel - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn time_and_distance_start_anew_after_a_rest_in_either_direction() {
+        for direction in [1.0, -1.0] {
+            let mut since = SinceReversal::default();
+            (0..4).for_each(|_| since.advance(direction, 0.1 * direction, 0.5));
+            (0..3).for_each(|_| since.advance(0.0, 1e-6 * direction, 0.5));
+            assert_eq!((since.time, since.travel), (0.0, 0.0), "it stands");
+            (0..3).for_each(|_| since.advance(direction, 0.1 * direction, 0.5));
+            assert!((since.time - 1.0).abs() < 1e-12 && (since.travel - 0.2).abs() < 1e-12);
+        }
     }
 }

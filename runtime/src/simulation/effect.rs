@@ -1,7 +1,7 @@
 //! The law of one joint as a torque of a simulated robot.
 
 use super::extra::{ExtraTorque, Instant};
-use crate::effects::{At, AtRest, EffectTerm, JointLaw, Scale};
+use crate::effects::{At, AtRest, EffectTerm, JointLaw, Moved, Scale};
 use crate::model::{ParameterKind, Robot};
 
 /// The law of one joint as a torque of this joint, or of one that feels it.
@@ -118,10 +118,13 @@ impl ExtraTorque for EffectTorque {
         self.law.needs_gravity(&self.shape)
     }
 
-    fn advance(&mut self, at: &Instant<'_>, _: f64) {
+    fn advance(&mut self, at: &Instant<'_>, step: f64) {
         let q = at.q[self.of];
         match self.last {
-            Some(last) => self.memory = self.law.advance(&self.shape, self.memory, q - last),
+            Some(last) => {
+                let moved = Moved { travel: q - last, step };
+                self.memory = self.law.advance(&self.scale, &self.shape, self.memory, moved);
+            }
             None => self.memory = self.law.memory_at_start(&self.scale, at.dq[self.of]),
         }
         self.last = Some(q);

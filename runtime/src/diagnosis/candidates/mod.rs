@@ -4,6 +4,7 @@ pub(in crate::diagnosis) mod candidate;
 pub(in crate::diagnosis) mod companions;
 pub(in crate::diagnosis) mod free_form;
 pub(in crate::diagnosis) mod gains;
+mod glance;
 pub(in crate::diagnosis) mod nuisances;
 pub(in crate::diagnosis) mod order_line;
 pub(in crate::diagnosis) mod position_noise;

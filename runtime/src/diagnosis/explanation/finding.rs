@@ -55,7 +55,7 @@ pub(in crate::diagnosis) fn of_term(
     let regression = model.regression(window);
     let range = regression.term_columns[k].clone();
     let amplitude: Vec<f64> = range.map(|c| regression.fit.chi[c]).collect();
-    let Quantified { parameters, amplitude, sigma } = quantified(model, accepted, amplitude, deviations);
+    let Quantified { parameters, amplitude, sigma } = quantified(model, k, amplitude, deviations);
     let reduced = model.without(k)?;
     let seen = regression.curves();
     let after = regression.held_out(false, &seen)?.error_on(&accepted.shows_on);
@@ -99,7 +99,7 @@ fn bare_term(model: &ExtendedModel<'_>, k: usize) -> EffectTerm {
     let regression = model.regression(accepted.effect.properties().window);
     let amplitude: Vec<f64> = regression.term_columns[k].clone().map(|c| regression.fit.chi[c]).collect();
     let deviations = Deviations::none(amplitude.len(), accepted.shape.len());
-    let Quantified { amplitude, sigma, .. } = quantified(model, accepted, amplitude, deviations);
+    let Quantified { amplitude, sigma, .. } = quantified(model, k, amplitude, deviations);
     with_amplitude(model, accepted, amplitude, sigma)
 }
 

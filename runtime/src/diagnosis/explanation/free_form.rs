@@ -58,17 +58,20 @@ fn grid(axis: &Axis) -> impl Iterator<Item = f64> + use<> {
     (0..POINTS).map(move |k| low + (k as f64 + 1e-3) * step)
 }
 
-/// Difference between the largest and the smallest torque of a law at the rows of its joint that move in the same
-/// direction: what it adds to all of those, friction and offset of the joint may take over.
+/// Difference between the largest and the smallest torque of law `k` at the rows of its joint that move in the same
+/// direction: what it adds to all of those, friction and offset of the joint may take over. `sigma` are the standard deviations
+/// of its amplitudes.
 pub(in crate::diagnosis) fn swing(
     model: &ExtendedModel<'_>,
-    term: &Accepted,
+    k: usize,
     amplitude: &[f64],
     sigma: &[f64],
 ) -> Option<Parameter> {
+    let term = &model.terms[k];
     let joint = term.place.joint()?;
     let (design, context) = (&model.slow.design, &model.context);
     let dense = model.columns_of(design, term);
+    let covariance = with_deviations(covariance(model, k), sigma);
     let forward = |r: usize| context.signals[design.rows[r].signal].dq[joint][design.rows[r].centre] > 0.0;
     let of_direction = |direction: bool| {
         let rows = design.of_joint(joint).filter(|&r| forward(r) == direction);
@@ -77,12 +80,21 @@ pub(in crate::diagnosis) fn swing(
             |a: &&Vec<f64>, b: &&Vec<f64>| product(a, amplitude).total_cmp(&product(b, amplitude));
         let (top, bottom) = (all.iter().max_by(by_torque)?, all.iter().min_by(by_torque)?);
         let difference: Vec<f64> = top.iter().zip(bottom).map(|(t, b)| t - b).collect();
-        let deviation = difference.iter().zip(sigma).map(|(d, s)| (d * s).powi(2)).sum::<f64>().sqrt();
-        Some((product(&difference, amplitude), deviation))
+        Some((product(&difference, amplitude), deviation(&covariance, &difference)))
     };
     let both = [true, false].into_iter().filter_map(of_direction);
     let (swing, deviation) = both.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Parameter::new("swing", swing, deviation, context.scales[joint].kind.torque_unit()))
+}
+
+/// A covariance of the same correlations whose standard deviations are these.
+fn with_deviations(mut covariance: Vec<Vec<f64>>, sigma: &[f64]) -> Vec<Vec<f64>> {
+    let scale: Vec<f64> =
+        (sigma.iter().enumerate()).map(|(i, s)| s / covariance[i][i].sqrt().max(f64::MIN_POSITIVE)).collect();
+    for (i, row) in covariance.iter_mut().enumerate() {
+        row.iter_mut().zip(&scale).for_each(|(c, s)| *c *= scale[i] * s);
+    }
+    covariance
 }
 
 /// Covariance of the amplitudes of term `k`, row by row.
@@ -204,7 +216,7 @@ pub(in crate::diagnosis) fn proposal(model: &ExtendedModel<'_>, k: usize) -> Opt
     let own_speed = |a: &&Axis| a.variable == Variable::Speed(joint);
     let (axis, direction) = match (law.axes.as_slice(), law.together) {
         ([axis], Together::One | Together::Fine) => (axis, None),
-        (axes, Together::Multiplied) => {
+        (axes, Together::Multiplied | Together::Fading) => {
             (axes.iter().find(|a| !own_speed(a))?, Some(axes.iter().find(own_speed)?))
         }
         _ => return None,

@@ -20,15 +20,15 @@ pub(in crate::diagnosis) struct Quantified {
     pub sigma: Vec<f64>,
 }
 
-/// The quantities a person knows, with the uncertainty of shapes propagated to first order; from the amplitudes and
-/// the standard deviations of amplitudes and shape.
+/// The quantities of term `k` that a person knows, with the uncertainty of shapes propagated to first order; from the amplitudes
+/// and the standard deviations of amplitudes and shape.
 pub(in crate::diagnosis) fn quantified(
     model: &ExtendedModel<'_>,
-    term: &Accepted,
+    k: usize,
     amplitude: Vec<f64>,
     deviations: Deviations,
 ) -> Quantified {
-    let context = &model.context;
+    let (context, term) = (&model.context, &model.terms[k]);
     let Deviations { amplitude: sigma, shape: shape_sigma } = deviations;
     let parameters = match term.effect.form() {
         Form::Joint(law) | Form::Heard(law) => term.place.law_of().map(|j| {
@@ -56,7 +56,7 @@ pub(in crate::diagnosis) fn quantified(
             let ratio_sigma = shape_sigma.first().copied().unwrap_or(0.0);
             CoupledRotor { ratio }.parameters(&amplitude, &sigma, ratio_sigma)
         }),
-        Form::Free => free_form::swing(model, term, &amplitude, &sigma).map(|swing| vec![swing]),
+        Form::Free => free_form::swing(model, k, &amplitude, &sigma).map(|swing| vec![swing]),
         Form::User => term.place.law().map(|law| {
             let unit = context.scales[law.joint()].kind.torque_unit();
             law.parameters([&amplitude, &sigma], [&term.shape, &shape_sigma], unit)

@@ -8,7 +8,7 @@ use crate::diagnosis::rows::series::Series;
 use crate::diagnosis::rows::signals::ModelTorques;
 use crate::diagnosis::rows::user::user_columns;
 use crate::effects::{
-    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Place, Scale, Sensitivity,
+    At, CoupledRotor, Direction, EffectKind, EffectTerm, Form, JointLaw, Moved, Place, Scale, Sensitivity,
     TermScale, Transmission, body_columns, derivable, derivative, numbers_at,
 };
 use std::borrow::Cow;
@@ -96,7 +96,8 @@ impl Context<'_> {
         let mut memory = law.memory_at_start(scale, first(&s.dq[j])) + self.off_at_start;
         let mut before = first(&s.q[j]);
         for t in 0..s.len() {
-            memory = law.advance(shape, memory, s.q[j][t] - before);
+            let step = if t == 0 { 0.0 } else { 1.0 / s.rate };
+            memory = law.advance(scale, shape, memory, Moved { travel: s.q[j][t] - before, step });
             before = s.q[j][t];
             let dq = s.dq[j][t];
             let at = At {

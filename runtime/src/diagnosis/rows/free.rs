@@ -2,7 +2,7 @@
 
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::series::Series;
-use crate::effects::{Axis, FreeLaw, Seen, SinceReversal, Variable};
+use crate::effects::{Axis, FreeLaw, STANDSTILL, Seen, SinceReversal, Variable};
 
 /// The columns of a law on joint `j` with a shape in one motion; `None` where the shape means no law.
 pub(in crate::diagnosis) fn free_columns(
@@ -35,10 +35,12 @@ pub(in crate::diagnosis) fn values(context: &Context<'_>, signal: usize, variabl
     let s = &context.signals[signal];
     let since = |j: usize, of: fn(&SinceReversal) -> f64| {
         let mut since = SinceReversal::default();
+        let least = STANDSTILL * context.scales[j].speed;
         (0..s.len())
             .map(|t| {
                 let travel = if t == 0 { 0.0 } else { s.q[j][t] - s.q[j][t - 1] };
-                since.advance(s.dq[j][t], travel, 1.0 / s.rate);
+                let dq = s.dq[j][t];
+                since.advance(if dq.abs() > least { dq } else { 0.0 }, travel, 1.0 / s.rate);
                 of(&since)
             })
             .collect()

@@ -88,6 +88,8 @@ pub(in crate::diagnosis) const LEAST_FALL: f64 = 1e-6;
 /// says: the torque that is missing depends on these variables and on nothing else, which is wrong where it is not most
 /// of it.
 pub(in crate::diagnosis) const FREE_FORM_SHARE: f64 = 0.5;
+/// Probability that the swing of amplitudes which are noise passes for one: that of the 95 % intervals which are told.
+pub(in crate::diagnosis) const SWING_LEVEL: f64 = 0.05;
 /// Such a law is looked for where this part of what remains of a joint is the same two rows later, and so no noise: twice
 /// the least fraction of a law, of which it must explain half.
 pub(in crate::diagnosis) const SLOW_PART_OF_REMAINS: f64 = 0.25;

@@ -95,7 +95,7 @@ impl Search<'_> {
         candidate: &Candidate,
         start: &Trial,
     ) -> Vec<f64> {
-        let search = self.shape_search(candidate);
+        let search = self.shape_search(candidate, &start.shape);
         let grid = candidate.trials.iter().take(candidate.shapes);
         let mut best_of_others: Vec<(&Trial, f64)> = Vec::new();
         for trial in grid.filter(|trial| trial.columns.len() == start.columns.len()) {
@@ -125,10 +125,11 @@ impl Search<'_> {
         self.climbed(regression, candidate, start).0
     }
 
-    /// How the shape of a candidate is searched from the shapes that were tried.
-    fn shape_search(&self, candidate: &Candidate) -> ShapeSearch {
+    /// How a shape of a candidate is searched, within those of its form that were tried.
+    fn shape_search(&self, candidate: &Candidate, shape: &[f64]) -> ShapeSearch {
         let grid: Vec<&[f64]> = candidate.trials.iter().map(|t| t.shape.as_slice()).collect();
-        candidate.effect.form().shape_search(candidate.place, &self.model.context.scales, &grid)
+        let (form, scales) = (candidate.effect.form(), &self.model.context.scales);
+        form.shape_search_of(candidate.place, scales, &grid, shape)
     }
 
     /// The shape near `start` that explains most of all motion, and its in-sample gain.
@@ -139,7 +140,7 @@ impl Search<'_> {
             let one = make(context, &regression.design, effect, place, &shape, self.model.change);
             regression.whole_gain(&one)
         };
-        let search = self.shape_search(candidate);
+        let search = self.shape_search(candidate, start);
         // Pattern search (Hooke and Jeeves 1961).
         let moves = search.moves(start.len());
         let mut shape = start.to_vec();

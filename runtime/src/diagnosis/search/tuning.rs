@@ -66,7 +66,7 @@ impl<'a> Tuning<'a> {
         let (form, scales) = (term.effect.form(), &model.context.scales);
         let grid = form.shapes(term.place, scales);
         let grid: Vec<&[f64]> = grid.iter().map(Vec::as_slice).collect();
-        let search = form.shape_search(term.place, scales, &grid);
+        let search = form.shape_search_of(term.place, scales, &grid, &term.shape);
         let (term, columns, amplitude) = (term.clone(), Vec::new(), Vec::new());
         let mut tuning = Self { model, search, term, columns, rest, fit, amplitude, gain: 0.0 };
         tuning.columns = tuning.columns_of(&tuning.term.shape);

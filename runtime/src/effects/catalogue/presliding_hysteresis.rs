@@ -2,8 +2,8 @@
 
 use crate::effects::joint_law::geometric;
 use crate::effects::{
-    Abscissa, At, AtRest, Effect, Form, JointLaw, Parameter, Properties, Quantities, Scale, SmoothingWindow,
-    Sought, Step, Words,
+    Abscissa, At, AtRest, Effect, Form, JointLaw, Moved, Parameter, Properties, Quantities, Scale,
+    SmoothingWindow, Sought, Step, Words,
 };
 
 /// What a person is told.
@@ -95,9 +95,9 @@ impl JointLaw for PreslidingHysteresis {
         true
     }
 
-    fn advance(&self, shape: &[f64], memory: f64, travel: f64) -> f64 {
-        let toward = if travel > 0.0 { 1.0 } else { -1.0 };
-        toward + (memory - toward) * (-travel.abs() / shape[0]).exp()
+    fn advance(&self, _: &Scale, shape: &[f64], memory: f64, moved: Moved) -> f64 {
+        let toward = if moved.travel > 0.0 { 1.0 } else { -1.0 };
+        toward + (memory - toward) * (-moved.travel.abs() / shape[0]).exp()
     }
 
     fn at_rest(&self, _: &[f64], _: &[f64]) -> AtRest {
