@@ -359,8 +359,7 @@ mod tests {
                 law.columns(&[Seen { value, direction: 0.0 }], &mut out);
                 out
             };
-            let apart = at(from).iter().zip(at(from + 0.05)).map(|(a, b)| (a - b).abs()).sum::<f64>();
-            apart
+            at(from).iter().zip(at(from + 0.05)).map(|(a, b)| (a - b).abs()).sum::<f64>()
         };
         let [travel, q] = [Variable::TravelSinceReversal(0), Variable::Position(0)].map(over);
         assert!(moved(FreeLaw::one(travel), 0.0) > 2.0 * moved(FreeLaw::one(q), 0.0));

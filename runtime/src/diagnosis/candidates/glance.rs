@@ -109,7 +109,7 @@ impl Glance {
             }
             (g, b)
         };
-        let (all_g, all_b) = products(&[0..rows]);
+        let (all_g, all_b) = products(std::slice::from_ref(&(0..rows)));
         let ridge = CURVE_RIDGE * (0..k).map(|c| all_g[(c, c)]).fold(f64::MIN_POSITIVE, f64::max);
         let of_fold = |fold: &Vec<Range<usize>>| {
             let (held_g, held_b) = products(fold);
@@ -154,7 +154,7 @@ mod tests {
         let seen = |series: &Vec<f64>| series.iter().map(|&value| Seen { value, direction: 0.0 }).collect();
         let at = |r: usize| variables.iter().map(|v| v[r]).collect::<Vec<f64>>();
         let residual = DVector::from_fn(ROWS, |r, _| torque(&at(r)) + 0.7 * noise[r]);
-        let folds = (0..8).map(|k| vec![k * ROWS / 8..(k + 1) * ROWS / 8]).collect();
+        let folds = (0..8).map(|k| std::iter::once(k * ROWS / 8..(k + 1) * ROWS / 8).collect()).collect();
         let offset = DVector::from_element(ROWS, 1.0);
         Glance::of(variables.iter().map(seen).collect(), vec![offset], residual, folds)
     }
