@@ -17,6 +17,7 @@
 //! assert!(!stribeck.needs_baseline());
 //! ```
 
+mod axis;
 mod catalogue;
 mod check;
 mod closed_form;
@@ -40,6 +41,7 @@ mod together;
 mod user_law;
 mod variable;
 
+pub use axis::{Axis, Seen, Sum};
 pub use catalogue::EffectKind;
 pub use check::TermError;
 pub use closed_form::ClosedForm;
@@ -50,7 +52,7 @@ pub use contact::{ContactForce, JointTorque, unit_force_torques};
 pub use coupled::CoupledRotor;
 pub use effect::{Abscissa, Effect, Properties, SmoothingWindow, Sought, SpecialCase, ToldBy, Words};
 pub use form::Form;
-pub use free_law::{Axis, FreeLaw, Seen, Sum};
+pub use free_law::FreeLaw;
 pub use joint_law::{At, AtRest, HEARD_JOINT, JointLaw, Moved, Scale};
 pub use place::Place;
 pub use quantity::{Parameter, Quantities, unit_behind};

@@ -1,10 +1,11 @@
 //! An accepted effect as part of a model: what it is, where, and its numbers.
 
+use super::axis::Axis;
 use super::catalogue::EffectKind;
 use super::compliance::Transmission;
 use super::contact::ContactForce;
 use super::form::Form;
-use super::free_law::{Axis, FreeLaw};
+use super::free_law::FreeLaw;
 use super::joint_law::Scale;
 use super::place::Place;
 use super::sensitivity::{Corrected, Distortion, corrected_at};
