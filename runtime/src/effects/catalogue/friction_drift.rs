@@ -23,8 +23,11 @@ const WORDS: Words = Words {
         ("coulomb", "Coulomb friction that fades"),
         ("tau", "time constant"),
         ("t", "time since the motion began"),
-        ("T", "temperature above that at the beginning: 1 where the joint has long moved at this speed"),
-        ("speed", "speed at which friction is that much more, where the joint has warmed up"),
+        (
+            "T",
+            "temperature that the motion raises, tau·dT/dt = abs(dq)/speed - T: 0 at its start, 1 after long at speed",
+        ),
+        ("speed", "speed at which T becomes 1"),
     ],
     put_in: "the law as a torque of the joint",
 };
@@ -78,7 +81,7 @@ impl Effect for FrictionDrift {
         let parts: Vec<String> = viscous.into_iter().chain(coulomb).collect();
         let friction = parts.join(" + ");
         if q.has("speed") {
-            format!("({friction})·T, {}·dT/dt = |dq|/{} - T", q.value("tau"), q.value("speed"))
+            format!("({friction})·T")
         } else {
             format!("({friction})·exp(-t / {})", q.value("tau"))
         }
