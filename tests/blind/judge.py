@@ -173,7 +173,8 @@ def result(folder):
     """What a diagnosis left in the folder, or why there is none."""
     if Path(f"{folder}.json").exists():
         return json.loads(Path(f"{folder}.json").read_text()), ""
-    return None, " ".join(Path(f"{folder}.log").read_text().split("\n", 1)[1].split())[:160]
+    told = Path(f"{folder}.log").read_text().split("\n", 1)[1].replace(f"{Path(folder).parent}/", "")
+    return None, " ".join(told.split())[:160]
 
 
 @dataclass
