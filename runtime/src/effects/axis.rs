@@ -47,6 +47,12 @@ impl Axis {
         Seen { value, direction: own.unwrap_or_else(smooth) }
     }
 
+    /// A recorded value with its direction, for a torque on `joint`: at standstill its own speed counts as backward.
+    pub fn seen_on(&self, joint: usize, value: f64) -> Seen {
+        let own = self.variable == Variable::Speed(joint);
+        self.seen(value, own.then_some(if value > 0.0 { 1.0 } else { -1.0 }))
+    }
+
     /// Number of functions of a curve over it.
     pub(super) fn curve(&self, together: Together) -> usize {
         let functions = match together {

@@ -4,7 +4,7 @@ use crate::diagnosis::judging::regression::Regression;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::free::values;
 use crate::diagnosis::rules::CURVE_RIDGE;
-use crate::effects::{Axis, FreeLaw, Seen, Variable};
+use crate::effects::{Axis, FreeLaw, Seen};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -41,11 +41,7 @@ impl Glance {
         let of_axis = |axis: &Axis| {
             let all: Vec<Vec<f64>> =
                 (0..context.signals.len()).map(|k| values(context, k, axis.variable)).collect();
-            let own = axis.variable == Variable::Speed(joint);
-            let at = |&r: &usize| {
-                let value = all[design.rows[r].signal][design.rows[r].centre];
-                axis.seen(value, own.then_some(if value > 0.0 { 1.0 } else { -1.0 }))
-            };
+            let at = |&r: &usize| axis.seen_on(joint, all[design.rows[r].signal][design.rows[r].centre]);
             rows.iter().map(at).collect()
         };
         let live = design.columns.iter().filter(|c| rows.iter().any(|&r| c[r] != 0.0));
@@ -136,7 +132,7 @@ fn take_out(orthonormal: &[DVector<f64>], vector: &mut DVector<f64>) {
 mod tests {
     use super::*;
     use crate::diagnosis::judging::testing::correlated;
-    use crate::effects::Together;
+    use crate::effects::{Together, Variable};
     use rand::SeedableRng;
     use rand_pcg::Pcg64;
 

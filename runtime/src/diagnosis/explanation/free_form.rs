@@ -32,11 +32,7 @@ fn law_of(model: &ExtendedModel<'_>, term: &Accepted) -> Option<(FreeLaw, usize)
 
 /// Values of the columns of a law where its variables have these values.
 fn columns(law: &FreeLaw, joint: usize, at: &[f64]) -> Vec<f64> {
-    let seen = |(axis, value): (&Axis, &f64)| {
-        let own = axis.variable == Variable::Speed(joint);
-        axis.seen(*value, own.then(|| if *value > 0.0 { 1.0 } else { -1.0 }))
-    };
-    let seen: Vec<Seen> = law.axes.iter().zip(at).map(seen).collect();
+    let seen: Vec<Seen> = law.axes.iter().zip(at).map(|(axis, value)| axis.seen_on(joint, *value)).collect();
     let mut out = Vec::with_capacity(law.amplitudes());
     law.columns(&seen, &mut out);
     out

@@ -14,13 +14,11 @@ pub(in crate::diagnosis) fn free_columns(
     let s = &context.signals[signal];
     let law = FreeLaw::from_shape(shape, s.q.len())?;
     let values: Vec<Vec<f64>> = law.axes.iter().map(|a| values(context, signal, a.variable)).collect();
-    let own: Vec<bool> = law.axes.iter().map(|a| a.variable == Variable::Speed(j)).collect();
     let mut columns = vec![vec![0.0; s.len()]; law.amplitudes()];
     let (mut at, mut out) = (vec![Seen::default(); law.axes.len()], Vec::with_capacity(columns.len()));
     for t in 0..s.len() {
         for (k, axis) in law.axes.iter().enumerate() {
-            let value = values[k][t];
-            at[k] = axis.seen(value, own[k].then_some(if value > 0.0 { 1.0 } else { -1.0 }));
+            at[k] = axis.seen_on(j, values[k][t]);
         }
         law.columns(&at, &mut out);
         for (column, &value) in columns.iter_mut().zip(&out) {
