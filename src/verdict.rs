@@ -76,7 +76,7 @@ pub fn check(
 }
 
 /// Checks that a recording has no mistake that explains it far better than its description. What the diagnosis looks for
-/// itself, a position that is off or a wrong rate, is none.
+/// itself, a position that is off, a base that is tilted or a wrong rate, is none.
 ///
 /// # Errors
 /// [`Failure::Data`] with the mistake.
@@ -92,7 +92,7 @@ pub fn check_mistakes(
     check_channels(path, judged, |fault| !of_time(fault))?;
     let verdict = judge(judged, torques, estimated, models::all());
     if let Verdict::Better { instead, .. } = &verdict
-        && let Some((Instead::Offset { .. } | Instead::Zeros(_), _)) = instead.first()
+        && let Some((Instead::Offset { .. } | Instead::Zeros(_) | Instead::Tilt(_), _)) = instead.first()
     {
         return Ok(());
     }
@@ -189,7 +189,9 @@ fn advice(instead: &Instead) -> &'static str {
         Instead::Scale { .. } => {
             "All torques of a recording are read in one `unit`: bring the column to it with its `gain`"
         }
-        Instead::Gravity(_) => "Check `gravity` in the robot's table, and how its base was mounted",
+        Instead::Gravity(_) | Instead::Tilt(_) => {
+            "Check `gravity` in the robot's table, and how its base was mounted"
+        }
         Instead::TableAngles => "Write them in rad, as 90*pi/180",
         Instead::Exchange { .. } => "Check the order of `columns`",
         Instead::Unit(_) => "Check `unit`",
@@ -226,6 +228,13 @@ fn words(instead: &Instead, robot: &Robot) -> String {
             let axis = (0..3).max_by(|&a, &b| g[a].abs().total_cmp(&g[b].abs())).unwrap_or(2);
             let sign = if g[axis] < 0.0 { "-" } else { "+" };
             format!("gravity along {sign}{} of frame 0", ["x", "y", "z"][axis])
+        }
+        Instead::Tilt(g) => {
+            let [x, y, z] = g.map(|g| significant(g, 3));
+            let along: f64 = g.iter().zip(&robot.gravity).map(|(a, b)| a * b).sum();
+            let squares: f64 = robot.gravity.iter().map(|g| g * g).sum();
+            let tilt = (along / squares).clamp(-1.0, 1.0).acos().to_degrees();
+            format!("gravity [{x}, {y}, {z}] m/s2, of a base that is tilted by {tilt:.0} degrees,")
         }
         Instead::TableAngles => "reading the table's angles beyond a turn in degrees".to_owned(),
         Instead::Unit(AngleUnit::Degrees) => "reading angles in degrees".to_owned(),

@@ -220,6 +220,39 @@ fn gravity_along_another_axis_or_the_other_way_is_named() {
 }
 
 #[test]
+fn a_base_that_is_tilted_is_no_other_robot() {
+    let own = recorded("tx40", 1, 0.5);
+    let robot = own.model.robot();
+    for tilt in [0.25_f64, 0.5] {
+        let gravity = [-9.81 * tilt.sin(), 0.0, -9.81 * tilt.cos()];
+        let wrong = with_table(robot, gravity, |_, _| ());
+        match judged(&wrong, &own.motions, &own.rows) {
+            Verdict::Better { instead, .. } => {
+                let [(Instead::Tilt(found), _)] = instead[..] else { panic!("{tilt}: {instead:?}") };
+                let along: f64 = found.iter().zip(&robot.gravity).map(|(a, b)| a * b).sum();
+                let off = (along / (9.81 * 9.81)).clamp(-1.0, 1.0).acos();
+                assert!(off < 0.02, "{tilt}: {found:?}");
+            }
+            other => panic!("{tilt}: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_spring_on_a_light_joint_is_no_other_unit() {
+    let own = recorded("tx40", 1, 0.5);
+    let torques: Vec<f64> = own.motions.iter().flat_map(|m| m.torque[5].clone()).collect();
+    let rms = (torques.iter().map(|t| t * t).sum::<f64>() / torques.len() as f64).sqrt();
+    let motions = changed(&own.motions, |m| {
+        for (t, q) in m.torque[5].iter_mut().zip(&m.q[5]) {
+            *t += rms * q;
+        }
+    });
+    let verdict = judged(own.model, &motions, &own.rows);
+    assert!(!matches!(verdict, Verdict::Better { .. }), "{verdict:?}");
+}
+
+#[test]
 fn a_spring_that_moves_a_joint_is_no_mistake() {
     let own = moved("scara4", 2, 1, 0.0);
     let torques: Vec<f64> = own.motions.iter().flat_map(|m| m.torque[1].clone()).collect();

@@ -45,6 +45,8 @@ pub enum Instead {
     },
     /// Gravity along another axis of frame 0, or the other way, m/s2.
     Gravity([f64; 3]),
+    /// Gravity in another direction than the table says, because the base is tilted, m/s2 in frame 0.
+    Tilt([f64; 3]),
     /// Angles of the table that are beyond a turn in degrees.
     TableAngles,
     /// Angles in another unit.
@@ -143,7 +145,7 @@ impl Instead {
         let altered;
         let model = match self {
             Instead::Robot(name) => *others.iter().find(|m| m.robot().name == name.as_str())?,
-            Instead::Gravity(gravity) => {
+            Instead::Gravity(gravity) | Instead::Tilt(gravity) => {
                 altered = table::altered(own.robot(), Table::Gravity(*gravity))?;
                 &altered as &dyn Model
             }
@@ -182,7 +184,7 @@ impl Instead {
         let Motion { q, dq, ddq, torque, .. } = motion;
         let positions = [q, dq, ddq];
         match *self {
-            Instead::Robot(_) | Instead::Gravity(_) | Instead::TableAngles => {}
+            Instead::Robot(_) | Instead::Gravity(_) | Instead::Tilt(_) | Instead::TableAngles => {}
             Instead::Zeros(ref zeros) => {
                 let [q, ..] = positions;
                 for &(JointIndex(joint), by) in zeros {

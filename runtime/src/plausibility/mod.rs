@@ -5,6 +5,7 @@ mod instead;
 mod judged;
 mod position;
 mod table;
+mod tilt;
 mod zeros;
 
 pub use channels::{ChannelFault, faulty_channel};
@@ -18,6 +19,7 @@ use crate::estimation::{Estimate, PhysicalFit, physical_fit};
 use crate::model::{JointIndex, Model};
 use instead::{POOR, mistakes, other_gravities, single_mistakes};
 use position::with_torques_over_position;
+use tilt::best_tilt;
 use zeros::other_zeros;
 
 /// Strain from which the parameters are said not to be those of a real robot.
@@ -113,7 +115,8 @@ pub fn judge(
     let instead = if estimated.rows_per_parameter() < ENOUGH_ROWS {
         Vec::new()
     } else {
-        better(judged, others, candidates(judged, others, &own, error), &own)
+        let found = better(judged, others, candidates(judged, others, &own, error), &own);
+        simpler(judged, found, &own)
     };
     let impossible = impossible(&errors, estimated);
     let best = instead.first().map_or(f64::INFINITY, |(_, error)| *error);
@@ -200,16 +203,19 @@ fn largest(joints: usize, value: impl Fn(usize) -> f64) -> Option<usize> {
     (0..joints).max_by(|&a, &b| value(a).total_cmp(&value(b)))
 }
 
+/// By which factor something lowers the joints' errors, what it is, and the error that it leaves.
+type Found = (f64, Instead, f64);
+
 /// What explains the recording far better than what was declared: the best, and others of its kind that are as good.
 fn better(
     judged: &Judged<'_>,
     others: &[&dyn Model],
     candidates: Vec<Instead>,
     own: &PhysicalFit,
-) -> Vec<(Instead, f64)> {
+) -> Vec<Found> {
     // Joints that stand still have no error that could be lowered.
     let judged_by = own.per_equation.iter().filter(|error| error.is_some_and(|e| e > 0.0)).count();
-    let mut all: Vec<(f64, Instead, f64)> = candidates
+    let mut all: Vec<Found> = candidates
         .into_iter()
         .filter_map(|candidate| {
             let enough = match candidate {
@@ -236,7 +242,7 @@ fn better(
         })
         .collect();
     // Angles are fitted: what takes no number, and does nearly as well, comes first.
-    let rank = |(better, instead, _): &(f64, Instead, f64)| match instead {
+    let rank = |(better, instead, _): &Found| match instead {
         Instead::Zeros(_) => better.powf(NEARLY),
         _ => *better,
     };
@@ -251,7 +257,29 @@ fn better(
     if exclude_each_other(all.iter().map(|(_, instead, _)| instead)) {
         return Vec::new();
     }
-    all.into_iter().map(|(_, instead, error)| (instead, error)).collect()
+    all
+}
+
+/// What explains the recording as well as `found` and supposes less: a base that is tilted, where it would be another robot or gravity
+/// along another axis; a torque over the position of a joint whose torque would be in another unit or of the other sign, and that is no
+/// mistake.
+fn simpler(judged: &Judged<'_>, found: Vec<Found>, own: &PhysicalFit) -> Vec<(Instead, f64)> {
+    let without_ratio =
+        |found: Vec<Found>| found.into_iter().map(|(_, instead, error)| (instead, error)).collect();
+    let Some((better, first, _)) = found.first() else { return Vec::new() };
+    match *first {
+        Instead::Robot(_) | Instead::Gravity(_) => match best_tilt(judged, own) {
+            Some(tilt) if tilt.0 >= *better => without_ratio(vec![tilt]),
+            _ => without_ratio(found),
+        },
+        Instead::Scale { joint, .. } | Instead::Sign { joint, of: Signal::Torque } => {
+            let after = with_torques_over_position(judged, &[joint]).map(|(errors, _)| errors);
+            let errors: Option<Vec<Option<f64>>> = after.map(|errors| errors.into_iter().map(Some).collect());
+            let is_position = errors.is_some_and(|errors| ratio(&own.per_equation, &errors) >= *better);
+            if is_position { Vec::new() } else { without_ratio(found) }
+        }
+        _ => without_ratio(found),
+    }
 }
 
 /// Whether gravities along several axes are among what is as good. It has one: a recording that any other one explains has

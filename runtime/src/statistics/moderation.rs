@@ -57,13 +57,8 @@ impl Prior {
         if known.len() < 3 {
             return None;
         }
-        let count = known.len() as f64;
-        let correlations: f64 = known
-            .iter()
-            .map(|&i| known.iter().map(|&k| if i == k { 1.0 } else { correlation(i, k) }).sum::<f64>())
-            .sum();
-        let freedom = known.iter().map(|&i| seen[i].freedom).sum::<f64>() / count;
-        let most = count * count / correlations.max(count) * freedom;
+        let freedom = known.iter().map(|&i| seen[i].freedom).sum::<f64>() / known.len() as f64;
+        let most = independent(known.len(), &|i, k| correlation(known[i], known[k])) * freedom;
         let known: Vec<Variance> = known.into_iter().map(|i| seen[i]).collect();
         let at = |freedom: f64| {
             let (variance, likelihood) = most_likely_variance(&known, freedom);
@@ -80,6 +75,14 @@ impl Prior {
         let sum = self.freedom + own.freedom;
         Variance { value: (self.freedom * self.variance + own.freedom * own.value) / sum, freedom: sum }
     }
+}
+
+/// As many independent variances have a mean that is known as well as that of so many which are correlated.
+pub(crate) fn independent(count: usize, correlation: &dyn Fn(usize, usize) -> f64) -> f64 {
+    let with = |i: usize| (0..count).map(|k| if i == k { 1.0 } else { correlation(i, k) }).sum::<f64>();
+    let correlations: f64 = (0..count).map(with).sum();
+    let count = count as f64;
+    count * count / correlations.max(count)
 }
 
 /// What variances are in units of the mean squares of what they are errors of: lent to a quantity whose fit leaves less

@@ -59,6 +59,8 @@ pub(in crate::diagnosis) struct Standing<'a> {
     pub still: &'a [bool],
     /// Coulomb friction of each joint; `None` where it is not known.
     pub coulomb: &'a [Option<f64>],
+    /// Standard deviation of what else may hold it, unknown, where it stands.
+    pub uneven: &'a [f64],
     /// Times that the robot stands in all motions: friction may hold a torque by accident in each.
     pub times: usize,
 }
@@ -90,7 +92,7 @@ pub(in crate::diagnosis) fn look(standing: &Standing<'_>) -> Seen {
         for (j, coulomb) in standing.coulomb.iter().enumerate() {
             let Some(coulomb) = *coulomb else { continue };
             let level = averaged(&standing.beyond[j][stretch[0]..stretch[1]], standing.rate);
-            for [a, b] in out_of_band(&level, STICTION * coulomb, standing.rate) {
+            for [a, b] in out_of_band(&level, band(coulomb, standing.uneven[j]), standing.rate) {
                 if a == 0 || b + 1 == level.len() {
                     let torque = level[a..=b].iter().sum::<f64>() / (b + 1 - a) as f64;
                     let window = [standing.time(stretch[0] + a), standing.time(stretch[0] + b)];
@@ -144,7 +146,7 @@ pub(in crate::diagnosis) fn stretches(still: &[bool], rate: f64) -> Vec<[usize; 
 }
 
 /// Means over [`AVERAGED_AT_REST`] around each sample, over less at the ends.
-fn averaged(x: &[f64], rate: f64) -> Vec<f64> {
+pub(super) fn averaged(x: &[f64], rate: f64) -> Vec<f64> {
     let half = ((0.5 * AVERAGED_AT_REST * rate) as usize).max(1);
     let mut sums = vec![0.0];
     for v in x {
@@ -208,7 +210,12 @@ fn push(standing: &Standing<'_>, runs: &[Run]) -> Push {
         let largest = level.iter().copied().fold(0.0_f64, |a, b| if b.abs() > a.abs() { b } else { a });
         // All of the band alike.
         let sigma = coulomb / 3.0_f64.sqrt();
-        doubt = doubt.min(held_by_friction(largest, coulomb, standing.coulomb.len() * standing.times));
+        doubt = doubt.min(held(
+            largest,
+            coulomb,
+            standing.uneven[run.joint],
+            standing.coulomb.len() * standing.times,
+        ));
         match joints.iter_mut().find(|p| p.joint == run.joint) {
             Some(p) if p.largest.abs() < largest.abs() => (p.mean, p.largest) = (mean, largest),
             Some(_) => {}
@@ -224,12 +231,22 @@ fn push(standing: &Standing<'_>, runs: &[Run]) -> Push {
     }
 }
 
-/// Probability that static friction takes a torque, on any of so many joints and times.
+/// Standard deviation of the torque that holds a joint.
 ///
-/// Static friction is Coulomb friction times 1 + x, x normal with the spread that makes [`STICTION`] rare.
-fn held_by_friction(torque: f64, coulomb: f64, chances: usize) -> f64 {
-    let spread = (STICTION - 1.0) / ONE_IN_A_HUNDRED;
-    let z = (torque.abs() / coulomb.max(1e-12) - 1.0) / spread;
+/// Static friction is Coulomb friction times 1 + x, x normal with the spread that makes [`STICTION`] rare, and beside it is what else
+/// is `uneven` along the path.
+fn spread(coulomb: f64, uneven: f64) -> f64 {
+    (coulomb * (STICTION - 1.0) / ONE_IN_A_HUNDRED).hypot(uneven)
+}
+
+/// The torque beyond gravity that a joint at rest passes once in a hundred times.
+pub(super) fn band(coulomb: f64, uneven: f64) -> f64 {
+    coulomb + ONE_IN_A_HUNDRED * spread(coulomb, uneven)
+}
+
+/// Probability that a joint at rest takes a torque without being pushed, on any of so many joints and times.
+fn held(torque: f64, coulomb: f64, uneven: f64, chances: usize) -> f64 {
+    let z = (torque.abs() - coulomb) / spread(coulomb, uneven).max(1e-12);
     (chances as f64 * 0.5 * erfc(z / 2.0_f64.sqrt())).min(1.0)
 }
 

@@ -24,7 +24,15 @@ fn seen(beyond: &[Vec<f64>]) -> Seen {
 fn seen_once_of(times: usize, beyond: &[Vec<f64>]) -> Seen {
     let still = vec![true; beyond[0].len()];
     let coulomb = [Some(10.0), Some(4.0)];
-    look(&Standing { rate: RATE, start: 0.0, beyond, still: &still, coulomb: &coulomb, times })
+    look(&Standing {
+        rate: RATE,
+        start: 0.0,
+        beyond,
+        still: &still,
+        coulomb: &coulomb,
+        uneven: &[0.0, 0.0],
+        times,
+    })
 }
 
 /// Half a sine wave from `from` on for `lasts` seconds.
@@ -92,6 +100,27 @@ fn friction_that_holds_a_little_more_now_and_then_is_hardly_ever_a_push() {
 }
 
 #[test]
+fn what_is_uneven_along_the_path_holds_a_joint_too() {
+    let mut beyond = vec![vec![0.0; 600]; 2];
+    pushed(&mut beyond[0], 1.0, 2.0, 20.0);
+    let still = vec![true; 600];
+    let coulomb = [Some(10.0), Some(4.0)];
+    let pushes = |uneven: f64| {
+        let standing = Standing {
+            rate: RATE,
+            start: 0.0,
+            beyond: &beyond,
+            still: &still,
+            coulomb: &coulomb,
+            uneven: &[uneven, 0.0],
+            times: 1,
+        };
+        look(&standing).pushes.len()
+    };
+    assert_eq!([0.0, 1.0, 4.0].map(pushes), [1, 1, 0]);
+}
+
+#[test]
 fn joints_that_are_pushed_together_are_one_push() {
     let mut beyond = standing(&mut Pcg64::seed_from_u64(3));
     pushed(&mut beyond[0], 4.0, 1.0, 40.0);
@@ -119,8 +148,15 @@ fn an_impact_and_motion_are_no_push_at_rest() {
     pushed(&mut beyond[0], 8.0, 1.0, 60.0);
     let still: Vec<bool> = (0..1200).map(|t| !(750..950).contains(&t)).collect();
     let coulomb = [Some(10.0), Some(4.0)];
-    let standing =
-        Standing { rate: RATE, start: 0.0, beyond: &beyond, still: &still, coulomb: &coulomb, times: 1 };
+    let standing = Standing {
+        rate: RATE,
+        start: 0.0,
+        beyond: &beyond,
+        still: &still,
+        coulomb: &coulomb,
+        uneven: &[0.0, 0.0],
+        times: 1,
+    };
     assert!(look(&standing).pushes.is_empty());
 }
 
@@ -130,7 +166,14 @@ fn a_joint_without_known_friction_is_not_judged() {
     pushed(&mut beyond[0], 4.0, 1.0, 60.0);
     let still = vec![true; 1200];
     let coulomb = [None, Some(4.0)];
-    let standing =
-        Standing { rate: RATE, start: 0.0, beyond: &beyond, still: &still, coulomb: &coulomb, times: 1 };
+    let standing = Standing {
+        rate: RATE,
+        start: 0.0,
+        beyond: &beyond,
+        still: &still,
+        coulomb: &coulomb,
+        uneven: &[0.0, 0.0],
+        times: 1,
+    };
     assert_eq!(look(&standing).pushes, vec![]);
 }

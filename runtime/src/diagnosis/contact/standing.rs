@@ -1,13 +1,14 @@
 //! Pushes against a robot that holds still, from a model that its motion has told.
 
 use crate::diagnosis::contact::force::{JointRow, as_torques, best_link};
-use crate::diagnosis::contact::rest::{Load, Push, Seen, Standing, look, stretches};
+use crate::diagnosis::contact::rest::{Load, Push, Seen, Standing, averaged, band, look, stretches};
 use crate::diagnosis::contact::search::Contacts;
+use crate::diagnosis::contact::spread::spread;
 use crate::diagnosis::contact::squares::{Squares, mean_beside};
 use crate::diagnosis::predict::torques_on;
 use crate::diagnosis::rows::context::Context;
 use crate::diagnosis::rows::signals::{ModelTorques, Signals};
-use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST, STICTION};
+use crate::diagnosis::rules::{FORCE_EXPLAINS, FORCE_STEP_AT_REST};
 use crate::effects::{ContactForce, CoupledRotor, EffectTerm, Form, JointTorque};
 use nalgebra::Vector3;
 use std::ops::Range;
@@ -50,6 +51,7 @@ pub(in crate::diagnosis) fn at_rest(
     known: &[bool],
     slowest: &[f64],
 ) -> AtRest {
+    let uneven = uneven_over_the_path(context, laws, slowest);
     let laws = laws_at_rest(context, laws);
     let coulomb: Vec<Option<f64>> = coulomb(context)
         .into_iter()
@@ -83,6 +85,7 @@ pub(in crate::diagnosis) fn at_rest(
             beyond: &beyond,
             still: &still,
             coulomb: &coulomb,
+            uneven: &uneven,
             times,
         };
         let Seen { pushes, loads, time } = look(&standing);
@@ -93,7 +96,7 @@ pub(in crate::diagnosis) fn at_rest(
             let pushed = pushes.iter().any(|p| (p.window[0]..=p.window[1]).contains(&time));
             for (j, c) in coulomb.iter().enumerate() {
                 let Some(c) = c else { continue };
-                let out = (beyond[j][t].abs() - STICTION * c).max(0.0).powi(2);
+                let out = (beyond[j][t].abs() - band(*c, uneven[j])).max(0.0).powi(2);
                 found.by_joint[0][j] += out;
                 found.by_joint[1][j] += if pushed { 0.0 } else { out };
                 found.by_joint[2][j] += s.torque[j][t + inside.start].powi(2);
@@ -115,6 +118,37 @@ fn holds_still(s: &Signals, slowest: &[f64]) -> (Range<usize>, Vec<bool>) {
     let slow = |t: usize| s.dq.iter().zip(slowest).all(|(dq, least)| dq[t].abs() < *least);
     let still = inside.clone().map(slow).collect();
     (inside, still)
+}
+
+/// What the torque of each joint changes by along its path that the model does not know, as a standard deviation: where the joint
+/// stands it stands still with it, as the ripple of a motor does. It is seen while the robot moves, in all motions, with the noise
+/// that is there at rest too; 0 where it is less than that.
+fn uneven_over_the_path(context: &Context<'_>, laws: &[EffectTerm], slowest: &[f64]) -> Vec<f64> {
+    let joints = context.model.robot().joints();
+    let of_laws = torques_on(context.model, &context.chi, laws, context.signals).ok();
+    let (mut moving, mut standing) = (vec![Vec::new(); joints], vec![Vec::new(); joints]);
+    for (k, s) in context.signals.iter().enumerate() {
+        let (inside, still) = holds_still(s, slowest);
+        let at_rest = stretches(&still, s.rate);
+        let model = context.torques(k);
+        for (j, torque) in s.whole_torque().into_iter().enumerate() {
+            let known = |t: usize| model.total[j][t] + of_laws.as_ref().map_or(0.0, |laws| laws[k][j][t]);
+            let left: Vec<f64> = inside.clone().map(|t| torque[t] - known(t)).collect();
+            let own = left.iter().zip(&s.dq[j][inside.clone()]).filter(|(_, dq)| dq.abs() >= slowest[j]);
+            moving[j].extend(own.map(|(left, _)| *left));
+            for [from, to] in &at_rest {
+                let torque = &torque[inside.start + from..inside.start + to];
+                standing[j]
+                    .extend(torque.iter().zip(averaged(torque, s.rate)).map(|(torque, mean)| torque - mean));
+            }
+        }
+    }
+    let both = moving.into_iter().zip(standing);
+    let beyond_noise = |(moving, standing): (Vec<f64>, Vec<f64>)| {
+        let [all, noise] = [moving, standing].map(|values| spread(values.into_iter()));
+        (all * all - noise * noise).max(0.0).sqrt()
+    };
+    both.map(beyond_noise).collect()
 }
 
 /// What laws are at rest.

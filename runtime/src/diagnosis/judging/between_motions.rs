@@ -3,7 +3,8 @@
 //! A recording that is judged against a model has no motions of the robot before it changed. What they would have told is
 //! worked out while they are there, in the way of [`super::calibration`], and kept with the model.
 
-use crate::diagnosis::judging::calibration::{Compared, of_companions, prior, with_other_motions};
+use crate::diagnosis::judging::changes::{changes_of_companions, own_parts, prior};
+use crate::diagnosis::judging::compared::{Compared, with_other_motions};
 use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::white_products::Background;
@@ -33,7 +34,9 @@ pub(in crate::diagnosis) fn between_motions(
         let laws = &companions[levels.min(companions.len())..];
         let products = background.with_companions(units, &freed, j, laws);
         let compared = with_other_motions(units, &products, p, taken)?;
-        let of_laws = prior(compared.first()?, &of_companions(&compared, &products, p), p)?;
+        let first = compared.first()?;
+        let changes = changes_of_companions(&compared, (&products.units, products.companions), p);
+        let of_laws = prior(&own_parts(first, &first.whole, (changes.len(), p))?, &changes)?;
 
         // What its level differs by shows where it is the same in all motions.
         let (level, held) = friction[j].split_at(levels.min(friction[j].len()));

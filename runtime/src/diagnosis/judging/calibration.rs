@@ -8,15 +8,16 @@
 //! has, as a random effect of the units would have it (Laird and Ware 1982). A dozen units know a lambda badly: it is
 //! moderated by those of other laws on the same joint.
 
-use crate::diagnosis::judging::projection::Projection;
+use crate::diagnosis::judging::changes::{changes_of_companions, of_kind, own_parts, prior, variance_of};
+use crate::diagnosis::judging::compared::{Compared, undisturbed, with_other_units};
 use crate::diagnosis::judging::regressors::Regressors;
 use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::uneven_noise::of_noise;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
-use crate::diagnosis::judging::white_products::{Background, Products, WithLaw, sum};
-use crate::diagnosis::rules::{LEVEL_OF_SIGNS, OWN_FRACTION};
-use crate::statistics::moderation::{Prior, Variance};
+use crate::diagnosis::judging::white_products::{Background, WithLaw, sum};
+use crate::diagnosis::rules::{LEVEL_OF_KIND, LEVEL_OF_SIGNS};
+use crate::statistics::moderation::Variance;
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -33,6 +34,8 @@ pub(in crate::diagnosis) struct Calibrated {
     pub freedom: f64,
     /// Where noise is not of one size: the share of the statistic that signs at random leave (`uneven_noise`).
     pub of_signs: Option<f64>,
+    /// Part of the level that this test of two has; 1 where it is the only one.
+    pub level: f64,
     /// Least Wald statistic where one unit of the recording is left out; 0 where the law then turns round.
     pub without_any: f64,
 }
@@ -49,7 +52,8 @@ impl Calibrated {
     }
 
     fn of(&self, squares: f64) -> Evidence {
-        let by_variance = Evidence::fisher(squares / self.lambda, self.numbers, self.freedom);
+        let mut by_variance = Evidence::fisher(squares / self.lambda, self.numbers, self.freedom);
+        by_variance.p_value = (by_variance.p_value / self.level).min(1.0);
         let Some(share) = self.of_signs else { return by_variance };
         let by_signs = Evidence::fisher(squares * share, self.numbers, f64::INFINITY);
         // The better of two tests, which share the level (weighted Bonferroni; Genovese, Roeder and Wasserman 2006).
@@ -59,25 +63,8 @@ impl Calibrated {
     }
 }
 
-/// A part of the motion that is compared with the rest.
-pub(super) struct Compared {
-    /// Inner products over the part and the rest.
-    pub whole: DMatrix<f64>,
-    /// Its first columns: the model, and where it may be there in all motion, the law.
-    pub model: Option<Projection>,
-    /// Units that are each compared with this whole.
-    pub units: Vec<usize>,
-}
-
-impl Compared {
-    fn new(whole: DMatrix<f64>, m: usize, units: Vec<usize>) -> Self {
-        Self { model: Projection::of(&whole, m), whole, units }
-    }
-
-    /// Wald's statistic of the law in a unit.
-    pub fn wald(&self, unit: &DMatrix<f64>, (p, k): (usize, usize)) -> Option<Wald> {
-        Wald::beside(self.model.as_ref()?, &self.whole, unit, (p, k))
-    }
+fn mean(x: &[f64]) -> f64 {
+    x.iter().sum::<f64>() / x.len().max(1) as f64
 }
 
 /// A law that is judged.
@@ -106,11 +93,9 @@ pub(in crate::diagnosis) fn calibrate(
     let (p, k, common) = (regressors.shared.len(), law.columns.len(), law.common);
     let change = units.change();
     let whole = products.whole(units, regressors, p + k);
-    let found = if change {
-        Wald::of(&whole, &sum(&products.files, |f| units.is_target(f)), (p, k), common)?
-    } else {
-        Wald::of(&whole, &sum(&products.units, |_| true), (p, k), false)?
-    };
+    let part =
+        if change { sum(&products.files, |f| units.is_target(f)) } else { sum(&products.units, |_| true) };
+    let found = Wald::of(&whole, &part, (p, k), common && change)?;
     // Without a baseline the law is in all units, and in each it may be another.
     let common = common || !change;
     let m = if common { p + k } else { p };
@@ -120,16 +105,18 @@ pub(in crate::diagnosis) fn calibrate(
             .flat_map(|c| c.units.iter().filter_map(|&u| c.wald(&products.units[u], (p, k))))
             .map(|wald| wald.mean())
             .collect();
-        let others = of_companions(&compared, &products, p + k);
+        let others = changes_of_companions(&compared, (&products.units, products.companions), p + k);
         (compared, own, others)
     };
-    let (mut compared, mut own, mut others) = of_units(compared(units, &products, &whole, m));
-    if change && own.is_empty() && others.iter().all(Option::is_none) {
+    let (mut compared, mut own, mut others) = of_units(undisturbed(units, &products, &whole, m));
+    if change && own.is_empty() && others.iter().all(|changes| variance_of(changes).is_none()) {
         // One motion of a baseline alone that moves the joint is a baseline of one motion.
         (compared, own, others) = of_units(with_other_units(units, &products, m));
     }
-    let levels: Vec<f64> = others.iter().take(law.trend_of).flatten().map(|v| v.value).collect();
-    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
+    let own_parts = own_parts(&compared[0], &compared[0].whole, (others.len(), p + k));
+    let levels: Vec<f64> = (others.iter().take(law.trend_of).filter_map(|changes| variance_of(changes)))
+        .map(|v| v.value)
+        .collect();
     // A level that differs from unit to unit remembers: a trend over a motion of n units is that of a random walk.
     let walk = |level: f64| 1.0 + (level - 1.0).max(0.0) * units.of_a_motion();
     let mut variance = Variance {
@@ -139,7 +126,7 @@ pub(in crate::diagnosis) fn calibrate(
     // A torque that no unit reaches says nothing of how a law of it differs between them: those of its kind do.
     let unseen = own.is_empty() && levels.is_empty();
     if (unseen || variance.value > 0.0)
-        && let Some(prior) = prior(&compared[0], &others, p + k)
+        && let Some(prior) = own_parts.as_ref().and_then(|own_parts| prior(own_parts, &others))
     {
         let freedom = if unseen { 0.0 } else { variance.freedom };
         variance = prior.moderate(Variance { freedom, ..variance });
@@ -148,19 +135,39 @@ pub(in crate::diagnosis) fn calibrate(
     let longer = if change { (units.target_duration / units.duration.max(1e-9)).max(1.0) } else { 1.0 };
     let own = Variance { value: 1.0 + (variance.value - 1.0).max(0.0) * longer, ..variance };
     let known = between_motions(regressors, law).filter(|between| between.value > own.value);
-    let Variance { value: lambda, freedom } = known.unwrap_or(own);
+    let lambda = known.unwrap_or(own);
     let without_any = if law.is_trend && !change {
         without_any(&whole, &products.units, &found, (p, k))
     } else {
         found.squares
     };
     let (squares, numbers) = (found.squares, found.numbers);
-    let between = Calibrated { squares, numbers, lambda, freedom, of_signs: None, without_any };
+    let by = |Variance { value: lambda, freedom }: Variance, level: f64| Calibrated {
+        squares,
+        numbers,
+        lambda,
+        freedom,
+        of_signs: None,
+        level,
+        without_any,
+    };
+    // Units of a baseline may be much shorter than the recording. What all laws of the kind change by in that is another measure.
+    let of_kind = (change && !law.is_trend)
+        .then(|| of_kind((&whole, &part), products.companions, (p, k), common))
+        .flatten();
+    let between = match of_kind {
+        Some(of_kind) => {
+            let [units, kind] = [by(lambda, 1.0 - LEVEL_OF_KIND), by(of_kind, LEVEL_OF_KIND)];
+            if kind.evidence().p_value < units.evidence().p_value { kind } else { units }
+        }
+        None => by(lambda, 1.0),
+    };
     // Noise that is loud where the law is large leaves doubt that no other unit or law shows.
     let uneven = of_noise(units, regressors, law, (&found, &whitening)).map(|noise| Calibrated {
         lambda: noise.variance.value.max(1.0),
         freedom: noise.variance.freedom,
         of_signs: Some(noise.of_signs),
+        level: 1.0,
         ..between
     });
     Some(uneven.filter(|uneven| uneven.evidence().p_value > between.evidence().p_value).unwrap_or(between))
@@ -226,97 +233,6 @@ fn between_motions(regressors: &Regressors<'_>, law: &Law<'_>) -> Option<Varianc
     let known = regressors.between_motions.iter().enumerate();
     let own = known.filter(|(j, _)| regressors.acts_on(law.columns, *j)).filter_map(|(_, v)| *v);
     own.max_by(|a, b| a.value.total_cmp(&b.value))
-}
-
-/// The units in which nothing has changed, each with what it is compared with: against a baseline its other motions, or
-/// its other units where it is one motion; without one, the whole recording `all`.
-fn compared(units: &Units, products: &Products, all: &DMatrix<f64>, m: usize) -> Vec<Compared> {
-    let count = units.units.len();
-    if !units.change() {
-        return vec![Compared::new(all.clone(), m, (0..count).collect())];
-    }
-    if let Some(others) = with_other_motions(units, products, m, |f| !units.is_target(f)) {
-        return others;
-    }
-    with_other_units(units, products, m)
-}
-
-/// The units of a baseline, each with all of it.
-fn with_other_units(units: &Units, products: &Products, m: usize) -> Vec<Compared> {
-    let old: Vec<usize> = (0..units.units.len()).filter(|&u| !units.units[u].target).collect();
-    let whole = sum(&products.units, |u| !units.units[u].target);
-    vec![Compared::new(whole, m, old)]
-}
-
-/// The units of some motions, each with the others of these motions; `None` where there are not two of them.
-pub(super) fn with_other_motions(
-    units: &Units,
-    products: &Products,
-    m: usize,
-    taken: impl Fn(usize) -> bool,
-) -> Option<Vec<Compared>> {
-    if !units.are_several(&taken) {
-        return None;
-    }
-    let of_unit = |u: usize| {
-        let file = units.units[u].file;
-        let whole = sum(&products.files, |f| taken(f) && f != file) + &products.units[u];
-        Compared::new(whole, m, vec![u])
-    };
-    Some((0..units.units.len()).filter(|&u| taken(units.units[u].file)).map(of_unit).collect())
-}
-
-/// For each companion its mean statistic of a change from unit to unit, each unit compared with a law common to all,
-/// and the degrees of freedom of this mean, where it is determined.
-pub(super) fn of_companions(compared: &[Compared], products: &Products, y: usize) -> Vec<Option<Variance>> {
-    let count = products.companions;
-    let mut sums = vec![(0.0, 0_usize); count];
-    for Compared { whole, model, units } in compared {
-        let Some(model) = model else { continue };
-        let white_y = model.white(whole, y, 1);
-        let of_whole = model.white(whole, y + 1, count);
-        for &u in units {
-            let part = &products.units[u];
-            let of_part = model.white(part, y + 1, count);
-            for (b, sum) in sums.iter_mut().enumerate() {
-                let i = y + 1 + b;
-                let [all, own] = [of_whole.column(b), of_part.column(b)];
-                // Common amplitude and change, both without what the columns make of them.
-                let common = whole[(i, i)] - all.norm_squared();
-                let both = part[(i, i)] - own.dot(&all);
-                let change = part[(i, i)] - own.norm_squared();
-                if common <= OWN_FRACTION * whole[(i, i)] || part[(i, i)] <= 0.0 {
-                    continue;
-                }
-                let determined = change - both * both / common;
-                if determined <= OWN_FRACTION * part[(i, i)] {
-                    continue;
-                }
-                let [with_all, with_part] =
-                    [whole[(i, y)] - all.dot(&white_y.column(0)), part[(i, y)] - own.dot(&white_y.column(0))];
-                let slope = with_part - both / common * with_all;
-                *sum = (sum.0 + slope * slope / determined, sum.1 + 1);
-            }
-        }
-    }
-    let mean = |&(sum, n): &(f64, usize)| {
-        (n > 2).then(|| Variance { value: sum / n as f64, freedom: (n - 1) as f64 })
-    };
-    sums.iter().map(mean).collect()
-}
-
-/// Where the variances of companions scatter around. Those of two that look alike beside the model are correlated by
-/// the square of what their columns are.
-pub(super) fn prior(compared: &Compared, others: &[Option<Variance>], y: usize) -> Option<Prior> {
-    let Compared { whole, model, .. } = compared;
-    let white = model.as_ref()?.white(whole, y + 1, others.len());
-    let own = whole.view((y + 1, y + 1), (others.len(), others.len())) - white.tr_mul(&white);
-    let known: Vec<usize> = (0..others.len()).filter(|&i| others[i].is_some()).collect();
-    let variances: Vec<Variance> = others.iter().copied().flatten().collect();
-    Prior::of(&variances, &|i, k| {
-        let (i, k) = (known[i], known[k]);
-        (own[(i, k)] * own[(i, k)] / (own[(i, i)] * own[(k, k)]).max(f64::MIN_POSITIVE)).min(1.0)
-    })
 }
 
 /// The least statistic of a law that was found in all of the motion, where one of its units is left out; 0 where it turns round

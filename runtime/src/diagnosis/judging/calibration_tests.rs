@@ -95,7 +95,10 @@ fn judged(rng: &mut Pcg64, files: usize, baseline: bool, amplitude: f64, spread:
         of_joint: std::slice::from_ref(&all),
     };
     let found = alone(&units(files, baseline), &regressors, &[law], &residual, false).expect("determined");
-    [found.evidence(), Calibrated { lambda: 1.0, freedom: f64::INFINITY, of_signs: None, ..found }.evidence()]
+    [
+        found.evidence(),
+        Calibrated { lambda: 1.0, freedom: f64::INFINITY, of_signs: None, level: 1.0, ..found }.evidence(),
+    ]
 }
 
 fn rates(seed: u64, files: usize, baseline: bool, amplitude: f64, spread: f64, level: f64) -> [f64; 2] {
@@ -330,8 +333,9 @@ fn a_law_that_is_large_where_the_noise_is_has_the_variance_of_that_noise() {
         found as f64 / f64::from(runs)
     };
     let sure = |found: &Calibrated| found.evidence().p_value < level;
-    let with_one_variance =
-        |found: &Calibrated| Calibrated { lambda: 1.0, of_signs: None, ..*found }.evidence().p_value < level;
+    let with_one_variance = |found: &Calibrated| {
+        Calibrated { lambda: 1.0, of_signs: None, level: 1.0, ..*found }.evidence().p_value < level
+    };
     let naive = share_of(1.0, 0.0, &with_one_variance);
     assert!(naive > 0.04, "{naive}");
     let size = share_of(1.0, 0.0, &sure);
@@ -340,4 +344,72 @@ fn a_law_that_is_large_where_the_noise_is_has_the_variance_of_that_noise() {
     let [one, any] = [share_of(0.0, 0.5, &with_one_variance), share_of(0.0, 0.5, &sure)];
     assert!(any > one - 0.1, "{any} of {one}");
     println!("size {size} (one variance {naive}), power {any} (one variance {one})");
+}
+
+/// Evidence for a law in a motion of eight units beside a baseline of four, whose amplitude differs by `by_motion` from one motion to
+/// the next and by `by_unit` from one unit to the next.
+fn of_long_motions(rng: &mut Pcg64, amplitude: f64, [by_motion, by_unit]: [f64; 2]) -> Calibrated {
+    const BASELINE: usize = 4;
+    const OF_A_MOTION: usize = 8;
+    let rows = (BASELINE + 1) * OF_A_MOTION * ROWS;
+    let motion = |t: usize| t / (OF_A_MOTION * ROWS);
+    let old = BASELINE * OF_A_MOTION;
+    let mut cuts: Vec<Range<usize>> = (0..old).map(|u| u * ROWS..(u + 1) * ROWS).collect();
+    cuts.push(old * ROWS..rows);
+    let units = Units {
+        units: (0..=old).map(|u| Unit { file: u / OF_A_MOTION, target: u == old }).collect(),
+        rows: vec![cuts.clone()],
+        stretches: vec![cuts],
+        duration: 1.0,
+        target_duration: OF_A_MOTION as f64,
+    };
+    let column = |rng: &mut Pcg64| -> Vec<f64> { (0..rows).map(|_| normal(rng)).collect() };
+    let (shared, law) = (vec![column(rng), column(rng)], column(rng));
+    let companions = vec![(0..12).map(|_| column(rng)).collect::<Vec<_>>()];
+    let mut there = vec![0.0; rows];
+    let laws: Vec<(&Vec<f64>, f64)> =
+        std::iter::once((&law, amplitude)).chain(companions[0].iter().map(|c| (c, 0.0))).collect();
+    for (column, amplitude) in laws {
+        let of_motion: Vec<f64> = (0..=BASELINE).map(|_| by_motion * normal(rng)).collect();
+        let of_unit: Vec<f64> = (0..rows / ROWS).map(|_| by_unit * normal(rng)).collect();
+        for t in 0..rows {
+            let change = if motion(t) == BASELINE { amplitude } else { 0.0 };
+            there[t] += (change + of_motion[motion(t)] + of_unit[t / ROWS]) * column[t];
+        }
+    }
+    let residual = column(rng);
+    let y: Vec<f64> = (0..rows).map(|t| residual[t] + there[t] + 2.0 * shared[0][t] - shared[1][t]).collect();
+    let all = 0..rows;
+    let regressors = Regressors {
+        shared: &shared,
+        y: &y,
+        free: &[vec![]],
+        companions: &companions,
+        prior: None,
+        between_motions: &[],
+        of_joint: std::slice::from_ref(&all),
+    };
+    alone(&units, &regressors, &[law], &residual, true).expect("determined")
+}
+
+#[test]
+fn a_law_that_differs_between_motions_or_units_is_seldom_a_change() {
+    let mut rng = Pcg64::seed_from_u64(91);
+    for spread in [[0.0, 0.0], [0.1, 0.0], [0.0, 0.2], [0.1, 0.2]] {
+        let runs = 400;
+        let is_told =
+            (0..runs).filter(|_| of_long_motions(&mut rng, 0.0, spread).evidence().p_value < 0.05).count();
+        println!("{spread:?}: {is_told} of {runs}");
+        assert!(is_told as f64 <= 0.075 * f64::from(runs), "{spread:?}: {is_told} of {runs}");
+    }
+}
+
+#[test]
+fn a_change_is_seen_where_units_are_short_and_other_laws_are_as_before() {
+    let mut rng = Pcg64::seed_from_u64(92);
+    let runs = 100;
+    let is_told = |rng: &mut Pcg64| of_long_motions(rng, 0.7, [0.0, 0.2]).evidence().p_value < 1e-3;
+    let told = (0..runs).filter(|_| is_told(&mut rng)).count();
+    println!("{told} of {runs}");
+    assert!(told >= 95, "{told} of {runs}");
 }

@@ -4,6 +4,8 @@ pub(in crate::diagnosis) mod ar;
 pub(in crate::diagnosis) mod autocorrelation;
 pub(in crate::diagnosis) mod between_motions;
 pub(in crate::diagnosis) mod calibration;
+mod changes;
+mod compared;
 pub(in crate::diagnosis) mod evidence;
 pub(in crate::diagnosis) mod folds;
 pub(in crate::diagnosis) mod held_out;

@@ -72,6 +72,10 @@ pub(in crate::diagnosis) const TOLD_APART: f64 = 0.05;
 /// orders of magnitude, and the other one should hardly be the weaker for it.
 pub(in crate::diagnosis) const LEVEL_OF_SIGNS: f64 = 0.1;
 
+/// Share of the level of a law beside a baseline that goes to the test by what other laws of the joint change by in the recording.
+/// Statistics: which of the two tests is the better one depends on how long the baseline is.
+pub(in crate::diagnosis) const LEVEL_OF_KIND: f64 = 0.5;
+
 /// Highest order of the autoregression that makes a residual white. Statistics: half a second of slow rows; the order
 /// itself is chosen by the Bayesian information criterion.
 pub(in crate::diagnosis) const HIGHEST_AR_ORDER: usize = 12;
