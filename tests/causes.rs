@@ -231,7 +231,8 @@ fn a_base_that_is_tilted_is_no_other_robot() {
                 let [(Instead::Tilt(found), _)] = instead[..] else { panic!("{tilt}: {instead:?}") };
                 let along: f64 = found.iter().zip(&robot.gravity).map(|(a, b)| a * b).sum();
                 let off = (along / (9.81 * 9.81)).clamp(-1.0, 1.0).acos();
-                assert!(off < 0.02, "{tilt}: {found:?}");
+                // Steps end at an eightieth of a radian in two directions, beside what the model leaves out here.
+                assert!(off < 0.03, "{tilt}: {found:?}");
             }
             other => panic!("{tilt}: {other:?}"),
         }
