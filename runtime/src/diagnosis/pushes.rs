@@ -14,6 +14,7 @@ use super::error::{DiagnosisError, SingularDesign};
 use super::explanation::finding::terms;
 use super::judging::passage::{Elsewhere, Passage};
 use super::judging::regression::Regression;
+use super::objection::Objection;
 use super::preparation::Prepared;
 use super::rows::design::Design;
 use super::rules::{MOSTLY_UNEXPLAINED, SCAN_LEVEL, SCAN_LEVEL_BESIDE_LAWS};
@@ -43,11 +44,20 @@ pub(super) struct Pushes {
     /// What they were before a law took the place of some.
     explained: Option<Box<Pushes>>,
     /// Those that have taken the place of laws which show in one passage only, by the fast rows.
-    in_place_of_laws: Vec<Pushed>,
+    in_place_of_laws: Vec<InPlace>,
     /// The same with what the last look says of them.
     of_passages: Option<Contacts>,
     /// Laws of which the rest of the motion does not tell whether they are there instead.
     not_told: Vec<Tie>,
+    /// Laws of one passage that a push would explain, had it not been an accident.
+    accidents: Vec<Objection>,
+}
+
+/// A push in the place of laws.
+#[derive(Clone)]
+struct InPlace {
+    push: Pushed,
+    laws: Vec<Objection>,
 }
 
 impl Pushes {
@@ -65,6 +75,7 @@ impl Pushes {
             in_place_of_laws: Vec::new(),
             of_passages: None,
             not_told: Vec::new(),
+            accidents: Vec::new(),
         })
     }
 
@@ -118,6 +129,10 @@ impl Pushes {
         let beside_laws = !is_alone(search) || self.scanned && is_unexplained(&search.model.slow);
         let level = if beside_laws { SCAN_LEVEL_BESIDE_LAWS } else { SCAN_LEVEL };
         let (confirmed, found) = self.in_motion((model, prepared), (search, level), settings);
+        if !self.accidents.is_empty() {
+            // Their rows belong to the motion that laws are fitted to.
+            return true;
+        }
         let refuted = self.contacts.is_some() && confirmed.is_none();
         self.contacts = confirmed;
         if self.scanned || !settings.single_joint_contacts {
@@ -167,14 +182,20 @@ impl Pushes {
             fitted: &search.model.fitted_on(&outside),
             silent: &Silent::of(model.robot(), &laws(&search.model)),
         };
-        let certain = &self.in_place_of_laws;
-        let look = moving::look(context, &outside, &left, (&self.seen, certain), level);
+        let certain: Vec<Pushed> = self.in_place_of_laws.iter().map(|law| law.push.clone()).collect();
+        let look = moving::look(context, &outside, &left, (&self.seen, &certain), level);
+        let is_accident = |own: &InPlace| look.accidents.iter().any(|push| push.overlaps(&own.push));
+        let (accidents, certain): (Vec<InPlace>, Vec<InPlace>) =
+            std::mem::take(&mut self.in_place_of_laws).into_iter().partition(is_accident);
+        self.accidents.extend(accidents.into_iter().flat_map(|own| own.laws));
+        self.in_place_of_laws = certain;
+        let certain: Vec<Pushed> = self.in_place_of_laws.iter().map(|law| law.push.clone()).collect();
         let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
         let design = all.as_ref().unwrap_or(&outside);
         let residual = search.model.residual_on(design, SmoothingWindow::Fast);
         let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
         let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
-        self.of_passages = moving::certain(&around, &look, certain);
+        self.of_passages = moving::certain(&around, &look, &certain);
         let found = moving::seen(&around, &look);
         self.seen = look.pushes;
         (confirmed, found)
@@ -194,15 +215,17 @@ impl Pushes {
         let (model, slow, fast) = (&search.model, &search.model.slow, &search.model.fast.design);
         for (k, passage) in laws {
             let term = &model.terms[*k];
-            let places = self.in_place_of_laws.iter().map(|push| push.places[1] - push.places[0]);
+            let places = self.in_place_of_laws.iter().map(|own| own.push.places[1] - own.push.places[0]);
             let longest = search.longest_push(places.sum::<usize>() as f64 * fast.step);
             let wave = half_wave_in_place(slow, slow.term_columns[*k].clone(), &term.shows_on, longest)?;
             let Some(wave) = wave else { continue };
             let spacings = [&slow.design, fast].map(|design| design.spacing(wave.motion));
             let push = wave.as_push(spacings, 1.0 - term.confidence);
+            let law = Objection::to_term(term);
             // Laws of several joints may have followed one push.
-            if !self.in_place_of_laws.iter().any(|other| other.overlaps(&push)) {
-                self.in_place_of_laws.push(push);
+            match self.in_place_of_laws.iter_mut().find(|other| other.push.overlaps(&push)) {
+                Some(other) => other.laws.push(law),
+                None => self.in_place_of_laws.push(InPlace { push, laws: vec![law] }),
             }
             if passage.elsewhere == Elsewhere::Untold {
                 self.not_told.push(Tie {
@@ -214,8 +237,14 @@ impl Pushes {
         if self.in_place_of_laws.len() == before {
             return Ok(false);
         }
-        self.of_passages = Some(moving::set_aside(model.context.signals, fast, &self.in_place_of_laws));
+        let all: Vec<Pushed> = self.in_place_of_laws.iter().map(|own| own.push.clone()).collect();
+        self.of_passages = Some(moving::set_aside(model.context.signals, fast, &all));
         Ok(true)
+    }
+
+    /// Laws of one passage in whose place no push is certain, each once.
+    pub fn take_accidents(&mut self) -> Vec<Objection> {
+        std::mem::take(&mut self.accidents)
     }
 
     /// Laws that the motion does not tell from pushes.

@@ -70,6 +70,8 @@ pub(super) fn run(
     settings.excluded.extend(prepared.rate.iter().map(|_| LAW));
     let course = Course { model, prepared: &prepared, change, known, progress };
     loop {
+        // Neither a law nor a push is named for what shows once and may be an accident.
+        settings.excluded.extend(pushes.take_accidents().iter().map(|o| (o.effect, o.place)));
         let objections = objections.as_mut().map(|o| &mut **o as &mut Objections<'_>);
         if let Some(diagnosis) = course.on_rows_outside(&mut pushes, objections, &mut settings)? {
             progress.at(1.0, "done");

@@ -3,7 +3,7 @@
 use crate::diagnosis::contact::felt::{Around, Felt, wrench};
 use crate::diagnosis::contact::noise::Noise;
 use crate::diagnosis::contact::pushed::Pushed;
-use crate::diagnosis::contact::scan::scan;
+use crate::diagnosis::contact::scan::{Scan, scan};
 use crate::diagnosis::contact::search::Contacts;
 use crate::diagnosis::contact::track::{Left, Track};
 use crate::diagnosis::contact::windows::{duration, told};
@@ -16,6 +16,8 @@ use crate::effects::ContactForce;
 /// What a look at a residual finds.
 pub(in crate::diagnosis) struct Look {
     pub pushes: Vec<Pushed>,
+    /// Those among the certain ones that are accidents.
+    pub accidents: Vec<Pushed>,
     noise: Noise,
     /// Probability that one of all windows of the recording comes as far by accident, up to which it is a push.
     level: f64,
@@ -35,8 +37,8 @@ pub(in crate::diagnosis) fn look(
     let step = signals.get(first).map_or(design.step, |s| design.spacing(first) as f64 / s.rate);
     let tracks: Vec<Track> =
         (0..design.joints).map(|joint| Track::of(context, design, left, joint)).collect();
-    let (pushes, noise) = scan(&tracks, pushes, step, level);
-    Look { pushes, noise, level }
+    let Scan { pushes, accidents, noise } = scan(&tracks, pushes, step, level);
+    Look { pushes, accidents, noise, level }
 }
 
 /// The pushes that were seen, with what all joints feel of them on `around`, whose rows leave nothing out. `None` where

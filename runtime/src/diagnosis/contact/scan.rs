@@ -16,23 +16,35 @@ use crate::diagnosis::contact::suspects::{Suspect, suspects};
 use crate::diagnosis::contact::track::Track;
 use std::cell::OnceCell;
 
-/// Windows in which joints are pushed, most certain first, none next to another; and what the residuals do by themselves.
+/// What a look at the residuals of all joints finds.
+pub(in crate::diagnosis) struct Scan {
+    /// Windows in which joints are pushed, most certain first, none next to another.
+    pub pushes: Vec<Pushed>,
+    /// Pushes that something else tells, as far as what the residuals do by themselves.
+    pub accidents: Vec<Pushed>,
+    /// What the residuals do by themselves.
+    pub noise: Noise,
+}
+
+/// Looks for windows in which joints are pushed.
 ///
 /// `step` is the time from one place to the next, s; `level` the probability of an accident in a whole recording, up to which
 /// a window is a push; `known` were pushes in another look at these rows, and are judged again; those that are `certain` are
-/// not, nor are they among those that are found.
+/// not among those that are found.
 pub(in crate::diagnosis) fn scan(
     tracks: &[Track],
     (known, certain): (&[Pushed], &[Pushed]),
     step: f64,
     level: f64,
-) -> (Vec<Pushed>, Noise) {
+) -> Scan {
     let mut scan = Scanned::of(tracks, step);
     scan.look_again_at(known, certain);
     scan.find(level);
-    let mut found = scan.pushes();
-    found.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.square.total_cmp(&a.square)));
-    (found, scan.noise(tracks))
+    let mut pushes = scan.pushes();
+    pushes.sort_by(|a, b| a.doubt.total_cmp(&b.doubt).then(b.square.total_cmp(&a.square)));
+    let is_accident = |c: &&Candidate| c.is_certain && c.pushed.doubt > level;
+    let accidents = scan.candidates.iter().filter(is_accident).map(|c| c.pushed.clone()).collect();
+    Scan { pushes, accidents, noise: scan.noise(tracks) }
 }
 
 impl Scanned<'_> {

@@ -58,7 +58,7 @@ fn hardly_one_recording_in_three_hundred_has_a_push_that_is_none() {
     let mut rng = Pcg64::seed_from_u64(11);
     let runs = 1200;
     let false_alarms =
-        (0..runs).filter(|_| !scan(&noise(&mut rng), (&[], &[]), STEP, LEVEL).0.is_empty()).count();
+        (0..runs).filter(|_| !scan(&noise(&mut rng), (&[], &[]), STEP, LEVEL).pushes.is_empty()).count();
     println!("{false_alarms} of {runs}");
     assert!(false_alarms <= 4, "{false_alarms} of {runs}");
 }
@@ -67,7 +67,7 @@ fn hardly_one_recording_in_three_hundred_has_a_push_that_is_none() {
 fn nor_do_recordings_of_a_few_seconds() {
     let mut rng = Pcg64::seed_from_u64(22);
     let runs = 1200;
-    let mut once = |_: &i32| !scan(&noise_of(&mut rng, 2, 300), (&[], &[]), STEP, LEVEL).0.is_empty();
+    let mut once = |_: &i32| !scan(&noise_of(&mut rng, 2, 300), (&[], &[]), STEP, LEVEL).pushes.is_empty();
     let false_alarms = (0..runs).filter(&mut once).count();
     assert!(false_alarms <= 4, "{false_alarms} of {runs}");
 }
@@ -78,7 +78,7 @@ fn a_long_push_in_a_few_seconds_is_found() {
     let mut once = |_: &i32| {
         let mut tracks = noise_of(&mut rng, 3, 400);
         push(&mut tracks[1], 3.0, 1.0, 3.5);
-        scan(&tracks, (&[], &[]), STEP, LEVEL).0.iter().any(|p| p.joint == 1)
+        scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.iter().any(|p| p.joint == 1)
     };
     let found = (0..100).filter(&mut once).count();
     assert!(found >= 70, "{found} of 100");
@@ -90,7 +90,7 @@ fn a_push_that_a_residual_would_remember_as_slow_noise_is_found() {
     let mut once = || {
         let mut tracks = noise_of(&mut rng, 2, 600);
         push(&mut tracks[0], 4.0, 2.4, 2.0);
-        let found = scan(&tracks, (&[], &[]), STEP, LEVEL).0;
+        let found = scan(&tracks, (&[], &[]), STEP, LEVEL).pushes;
         found.iter().any(|p| p.joint == 0 && p.places[0] < 320 && p.places[1] > 200)
     };
     let hits = (0..60).filter(|_| once()).count();
@@ -102,21 +102,24 @@ fn a_push_that_a_residual_would_remember_as_slow_noise_is_found() {
 fn what_was_found_is_judged_again() {
     let mut tracks = noise(&mut Pcg64::seed_from_u64(24));
     push(&mut tracks[1], 10.0, 0.5, 4.0);
-    let found = scan(&tracks, (&[], &[]), STEP, LEVEL).0;
-    assert_eq!(scan(&tracks, (&found, &[]), STEP, LEVEL).0, found);
+    let found = scan(&tracks, (&[], &[]), STEP, LEVEL).pushes;
+    assert_eq!(scan(&tracks, (&found, &[]), STEP, LEVEL).pushes, found);
     push(&mut tracks[1], 10.0, 0.5, -4.0);
-    assert!(scan(&tracks, (&found, &[]), STEP, LEVEL).0.is_empty());
+    assert!(scan(&tracks, (&found, &[]), STEP, LEVEL).pushes.is_empty());
 }
 
 #[test]
-fn what_is_certain_is_not_judged_and_others_are_found_beside_it() {
+fn what_else_tells_of_a_push_is_judged_and_others_are_found_beside_it() {
     let mut tracks = noise(&mut Pcg64::seed_from_u64(25));
     push(&mut tracks[1], 20.0, 0.5, 4.0);
-    let found = scan(&tracks, (&[], &[]), STEP, LEVEL).0;
+    let found = scan(&tracks, (&[], &[]), STEP, LEVEL).pushes;
     let certain = Pushed { motion: 0, places: [100, 130], ..found[0].clone() };
-    let beside = scan(&tracks, (&[], std::slice::from_ref(&certain)), STEP, LEVEL).0;
-    assert_eq!(beside.len(), 1);
-    assert_eq!((beside[0].joint, beside[0].places), (found[0].joint, found[0].places));
+    let scanned = scan(&tracks, (&[], std::slice::from_ref(&certain)), STEP, LEVEL);
+    assert_eq!(scanned.pushes.len(), 1);
+    assert_eq!((scanned.pushes[0].joint, scanned.pushes[0].places), (found[0].joint, found[0].places));
+    let places = |pushes: &[Pushed]| pushes.iter().map(|p| p.places).collect::<Vec<_>>();
+    assert_eq!(places(&scanned.accidents), [[100, 130]]);
+    assert!(places(&scan(&tracks, (&[], &found), STEP, LEVEL).accidents).is_empty());
 }
 
 /// Share of pushes of `lasts` seconds that are found on their joint at their time, and recordings with any other.
@@ -129,7 +132,7 @@ fn found(lasts: f64, visible: f64, seed: u64) -> (f64, usize) {
         let joint = rng.random_range(0..JOINTS);
         let from = rng.random_range(1.0..22.0);
         push(&mut tracks[joint], from, lasts, visible);
-        let pushed = scan(&tracks, (&[], &[]), STEP, LEVEL).0;
+        let pushed = scan(&tracks, (&[], &[]), STEP, LEVEL).pushes;
         let right = |p: &Pushed| {
             let [a, b] = p.places.map(|k| k as f64 * STEP);
             p.joint == joint && a < from + lasts && b > from
@@ -164,12 +167,12 @@ fn slow_pushes_are_found_although_they_are_weaker() {
 fn what_stands_out_where_a_load_is_borne_once_is_no_push() {
     let mut tracks = noise(&mut Pcg64::seed_from_u64(21));
     push(&mut tracks[2], 10.0, 0.5, 5.0);
-    assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).0.iter().any(|p| p.joint == 2));
+    assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.iter().any(|p| p.joint == 2));
     // A few of its rows are not most of them.
     tracks[2].once.extend((505..512).map(|place| (0, place)));
-    assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).0.iter().any(|p| p.joint == 2));
+    assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.iter().any(|p| p.joint == 2));
     tracks[2].once.extend((500..530).map(|place| (0, place)));
-    assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).0.iter().all(|p| p.joint != 2));
+    assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.iter().all(|p| p.joint != 2));
 }
 
 #[test]
@@ -181,7 +184,7 @@ fn a_joint_whose_residual_always_wanders_is_not_pushed() {
         for (place, x) in &mut tracks[1].motions[0].1 {
             *x += 2.0 * (2.0 * *place as f64 * STEP + phase).sin();
         }
-        assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).0.iter().all(|p| p.joint != 1));
+        assert!(scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.iter().all(|p| p.joint != 1));
     }
 }
 
@@ -191,7 +194,7 @@ fn pushes_of_several_joints_at_a_time_are_one() {
     push(&mut tracks[0], 10.0, 0.6, 4.0);
     push(&mut tracks[2], 10.05, 0.6, 4.0);
     push(&mut tracks[3], 17.0, 0.6, 4.0);
-    let mut pushes = scan(&tracks, (&[], &[]), STEP, LEVEL).0;
+    let mut pushes = scan(&tracks, (&[], &[]), STEP, LEVEL).pushes;
     pushes.sort_by_key(|p| p.places[0]);
     assert!(matches!(&pushes[..], [a, b] if [0, 2].contains(&a.joint) && b.joint == 3), "{pushes:?}");
 }
@@ -205,7 +208,7 @@ fn what_joints_feel_at_a_time_adds_up() {
             for (joint, track) in tracks.iter_mut().enumerate().filter(|(joint, _)| shared || *joint == 0) {
                 push(track, 10.0 + if shared { 0.0 } else { joint as f64 }, 0.5, 1.7);
             }
-            usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).0.is_empty())
+            usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.is_empty())
         };
         (0..60).map(once).sum::<usize>()
     };
@@ -219,7 +222,7 @@ fn what_no_joint_tells_alone_all_joints_may() {
     let once = |_| {
         let mut tracks = noise(&mut rng);
         tracks.iter_mut().for_each(|track| push(track, 10.0, 0.5, 1.4));
-        usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).0.is_empty())
+        usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.is_empty())
     };
     let found = (0..60).map(once).sum::<usize>();
     println!("{found} of 60");
@@ -243,12 +246,12 @@ fn what_a_model_takes_over_of_a_push_is_counted() {
         let y: Vec<f64> = rows.iter().map(|r| r.1).collect();
         let fit = product(&column, &y) / product(&column, &column);
         tracks[0].motions[0].1.iter_mut().zip(&column).for_each(|((_, y), x)| *y -= fit * x);
-        found[0] += usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).0.is_empty());
+        found[0] += usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.is_empty());
         tracks[0].columns = vec![column];
         for track in &mut tracks[1..] {
             track.columns = vec![Vec::new()];
         }
-        found[1] += usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).0.is_empty());
+        found[1] += usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.is_empty());
     }
     println!("{found:?}");
     assert!(found[1] >= 40 && found[0] < found[1], "{found:?} of 60");
@@ -268,7 +271,7 @@ fn noise_that_is_large_where_the_torque_is_makes_no_pushes() {
                 track.sizes = if told { vec![rows.iter().map(|r| torque(r.0)).collect()] } else { vec![] };
                 rows.iter_mut().for_each(|(place, x)| *x *= 0.3 + 2.0 * torque(*place).powi(4));
             }
-            usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).0.is_empty())
+            usize::from(!scan(&tracks, (&[], &[]), STEP, LEVEL).pushes.is_empty())
         };
         (0..runs).map(once).sum::<usize>()
     };
@@ -287,7 +290,7 @@ fn noise_that_joints_share_makes_no_pushes() {
         for track in &mut tracks {
             track.motions[0].1.iter_mut().for_each(|(place, x)| *x = 0.3 * *x + 0.95 * shared[*place]);
         }
-        usize::from(!scan(&tracks, (&[], &[]), STEP, level).0.is_empty())
+        usize::from(!scan(&tracks, (&[], &[]), STEP, level).pushes.is_empty())
     };
     let false_alarms = (0..runs).map(once).sum::<usize>();
     println!("{false_alarms} of {runs}");
@@ -306,7 +309,7 @@ fn edges_are_as_uncertain_as_they_say() {
                 *x += 3.0;
             }
         }
-        let pushed = scan(&tracks, (&[], &[]), STEP, LEVEL).0;
+        let pushed = scan(&tracks, (&[], &[]), STEP, LEVEL).pushes;
         let Some(p) = pushed.iter().find(|p| p.joint == 0) else { continue };
         let error = (p.places[0] as f64 * STEP - from).abs();
         outside += usize::from(error > 2.0 * p.edges[0].max(1.0) * STEP + STEP);
@@ -317,6 +320,6 @@ fn edges_are_as_uncertain_as_they_say() {
 #[test]
 fn few_rows_are_not_scanned() {
     let short = track(0, (0..50).map(|k| (k, 1.0)).collect());
-    assert!(scan(&[short], (&[], &[]), STEP, LEVEL).0.is_empty());
-    assert!(scan(&[], (&[], &[]), STEP, LEVEL).0.is_empty());
+    assert!(scan(&[short], (&[], &[]), STEP, LEVEL).pushes.is_empty());
+    assert!(scan(&[], (&[], &[]), STEP, LEVEL).pushes.is_empty());
 }
