@@ -182,20 +182,17 @@ impl Pushes {
             fitted: &search.model.fitted_on(&outside),
             silent: &Silent::of(model.robot(), &laws(&search.model)),
         };
-        let certain: Vec<Pushed> = self.in_place_of_laws.iter().map(|law| law.push.clone()).collect();
+        let certain = self.certain();
         let look = moving::look(context, &outside, &left, (&self.seen, &certain), level);
         let is_accident = |own: &InPlace| look.accidents.iter().any(|push| push.overlaps(&own.push));
-        let (accidents, certain): (Vec<InPlace>, Vec<InPlace>) =
-            std::mem::take(&mut self.in_place_of_laws).into_iter().partition(is_accident);
-        self.accidents.extend(accidents.into_iter().flat_map(|own| own.laws));
-        self.in_place_of_laws = certain;
-        let certain: Vec<Pushed> = self.in_place_of_laws.iter().map(|law| law.push.clone()).collect();
+        let accidents = self.in_place_of_laws.extract_if(.., |own| is_accident(own));
+        self.accidents.extend(accidents.flat_map(|own| own.laws));
         let all = contacts.map(|_| prepared.motions.rows(model, None).fast);
         let design = all.as_ref().unwrap_or(&outside);
         let residual = search.model.residual_on(design, SmoothingWindow::Fast);
         let around = Around { context, design, residual: &residual, sigma: &search.model.fast.sigma };
         let confirmed = contacts.and_then(|c| moving::confirmed(c, &around, &look));
-        self.of_passages = moving::certain(&around, &look, &certain);
+        self.of_passages = moving::certain(&around, &look, &self.certain());
         let found = moving::seen(&around, &look);
         self.seen = look.pushes;
         (confirmed, found)
@@ -237,9 +234,13 @@ impl Pushes {
         if self.in_place_of_laws.len() == before {
             return Ok(false);
         }
-        let all: Vec<Pushed> = self.in_place_of_laws.iter().map(|own| own.push.clone()).collect();
-        self.of_passages = Some(moving::set_aside(model.context.signals, fast, &all));
+        self.of_passages = Some(moving::set_aside(model.context.signals, fast, &self.certain()));
         Ok(true)
+    }
+
+    /// Pushes in the place of laws.
+    fn certain(&self) -> Vec<Pushed> {
+        self.in_place_of_laws.iter().map(|own| own.push.clone()).collect()
     }
 
     /// Laws of one passage in whose place no push is certain, each once.

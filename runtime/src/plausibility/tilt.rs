@@ -2,7 +2,7 @@
 
 use super::instead::Instead;
 use super::judged::Judged;
-use super::ratio;
+use super::{Found, ratio};
 use crate::estimation::PhysicalFit;
 use nalgebra::{Vector2, Vector3};
 
@@ -15,7 +15,7 @@ const MOST: f64 = 0.7;
 
 /// The tilt that lowers the joints' errors most, as [`Instead::Tilt`], by which factor, and the error that it leaves; `None` without
 /// gravity, or where none lowers them.
-pub(super) fn best_tilt(judged: &Judged<'_>, own: &PhysicalFit) -> Option<(f64, Instead, f64)> {
+pub(super) fn best_tilt(judged: &Judged<'_>, own: &PhysicalFit) -> Option<Found> {
     let down = Vector3::from(judged.model.robot().gravity);
     let size = down.norm();
     // The axis that is least along it is not along it.
@@ -38,7 +38,7 @@ pub(super) fn best_tilt(judged: &Judged<'_>, own: &PhysicalFit) -> Option<(f64, 
         let within = next.iter().filter(|by| by.norm() <= MOST);
         let tried = within.filter_map(|by| Some((*by, tried(by)?)));
         let found = tried.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
-        let least = best.as_ref().map_or(1.0, |(ratio, _, _): &(f64, Instead, f64)| *ratio);
+        let least = best.as_ref().map_or(1.0, |(ratio, _, _): &Found| *ratio);
         match found.filter(|(_, found)| found.0 > least) {
             Some((by, found)) => (here, best) = (by, Some(found)),
             None => step /= 2.0,

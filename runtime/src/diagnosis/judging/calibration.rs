@@ -15,7 +15,7 @@ use crate::diagnosis::judging::significance::Evidence;
 use crate::diagnosis::judging::uneven_noise::of_noise;
 use crate::diagnosis::judging::units::Units;
 use crate::diagnosis::judging::wald::Wald;
-use crate::diagnosis::judging::white_products::{Background, WithLaw, sum};
+use crate::diagnosis::judging::white_products::{Background, Products, WithLaw, sum};
 use crate::diagnosis::rules::{LEVEL_OF_KIND, LEVEL_OF_SIGNS};
 use crate::statistics::moderation::Variance;
 use nalgebra::DMatrix;
@@ -93,8 +93,7 @@ pub(in crate::diagnosis) fn calibrate(
     let (p, k, common) = (regressors.shared.len(), law.columns.len(), law.common);
     let change = units.change();
     let whole = products.whole(units, regressors, p + k);
-    let part =
-        if change { sum(&products.files, |f| units.is_target(f)) } else { sum(&products.units, |_| true) };
+    let part = judged_part(units, &products);
     let found = Wald::of(&whole, &part, (p, k), common && change)?;
     // Without a baseline the law is in all units, and in each it may be another.
     let common = common || !change;
@@ -113,7 +112,6 @@ pub(in crate::diagnosis) fn calibrate(
         // One motion of a baseline alone that moves the joint is a baseline of one motion.
         (compared, own, others) = of_units(with_other_units(units, &products, m));
     }
-    let own_parts = own_parts(&compared[0], &compared[0].whole, (others.len(), p + k));
     let levels: Vec<f64> = (others.iter().take(law.trend_of).filter_map(|changes| variance_of(changes)))
         .map(|v| v.value)
         .collect();
@@ -126,7 +124,8 @@ pub(in crate::diagnosis) fn calibrate(
     // A torque that no unit reaches says nothing of how a law of it differs between them: those of its kind do.
     let unseen = own.is_empty() && levels.is_empty();
     if (unseen || variance.value > 0.0)
-        && let Some(prior) = own_parts.as_ref().and_then(|own_parts| prior(own_parts, &others))
+        && let Some(own_parts) = own_parts(&compared[0], &compared[0].whole, (others.len(), p + k))
+        && let Some(prior) = prior(&own_parts, &others)
     {
         let freedom = if unseen { 0.0 } else { variance.freedom };
         variance = prior.moderate(Variance { freedom, ..variance });
@@ -195,11 +194,7 @@ pub(in crate::diagnosis) fn beside(
     let both: Vec<Vec<f64>> = other.iter().chain(law.columns).cloned().collect();
     let products = background.with(units, regressors, &both, law.residual).products;
     let mut whole = products.whole(units, regressors, p + o + k);
-    let part = if units.change() {
-        sum(&products.files, |f| units.is_target(f))
-    } else {
-        sum(&products.units, |_| true)
-    };
+    let part = judged_part(units, &products);
     let alone: Vec<usize> = (0..whole.nrows()).filter(|i| !(p..p + o).contains(i)).collect();
     let without = |m: &DMatrix<f64>| m.select_rows(&alone).select_columns(&alone);
     let common = law.common && units.change();
@@ -226,6 +221,11 @@ pub(in crate::diagnosis) fn rival_p_value(law: &Calibrated, rival: &Calibrated, 
     let lambda = law.lambda.max(rival.lambda);
     let deviation = 2.0 * (lambda * law.squares).max(f64::MIN_POSITIVE).sqrt();
     Normal::standard().sf(ahead / deviation)
+}
+
+/// The part of the motion that a law is judged in: against a baseline the recording, else all of it.
+fn judged_part(units: &Units, products: &Products) -> DMatrix<f64> {
+    if units.change() { sum(&products.files, |f| units.is_target(f)) } else { sum(&products.units, |_| true) }
 }
 
 /// How much a model of the robot before knows a law to differ between motions: on the joint of it where that is most.
