@@ -17,6 +17,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use crate::estimation::observe::Observation;
 use crate::estimation::{Estimate, PhysicalFit, physical_fit};
 use crate::model::{JointIndex, Model};
+use crate::parallel;
 use instead::{POOR, mistakes, other_gravities, single_mistakes};
 use position::with_torques_over_position;
 use tilt::best_tilt;
@@ -115,7 +116,7 @@ pub fn judge(
     let instead = if estimated.rows_per_parameter() < ENOUGH_ROWS {
         Vec::new()
     } else {
-        let found = better(judged, others, candidates(judged, others, &own, error), &own);
+        let found = better(judged, others, &candidates(judged, others, &own, error), &own);
         simpler(judged, found, &own)
     };
     let impossible = impossible(&errors, estimated);
@@ -210,37 +211,36 @@ type Found = (f64, Instead, f64);
 fn better(
     judged: &Judged<'_>,
     others: &[&dyn Model],
-    candidates: Vec<Instead>,
+    candidates: &[Instead],
     own: &PhysicalFit,
 ) -> Vec<Found> {
     // Joints that stand still have no error that could be lowered.
     let judged_by = own.per_equation.iter().filter(|error| error.is_some_and(|e| e > 0.0)).count();
-    let mut all: Vec<Found> = candidates
-        .into_iter()
-        .filter_map(|candidate| {
-            let enough = match candidate {
-                Instead::Robot(_) => ROBOT,
-                _ => MISTAKE.powf(1.0 / judged_by.max(1) as f64),
-            };
-            let promising = |free: &[Option<f64>]| ratio(&own.per_equation, free) >= PROMISING * enough;
-            let fit = candidate.fit(judged, others, promising)?;
-            let better = ratio(&own.per_equation, &fit.per_equation);
-            let error = fit.relative_error?;
-            let explains = match candidate {
-                // A factor of a thousand is the worst that is wrong: what is explained worst is explained by it.
-                Instead::Scale { .. } => {
-                    let [before, after] =
-                        [own, &fit].map(|f| errors_of(&f.per_equation).into_iter().fold(0.0, f64::max));
-                    MISTAKE * after <= before
-                }
-                // Several angles that are free take more than one mistake does.
-                Instead::Zeros(_) => own.relative_error.is_some_and(|own| MISTAKE * error <= own),
-                // Nor is a joint made right by what makes the torques of all together worse.
-                _ => own.relative_error.is_none_or(|own| error <= own),
-            };
-            (better >= enough && explains).then_some((better, candidate, error))
-        })
-        .collect();
+    let tried = |candidate: &Instead| {
+        let enough = match *candidate {
+            Instead::Robot(_) => ROBOT,
+            _ => MISTAKE.powf(1.0 / judged_by.max(1) as f64),
+        };
+        let promising = |free: &[Option<f64>]| ratio(&own.per_equation, free) >= PROMISING * enough;
+        let fit = candidate.fit(judged, others, promising)?;
+        let better = ratio(&own.per_equation, &fit.per_equation);
+        let error = fit.relative_error?;
+        let explains = match *candidate {
+            // A factor of a thousand is the worst that is wrong: what is explained worst is explained by it.
+            Instead::Scale { .. } => {
+                let [before, after] =
+                    [own, &fit].map(|f| errors_of(&f.per_equation).into_iter().fold(0.0, f64::max));
+                MISTAKE * after <= before
+            }
+            // Several angles that are free take more than one mistake does.
+            Instead::Zeros(_) => own.relative_error.is_some_and(|own| MISTAKE * error <= own),
+            // Nor is a joint made right by what makes the torques of all together worse.
+            _ => own.relative_error.is_none_or(|own| error <= own),
+        };
+        (better >= enough && explains).then(|| (better, candidate.clone(), error))
+    };
+    let tried = parallel::map(judged.settings.threads, candidates.len(), |k| tried(&candidates[k]));
+    let mut all: Vec<Found> = tried.into_iter().flatten().collect();
     // Angles are fitted: what takes no number, and does nearly as well, comes first.
     let rank = |(better, instead, _): &Found| match instead {
         Instead::Zeros(_) => better.powf(NEARLY),

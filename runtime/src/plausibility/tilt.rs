@@ -4,6 +4,7 @@ use super::instead::Instead;
 use super::judged::Judged;
 use super::{Found, ratio};
 use crate::estimation::PhysicalFit;
+use crate::parallel;
 use nalgebra::{Vector2, Vector3};
 
 /// Tangents of the angles about two axes that steps begin with, and the one that they end with. Numerics: errors fall steadily to the
@@ -35,9 +36,10 @@ pub(super) fn best_tilt(judged: &Judged<'_>, own: &PhysicalFit) -> Option<Found>
     while step >= LAST {
         let ways = [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)];
         let next = ways.map(|(a, b)| here + Vector2::new(a, b));
-        let within = next.iter().filter(|by| by.norm() <= MOST);
-        let tried = within.filter_map(|by| Some((*by, tried(by)?)));
-        let found = tried.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
+        let within: Vec<_> = next.into_iter().filter(|by| by.norm() <= MOST).collect();
+        let of_each = parallel::map(judged.settings.threads, within.len(), |k| tried(&within[k]));
+        let found = within.into_iter().zip(of_each).filter_map(|(by, found)| Some((by, found?)));
+        let found = found.max_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
         let least = best.as_ref().map_or(1.0, |(ratio, _, _): &Found| *ratio);
         match found.filter(|(_, found)| found.0 > least) {
             Some((by, found)) => (here, best) = (by, Some(found)),
