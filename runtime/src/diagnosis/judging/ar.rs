@@ -30,7 +30,8 @@ impl Autoregression {
         let rows = products.rows(0) as f64;
         let variance = (products.between(0, &[1.0], &[1.0]) / rows.max(1.0)).max(f64::MIN_POSITIVE);
         let (mut coefficients, mut variances) = (vec![Vec::new()], vec![variance]);
-        let (mut best, mut chosen) = (rows * variance.ln(), 0);
+        // Beyond that of order zero.
+        let (mut criterion, mut best, mut chosen) = (0.0, 0.0, 0);
         for order in 1..=products.highest() {
             let before: &Vec<f64> = &coefficients[order - 1];
             // Errors of the prediction of a row from those before it, and of the row before them from those after it.
@@ -47,7 +48,9 @@ impl Autoregression {
             now.push(reflection);
             coefficients.push(now);
             variances.push((variances[order - 1] * (1.0 - reflection * reflection)).max(1e-12 * variance));
-            let criterion = rows * variances[order].ln() + order as f64 * rows.ln();
+            // A row without so many predecessors is predicted no better.
+            criterion +=
+                products.rows(order) as f64 * (variances[order] / variances[order - 1]).ln() + rows.ln();
             if criterion < best {
                 (best, chosen) = (criterion, order);
             }
@@ -83,6 +86,7 @@ impl Autoregression {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnosis::judging::testing::correlated;
     use crate::diagnosis::rules::HIGHEST_AR_ORDER as HIGHEST_ORDER;
     use crate::testing::normal;
     use rand::SeedableRng;
@@ -139,6 +143,25 @@ mod tests {
         assert_eq!(Autoregression::fit(&[], &[], HIGHEST_ORDER).order(), 0);
         let still = Autoregression::fit(std::slice::from_ref(&(0..50)), &[0.0; 50], HIGHEST_ORDER);
         assert!(still.whitened(std::slice::from_ref(&(0..50)), &[0.0; 50]).iter().all(|x| *x == 0.0));
+    }
+
+    #[test]
+    fn few_long_stretches_among_short_ones_are_no_reason_for_a_high_order() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let lengths = [10, 14, 11, 2, 6, 9, 7, 21, 5, 12, 10, 11, 4, 21, 3, 4];
+        let too_high = (0..200)
+            .filter(|_| {
+                let (mut values, mut stretches) = (Vec::new(), Vec::new());
+                for n in lengths {
+                    let start = values.len();
+                    values.extend(correlated(&mut rng, n, 0.5));
+                    stretches.push(start..values.len());
+                }
+                Autoregression::fit(&stretches, &values, HIGHEST_ORDER).order() > 1
+            })
+            .count();
+        println!("{too_high} of 200");
+        assert!(too_high <= 20, "{too_high} of 200");
     }
 
     #[test]
