@@ -260,7 +260,7 @@ fn what_a_model_takes_over_of_a_push_is_counted() {
 #[test]
 fn noise_that_is_large_where_the_torque_is_makes_no_pushes() {
     let mut rng = Pcg64::seed_from_u64(20);
-    let runs = 150;
+    let runs = 300;
     let false_alarms = |told: bool, rng: &mut Pcg64| {
         let once = |_| {
             let mut tracks = noise(rng);
@@ -277,7 +277,7 @@ fn noise_that_is_large_where_the_torque_is_makes_no_pushes() {
     };
     let (one_size, uneven) = (false_alarms(false, &mut rng), false_alarms(true, &mut rng));
     println!("{one_size} and {uneven} of {runs}");
-    assert!(uneven <= 1 && one_size > uneven, "{one_size} and {uneven} of {runs}");
+    assert!(uneven <= 2 && one_size > uneven, "{one_size} and {uneven} of {runs}");
 }
 
 #[test]
