@@ -22,17 +22,13 @@ fn seen(beyond: &[Vec<f64>]) -> Seen {
 
 /// The same of one of so many times that the robot stands.
 fn seen_once_of(times: usize, beyond: &[Vec<f64>]) -> Seen {
-    let still = vec![true; beyond[0].len()];
-    let coulomb = [Some(10.0), Some(4.0)];
-    look(&Standing {
-        rate: RATE,
-        start: 0.0,
-        beyond,
-        still: &still,
-        coulomb: &coulomb,
-        uneven: &[0.0, 0.0],
-        times,
-    })
+    look(&Standing { times, ..standing_still(beyond, &vec![true; beyond[0].len()]) })
+}
+
+/// The two joints at rest where they are `still`, for the only time; nothing is uneven along the path.
+fn standing_still<'a>(beyond: &'a [Vec<f64>], still: &'a [bool]) -> Standing<'a> {
+    let coulomb = &[Some(10.0), Some(4.0)];
+    Standing { rate: RATE, start: 0.0, beyond, still, coulomb, uneven: &[0.0, 0.0], times: 1 }
 }
 
 /// Half a sine wave from `from` on for `lasts` seconds.
@@ -104,18 +100,8 @@ fn what_is_uneven_along_the_path_holds_a_joint_too() {
     let mut beyond = vec![vec![0.0; 600]; 2];
     pushed(&mut beyond[0], 1.0, 2.0, 20.0);
     let still = vec![true; 600];
-    let coulomb = [Some(10.0), Some(4.0)];
     let pushes = |uneven: f64| {
-        let standing = Standing {
-            rate: RATE,
-            start: 0.0,
-            beyond: &beyond,
-            still: &still,
-            coulomb: &coulomb,
-            uneven: &[uneven, 0.0],
-            times: 1,
-        };
-        look(&standing).pushes.len()
+        look(&Standing { uneven: &[uneven, 0.0], ..standing_still(&beyond, &still) }).pushes.len()
     };
     assert_eq!([0.0, 1.0, 4.0].map(pushes), [1, 1, 0]);
 }
@@ -147,17 +133,7 @@ fn an_impact_and_motion_are_no_push_at_rest() {
     assert!(seen(&beyond).pushes.is_empty());
     pushed(&mut beyond[0], 8.0, 1.0, 60.0);
     let still: Vec<bool> = (0..1200).map(|t| !(750..950).contains(&t)).collect();
-    let coulomb = [Some(10.0), Some(4.0)];
-    let standing = Standing {
-        rate: RATE,
-        start: 0.0,
-        beyond: &beyond,
-        still: &still,
-        coulomb: &coulomb,
-        uneven: &[0.0, 0.0],
-        times: 1,
-    };
-    assert!(look(&standing).pushes.is_empty());
+    assert!(look(&standing_still(&beyond, &still)).pushes.is_empty());
 }
 
 #[test]
@@ -165,15 +141,6 @@ fn a_joint_without_known_friction_is_not_judged() {
     let mut beyond = standing(&mut Pcg64::seed_from_u64(6));
     pushed(&mut beyond[0], 4.0, 1.0, 60.0);
     let still = vec![true; 1200];
-    let coulomb = [None, Some(4.0)];
-    let standing = Standing {
-        rate: RATE,
-        start: 0.0,
-        beyond: &beyond,
-        still: &still,
-        coulomb: &coulomb,
-        uneven: &[0.0, 0.0],
-        times: 1,
-    };
-    assert_eq!(look(&standing).pushes, vec![]);
+    let unknown = Standing { coulomb: &[None, Some(4.0)], ..standing_still(&beyond, &still) };
+    assert_eq!(look(&unknown).pushes, vec![]);
 }
