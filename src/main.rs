@@ -1,7 +1,7 @@
 //! The `dynid` command.
 
-/// A diagnosis makes and forgets long columns on several threads, for which the allocator of a system is not made: it takes a
-/// sixth of the time.
+/// A diagnosis makes and forgets long columns on several threads, for which the allocators of systems are not made
+/// (`docs/performance.md`).
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

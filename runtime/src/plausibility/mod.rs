@@ -239,8 +239,8 @@ fn better(
         };
         (better >= enough && explains).then(|| (better, candidate.clone(), error))
     };
-    let tried = parallel::map(judged.settings.threads, candidates.len(), |k| tried(&candidates[k]));
-    let mut all: Vec<Found> = tried.into_iter().flatten().collect();
+    let found = parallel::map(judged.settings.threads, candidates.len(), |k| tried(&candidates[k]));
+    let mut all: Vec<Found> = found.into_iter().flatten().collect();
     // Angles are fitted: what takes no number, and does nearly as well, comes first.
     let rank = |(better, instead, _): &Found| match instead {
         Instead::Zeros(_) => better.powf(NEARLY),

@@ -30,7 +30,7 @@ impl Autoregression {
         let rows = products.rows(0) as f64;
         let variance = (products.between(0, &[1.0], &[1.0]) / rows.max(1.0)).max(f64::MIN_POSITIVE);
         let (mut coefficients, mut variances) = (vec![Vec::new()], vec![variance]);
-        // Beyond that of order zero.
+        // The criterion of each order, less that of order zero.
         let (mut criterion, mut best, mut chosen) = (0.0, 0.0, 0);
         for order in 1..=products.highest() {
             let before: &Vec<f64> = &coefficients[order - 1];
