@@ -36,7 +36,7 @@ pub(super) struct HalfWaves {
 /// A window of the grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
-    /// Amplitude of its half wave in standard deviations.
+    /// Amplitude of its half wave as a normal deviate.
     pub deviation: f64,
     /// First place.
     pub from: usize,
@@ -139,7 +139,9 @@ impl HalfWaves {
             }
             let factor = widening(&mut deviations, 1.0, rows as f64 / length as f64);
             for (windows, from) in windows.iter_mut().zip(from) {
-                windows[from..].iter_mut().for_each(|w| w.deviation /= factor);
+                windows[from..]
+                    .iter_mut()
+                    .for_each(|w| w.deviation = white.as_normal(w.deviation / factor, length));
             }
             wider.push(factor);
         }
@@ -217,7 +219,8 @@ impl HalfWaves {
                 if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
                     && let Some([wave, sigma]) = white.half_wave(motion, a..b, &mut scratch)
                 {
-                    tried.push(((wave / (sigma * self.widths.wider[window.length])).powi(2), a, b));
+                    let deviation = white.as_normal(wave / (sigma * self.widths.wider[window.length]), b - a);
+                    tried.push((deviation * deviation, a, b));
                 }
             }
         }

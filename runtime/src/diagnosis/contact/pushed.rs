@@ -25,7 +25,7 @@ pub(super) struct Candidate {
     pub pushed: Pushed,
     /// Whether something else tells that it is one.
     pub is_certain: bool,
-    /// What each joint that is scanned feels, in standard deviations, beside the model and the other candidates.
+    /// What each joint that is scanned feels, as a normal deviate, beside the model and the other candidates.
     pub felt: Vec<Option<f64>>,
 }
 

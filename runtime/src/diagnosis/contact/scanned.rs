@@ -76,7 +76,8 @@ impl<'a> Scanned<'a> {
                 let amplitude = amplitude.filter(|amplitude| amplitude.left > SCAN_LEFT_BY_MODEL)?;
                 // Where rows are missing, or curves over the joint's state are like it, nothing tells.
                 joint.rows.half_wave(motion, places.clone(), &mut scratch)?;
-                Some(amplitude.deviations / joint.waves.widths.of(places.len()))
+                let deviations = amplitude.deviations / joint.waves.widths.of(places.len());
+                Some(joint.waves.white().as_normal(deviations, places.len()))
             };
             candidate.felt = self.joints.iter().zip(amplitudes).map(felt).collect();
         }

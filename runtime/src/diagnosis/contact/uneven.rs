@@ -18,9 +18,17 @@ const ROUNDS: usize = 6;
 /// Rounds of one coordinate after the other within each.
 const STEPS: usize = 40;
 
-/// Standard deviation of the noise of each row, in that of all: its square is a constant and squares of `sizes`, none with a
-/// negative weight. The weights are fitted to squares of the residual, clipped, so that a few pushes hardly change them.
-pub(super) fn deviations(residual: &[f64], sizes: &[Vec<f64>]) -> Vec<f64> {
+/// The size of the noise of rows.
+pub(super) struct Sizes {
+    /// Standard deviation of each row, in that of all.
+    pub deviations: Vec<f64>,
+    /// How many of the sizes it grows with.
+    pub grows_with: usize,
+}
+
+/// The size of the noise of each row: its square is a constant and squares of `sizes`, none with a negative weight. The weights are
+/// fitted to squares of the residual, clipped, so that a few pushes hardly change them.
+pub(super) fn sizes_of_noise(residual: &[f64], sizes: &[Vec<f64>]) -> Sizes {
     let rows = residual.len();
     let of_mean_one = |size: &Vec<f64>| {
         let mean = size.iter().map(|x| x * x).sum::<f64>() / rows.max(1) as f64;
@@ -30,7 +38,7 @@ pub(super) fn deviations(residual: &[f64], sizes: &[Vec<f64>]) -> Vec<f64> {
     parts.extend(sizes.iter().map(of_mean_one));
     let whole = spread(residual.iter().copied()).powi(2);
     if !(whole.is_finite() && whole > 0.0) {
-        return vec![1.0; rows];
+        return Sizes { deviations: vec![1.0; rows], grows_with: 0 };
     }
     let mut weights = vec![0.0; parts.len()];
     weights[0] = whole;
@@ -45,7 +53,8 @@ pub(super) fn deviations(residual: &[f64], sizes: &[Vec<f64>]) -> Vec<f64> {
         variance.iter_mut().for_each(|v| *v = v.max(least));
     }
     let mean = variance.iter().sum::<f64>() / rows as f64;
-    variance.iter().map(|v| (v / mean).sqrt()).collect()
+    let deviations = variance.iter().map(|v| (v / mean).sqrt()).collect();
+    Sizes { deviations, grows_with: weights[1..].iter().filter(|weight| **weight > 0.0).count() }
 }
 
 /// Weights of parts, none negative, that make squares best, each with an error in proportion to its variance: one coordinate
@@ -83,7 +92,7 @@ mod tests {
         if pushed {
             residual[60..110].iter_mut().for_each(|x| *x += 10.0);
         }
-        let found = deviations(&residual, &[torque, speed]);
+        let found = sizes_of_noise(&residual, &[torque, speed]).deviations;
         let mean = ((0..ROWS).map(|t| size(t).powi(2)).sum::<f64>() / ROWS as f64).sqrt();
         (0..ROWS).map(|t| (found[t] * mean / size(t)).ln().abs()).fold(0.0, f64::max)
     }
@@ -98,12 +107,12 @@ mod tests {
     #[test]
     fn noise_of_one_size_is_left_as_it_is() {
         assert!(worst(|_| 0.3, false) < 0.08, "{}", worst(|_| 0.3, false));
-        assert_eq!(deviations(&[1.0, -1.0, 2.0], &[]), vec![1.0; 3]);
+        assert_eq!(sizes_of_noise(&[1.0, -1.0, 2.0], &[]).deviations, vec![1.0; 3]);
     }
 
     #[test]
     fn a_residual_without_noise_has_one_size() {
-        assert_eq!(deviations(&[0.0; 3], &[vec![1.0, 2.0, 3.0]]), vec![1.0; 3]);
-        assert!(deviations(&[], &[vec![]]).is_empty());
+        assert_eq!(sizes_of_noise(&[0.0; 3], &[vec![1.0, 2.0, 3.0]]).deviations, vec![1.0; 3]);
+        assert!(sizes_of_noise(&[], &[vec![]]).deviations.is_empty());
     }
 }

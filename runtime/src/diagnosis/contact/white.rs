@@ -11,9 +11,10 @@ use crate::diagnosis::contact::memory::Memory;
 use crate::diagnosis::contact::pushed::half_wave;
 use crate::diagnosis::contact::spread::spread;
 use crate::diagnosis::contact::track::Track;
-use crate::diagnosis::contact::uneven::deviations;
+use crate::diagnosis::contact::uneven::{Sizes, sizes_of_noise};
 use crate::diagnosis::rows::gram::dot;
 use crate::diagnosis::rules::{SCAN_FILLED, SCAN_LEFT_BY_MODEL, SCAN_OWN_SHAPE, SCAN_PRESENT};
+use crate::statistics::student::as_normal;
 use std::ops::Range;
 
 /// Rows of one motion.
@@ -36,6 +37,8 @@ pub(in crate::diagnosis) struct White {
     memory: Memory,
     /// Standard deviation of the noise of each row, in that of all.
     deviations: Vec<f64>,
+    /// How many sizes these grow with.
+    grows_with: usize,
     /// First row of the stretch of neighbouring rows that each row is in, and the row after its last.
     stretch: Vec<[usize; 2]>,
     /// Residual beside the curves and the pushes, its noise of one size, with all that it remembers.
@@ -49,6 +52,8 @@ pub(in crate::diagnosis) struct White {
     pub(super) absorbed: Vec<Vec<f64>>,
     /// Standard deviation of the white residual, N.m or N.
     pub(super) sigma: f64,
+    /// Number of rows that the curves and the model leave free.
+    free: f64,
 }
 
 impl White {
@@ -70,7 +75,7 @@ impl White {
             kept.push(Motion { motion: k, is_target: *is_target, places, first });
         }
         let beside = |more: &[Vec<f64>]| orthonormal([&track.beside, more].concat());
-        let deviations = deviations(&without(&raw, &beside(pushes)), &track.sizes);
+        let Sizes { deviations, grows_with } = sizes_of_noise(&without(&raw, &beside(pushes)), &track.sizes);
         let even = |columns: &[Vec<f64>]| -> Vec<Vec<f64>> {
             columns.iter().map(|x| x.iter().zip(&deviations).map(|(x, d)| x / d).collect()).collect()
         };
@@ -84,12 +89,14 @@ impl White {
             motions: kept,
             memory,
             deviations,
+            grows_with,
             stretch,
             even: Vec::new(),
             residual: Vec::new(),
             curves: Vec::new(),
             absorbed: Vec::new(),
             sigma: 1.0,
+            free: 1.0,
         };
         white.curves = orthonormal(curves.iter().map(|c| white.whitened(c)).collect());
         white.residual = without(&white.whitened(&left), &white.curves);
@@ -101,14 +108,24 @@ impl White {
     pub(super) fn scale(&mut self) -> bool {
         let rows = self.residual.len() as f64;
         let absorbed: f64 = self.absorbed.iter().flatten().map(|x| x * x).sum();
-        let free = (rows - self.curves.len() as f64 - absorbed).max(1.0);
-        let sigma = spread(self.residual.iter().copied()) * (rows / free).sqrt();
+        self.free = (rows - self.curves.len() as f64 - absorbed).max(1.0);
+        let sigma = spread(self.residual.iter().copied()) * (rows / self.free).sqrt();
         let has_spread = sigma.is_finite() && sigma > 0.0;
         if has_spread {
             self.residual.iter_mut().for_each(|x| *x /= sigma);
             self.sigma *= sigma;
         }
         has_spread
+    }
+
+    /// The normal deviate that is passed as often as the amplitude of a half wave over so many places is `deviations` of its
+    /// standard deviations from zero: these are known as well as a level, a variance function and the memory are that are
+    /// estimated from the rows. The logarithm of the variance of what is slow has itself the variance 4 p / n by an
+    /// autoregression of order p of n rows (Berk 1974), that of half waves no more than by as many of them as the rows hold,
+    /// and each of the other numbers adds 2 / n.
+    pub(super) fn as_normal(&self, deviations: f64, places: usize) -> f64 {
+        let numbers = 1 + self.grows_with + places.min(2 * self.order());
+        as_normal(deviations, self.free / numbers as f64)
     }
 
     /// With noise of the size that another residual of these rows has.

@@ -246,7 +246,9 @@ fn apart(robot: &Robot, laws: [(EffectKind, Place); 2]) -> CannotTell {
 /// What would tell two laws apart: an experiment in words, and where both are laws of one joint the command that makes its
 /// motion.
 fn experiment(robot: &Robot, law: (EffectKind, Place), rival: (EffectKind, Place)) -> String {
-    let words = law.0.words().experiment;
+    // How much friction differs from day to day tells no law from it.
+    let telling = if law.0 == EffectKind::FrictionLevelChange { rival.0 } else { law.0 };
+    let words = telling.words().experiment;
     let of_joint = |(effect, place): (EffectKind, Place)| match effect.form() {
         Form::Joint(_) => place.joint(),
         _ => None,

@@ -105,14 +105,14 @@ pub(in crate::diagnosis) const SCAN_EDGE: f64 = 0.1;
 pub(in crate::diagnosis) const SCAN_IMPACT: f64 = 0.12;
 /// Least fraction of a window's rows that must be there: a joint that reverses has none. Judgement.
 pub(in crate::diagnosis) const SCAN_PRESENT: f64 = 0.7;
-/// False alarms per recording in which nothing else was found. Statistics: one in five thousand, of which the candidates that
-/// are left out of what they are compared with make one in a thousand; size and power in the tests of `scan`.
-pub(in crate::diagnosis) const SCAN_LEVEL: f64 = 2e-4;
+/// False alarms per recording in which nothing else was found. Statistics: one in a thousand; size and power in the tests of
+/// `scan`.
+pub(in crate::diagnosis) const SCAN_LEVEL: f64 = 1e-3;
 /// The same beside laws, where laws were found that could not be told apart or kept, and where something remains on a joint that
 /// nothing explains. Judgement: a law that is fitted nearly
 /// right, or not at all, leaves short waves where it acts, which the law of the largest means knows nothing of, and of which
 /// joints feel the same; pushes of a hand are mostly far beyond.
-pub(in crate::diagnosis) const SCAN_LEVEL_BESIDE_LAWS: f64 = 1e-6;
+pub(in crate::diagnosis) const SCAN_LEVEL_BESIDE_LAWS: f64 = 5e-5;
 /// Something remains on a joint where this part of its residual is the same two rows later. Judgement: most of it is no noise.
 pub(in crate::diagnosis) const MOSTLY_UNEXPLAINED: f64 = 0.5;
 /// Pushes on single joints, at least so many, are a law where one over any variables leaves at most one in so many of them.

@@ -14,7 +14,7 @@ use crate::diagnosis::search::state::Search;
 use crate::effects::{EffectKind, Place};
 
 /// Whether an effect is friction that bends with the speed.
-fn is_bend(effect: EffectKind) -> bool {
+pub(super) fn is_bend(effect: EffectKind) -> bool {
     matches!(effect, EffectKind::Stribeck | EffectKind::NonlinearViscous)
 }
 

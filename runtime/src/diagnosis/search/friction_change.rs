@@ -20,6 +20,7 @@ use crate::diagnosis::rows::signals::ModelTorques;
 use crate::diagnosis::rules::{LEAST_FRICTION_CHANGE, TOLD_APART};
 use crate::diagnosis::search::bench::{Bench, Size};
 use crate::diagnosis::search::certainty::of_amplitudes;
+use crate::diagnosis::search::in_place_of_level::InPlaceOfLevel;
 use crate::diagnosis::search::small_law::SmallLaw;
 use crate::diagnosis::search::state::Search;
 use crate::diagnosis::search::term::{Accepted, Rival};
@@ -54,7 +55,7 @@ impl Others {
 
 /// What has changed on a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Change {
+pub(super) enum Change {
     Friction,
     /// Every torque by one factor.
     DriveGain,
@@ -63,11 +64,11 @@ enum Change {
 }
 
 /// A joint on which something has changed, and how sure that is.
-struct Changed {
-    joint: usize,
+pub(super) struct Changed {
+    pub joint: usize,
     change: Change,
-    significance: f64,
-    confidence: f64,
+    pub significance: f64,
+    pub confidence: f64,
 }
 
 impl Search<'_> {
@@ -142,8 +143,15 @@ impl Search<'_> {
             }
             let nothing_else = found.change != Change::DriveGain
                 && self.friction_change(joint, before, false).law < size.needed;
-            if !(nothing_else && self.bend_in_place_of_viscous(joint)?) {
-                self.take(&found, before)?;
+            if nothing_else && self.bend_in_place_of_viscous(joint)? {
+                continue;
+            }
+            match self.in_place_of_level(&found, before, settings)? {
+                InPlaceOfLevel::Law(law) => {
+                    self.model.terms.push(*law);
+                    self.refit_and_update()?;
+                }
+                InPlaceOfLevel::Level(rivals) => self.take(&found, before, rivals)?,
             }
         }
         Ok(())
@@ -156,18 +164,19 @@ impl Search<'_> {
     pub(in crate::diagnosis) fn take_friction_change(&mut self, joint: usize) -> Result<(), SingularDesign> {
         let before = self.friction_of_baseline(joint);
         let found = Changed { joint, change: Change::Friction, significance: 0.0, confidence: 0.5 };
-        self.take(&found, before)
+        self.take(&found, before, Vec::new())
     }
 
     /// Makes what has changed on a joint a term of the model, in the place of friction that is free in the recording; `before` are
-    /// the viscous and Coulomb coefficients of the baseline.
-    fn take(&mut self, found: &Changed, before: [f64; 2]) -> Result<(), SingularDesign> {
+    /// the viscous and Coulomb coefficients of the baseline, `alike` the laws that friction which has changed cannot be told from.
+    fn take(
+        &mut self,
+        found: &Changed,
+        before: [f64; 2],
+        mut alike: Vec<Rival>,
+    ) -> Result<(), SingularDesign> {
         let &Changed { joint, change, significance, confidence } = found;
-        let variances = self.model.slow.fit.variances();
-        let chi = &self.model.slow.fit.chi;
-        let ratios = self.own_friction(joint).map(|k| chi[k].abs() / variances[k].max(1e-300).sqrt());
-        let white = ratios.fold(0.0, f64::max);
-        let inflation = if significance > 0.0 { (white / significance).max(1.0) } else { 1.0 };
+        let inflation = self.inflation_of_friction(joint, significance);
         self.take_over_friction(joint, 2);
         let rival = |effect| Rival {
             effect,
@@ -178,8 +187,12 @@ impl Search<'_> {
         };
         let before = before.to_vec();
         let (effect, shape, rivals) = match change {
-            Change::Friction => (EffectKind::FrictionLevelChange, before, Vec::new()),
-            Change::Either => (EffectKind::FrictionLevelChange, before, vec![rival(DRIVE_GAIN)]),
+            Change::Friction => (EffectKind::FrictionLevelChange, before, alike),
+            Change::Either => {
+                alike.retain(|rival| rival.effect != DRIVE_GAIN);
+                alike.push(rival(DRIVE_GAIN));
+                (EffectKind::FrictionLevelChange, before, alike)
+            }
             Change::DriveGain => (DRIVE_GAIN, Vec::new(), Vec::new()),
         };
         self.model.terms.push(Accepted {
@@ -200,6 +213,15 @@ impl Search<'_> {
         self.refit_and_update()
     }
 
+    /// Factor on the standard deviations of a change of a joint's friction that is as significant.
+    pub(super) fn inflation_of_friction(&self, joint: usize, significance: f64) -> f64 {
+        let variances = self.model.slow.fit.variances();
+        let chi = &self.model.slow.fit.chi;
+        let ratios = self.own_friction(joint).map(|k| chi[k].abs() / variances[k].max(1e-300).sqrt());
+        let white = ratios.fold(0.0, f64::max);
+        if significance > 0.0 { (white / significance).max(1.0) } else { 1.0 }
+    }
+
     /// Where the friction of a joint bends, and nothing but its viscous part has changed besides, that is a part of the law: it has
     /// taken the place of it. Says whether there is such a law.
     fn bend_in_place_of_viscous(&mut self, joint: usize) -> Result<bool, SingularDesign> {
@@ -216,7 +238,7 @@ impl Search<'_> {
     }
 
     /// Takes the first `numbers` of the viscous and Coulomb friction of a joint out of what is free in the recording: a law has them.
-    fn take_over_friction(&mut self, joint: usize, numbers: usize) {
+    pub(super) fn take_over_friction(&mut self, joint: usize, numbers: usize) {
         for window in [SmoothingWindow::Slow, SmoothingWindow::Fast] {
             let columns = self.model.bench(window).own_friction_of(joint);
             let regression = match window {

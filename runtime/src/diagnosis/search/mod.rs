@@ -9,6 +9,7 @@ pub(in crate::diagnosis) mod free_form;
 pub(in crate::diagnosis) mod friction_change;
 pub(in crate::diagnosis) mod gate;
 mod generalise;
+mod in_place_of_level;
 pub(in crate::diagnosis) mod line;
 mod one_curve;
 pub(in crate::diagnosis) mod pair;

@@ -151,7 +151,7 @@ impl Search<'_> {
     }
 
     /// Whether a ranked candidate is a law that can be, with its standard deviations as much larger.
-    fn can_be(&self, ranked: &Ranked, inflation: f64) -> bool {
+    pub(super) fn can_be(&self, ranked: &Ranked, inflation: f64) -> bool {
         let (regression, candidate) = self.of(ranked);
         let Some(part) = regression.fit.project_out(&candidate.trials[ranked.verdict.trial]) else {
             return false;
