@@ -219,8 +219,7 @@ impl HalfWaves {
                 if b >= a + length.div_ceil(2).max(SCAN_SHORTEST)
                     && let Some([wave, sigma]) = white.half_wave(motion, a..b, &mut scratch)
                 {
-                    let deviation = white.as_normal(wave / (sigma * self.widths.wider[window.length]), b - a);
-                    tried.push((deviation * deviation, a, b));
+                    tried.push(((wave / (sigma * self.widths.wider[window.length])).powi(2), a, b));
                 }
             }
         }
